@@ -1,0 +1,11 @@
+"""The fitters family."""
+
+from collections.abc import Mapping
+
+from tactile_graph import hookimpl
+
+
+@hookimpl
+def tactile_graph_steps() -> Mapping[str, str]:
+    """Offer the fitters."""
+    return {}

@@ -1,0 +1,102 @@
+"""Every error of the project, in words for people; exceptions carry data, ``__str__`` makes the text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+
+class TactileGraphError(Exception):
+    """Base of every error that a user can cause or meet."""
+
+
+class Degenerate(TactileGraphError):
+    """An expected numeric failure of a step: the input holds too little for an answer.
+
+    A step raises it instead of returning NaN; the node's outcome is then ``failed`` with
+    ``kind == "degenerate"``.
+    """
+
+
+class DataError(TactileGraphError):
+    """A recording, stream or image that does not hold what it should.
+
+    Parameters
+    ----------
+    where : str
+        File and line, port or image the trouble is in.
+    what : str
+        What is wrong, what was got and what is allowed.
+    """
+
+    def __init__(self, where: str, what: str) -> None:
+        super().__init__(where, what)
+        self.where = where
+        self.what = what
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.what}"
+
+
+class UsageError(TactileGraphError):
+    """A call or a command line that asks for something that is not there."""
+
+
+class PluginError(TactileGraphError):
+    """A plugin that breaks the rules of the house, named by plugin and package."""
+
+
+class RuleError(TactileGraphError):
+    """A frame that breaks a rule (quantity, shape, pitch) some step of the pipeline declares."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A place in a file; lines and columns count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing wrong with a pipeline file: where, what, what was got, what is allowed."""
+
+    mark: Mark | None
+    message: str
+    snippet: str = ""
+
+    def __str__(self) -> str:
+        where = f"{self.mark}: " if self.mark else ""
+        return f"{where}{self.message}" + (f"\n{self.snippet}" if self.snippet else "")
+
+
+class PipelineError(TactileGraphError):
+    """All that is wrong with a pipeline, found in one run."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        super().__init__(tuple(problems))
+        self.problems: tuple[Problem, ...] = tuple(problems)
+
+    def __str__(self) -> str:
+        return "\n".join(str(p) for p in self.problems)
+
+
+def did_you_mean(got: str, allowed: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the nearest allowed name, or an empty text."""
+    near = get_close_matches(str(got), [str(a) for a in allowed], n=1, cutoff=0.6)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def one_of(allowed: Iterable[str], most: int = 12) -> str:
+    """Return the allowed names as a readable list, cut after ``most``."""
+    names = sorted(str(a) for a in allowed)
+    if not names:
+        return "none"
+    cut = names[:most]
+    return ", ".join(cut) + (f", … ({len(names) - most} more)" if len(names) > most else "")

@@ -1,0 +1,1 @@
+"""Plugins: the hooks they may answer and the registry of what they offer."""

@@ -1,0 +1,237 @@
+"""Find the installed plugins and keep what they offer, loading a step only when it is used."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import pluggy
+
+from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of
+from tactile_graph.plugins import hookspecs
+
+if TYPE_CHECKING:
+    from tactile_graph.steps.signature import Signature
+
+GROUP = "tactile_graph"
+ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
+OFFERS = ("steps", "pipelines", "pads", "presets", "commands")
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which plugins may load, as ``"hull,filters"`` (only these) or ``"-mrf"`` (all but these)."""
+
+    only: frozenset[str] = frozenset()
+    blocked: frozenset[str] = frozenset()
+
+    @classmethod
+    def parse(cls, text: str) -> Selection:
+        """Return the selection a flag or environment variable spells."""
+        names = [n.strip() for n in text.split(",") if n.strip()]
+        return cls(
+            frozenset(n for n in names if not n.startswith("-")),
+            frozenset(n[1:] for n in names if n.startswith("-")),
+        )
+
+    def allows(self, name: str) -> bool:
+        """Return whether the plugin may load."""
+        return name not in self.blocked and (not self.only or name in self.only)
+
+
+@dataclass
+class Plugin:
+    """One installed plugin: what it offers, or why it does not."""
+
+    name: str
+    package: str
+    version: str = ""
+    error: str = ""
+    blocked: bool = False
+    import_ms: float = 0.0
+    offers: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    @property
+    def label(self) -> str:
+        """Plugin and package, as errors name it."""
+        return f"plugin {self.name!r} (package {self.package})"
+
+
+@dataclass
+class Offer:
+    """One named thing a plugin offers."""
+
+    name: str
+    plugin: Plugin
+    target: Any
+
+
+class Registry:
+    """Everything the installed plugins offer.
+
+    Parameters
+    ----------
+    plugins : iterable of (name, package, version, loader)
+        In the order in which names are handed out; ``loader()`` imports the plugin's module.
+    selection : Selection
+    """
+
+    def __init__(
+        self,
+        plugins: Iterable[tuple[str, str, str, Callable[[], ModuleType]]],
+        selection: Selection | None = None,
+    ) -> None:
+        self.plugins: list[Plugin] = []
+        self.clashes: list[str] = []
+        self._offers: dict[str, dict[str, Offer]] = {kind: {} for kind in OFFERS}
+        self._signatures: dict[str, Signature] = {}
+        self._manager = pluggy.PluginManager(hookspecs.PROJECT)
+        self._manager.add_hookspecs(hookspecs)
+        allowed = selection or Selection()
+        for name, package, version, loader in plugins:
+            plugin = Plugin(name, package, version, blocked=not allowed.allows(name))
+            self.plugins.append(plugin)
+            if not plugin.blocked:
+                self._load(plugin, loader)
+
+    def _load(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> None:
+        start = time.perf_counter()
+        try:
+            module = loader()
+            if self._manager.has_plugin(plugin.name):
+                raise PluginError("another plugin of this name is already loaded")
+            self._manager.register(module, plugin.name)
+            self._manager.check_pending()
+            for kind in OFFERS:
+                plugin.offers[kind] = self._ask(module, kind)
+        except Exception as error:  # a plugin may raise anything; the rest must go on working
+            plugin.error = f"{type(error).__name__}: {error}"
+            plugin.offers.clear()
+        plugin.import_ms = 1e3 * (time.perf_counter() - start)
+        for kind, offers in plugin.offers.items():
+            for name, target in offers.items():
+                self._add(kind, Offer(name, plugin, target))
+
+    def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
+        hook = getattr(self._manager.hook, f"{GROUP}_{kind}")
+        answers = [i.function() for i in hook.get_hookimpls() if i.plugin is module]
+        if not answers:
+            return {}
+        if not isinstance(answers[0], Mapping):
+            raise PluginError(f"hook {GROUP}_{kind} must return a mapping, got {answers[0]!r}")
+        return dict(answers[0])
+
+    def _add(self, kind: str, offer: Offer) -> None:
+        taken = self._offers[kind].get(offer.name)
+        if taken is None:
+            self._offers[kind][offer.name] = offer
+            return
+        clash = (
+            f"{kind[:-1]} {offer.name!r} of {offer.plugin.label} is refused: "
+            f"{taken.plugin.label} has it already"
+        )
+        self.clashes.append(clash)
+        offer.plugin.offers[kind] = {
+            n: t for n, t in offer.plugin.offers[kind].items() if n != offer.name
+        }
+
+    def names(self, kind: str) -> list[str]:
+        """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …)."""
+        return sorted(self._offers[kind])
+
+    def offer(self, kind: str, name: str) -> Offer:
+        """Return one offer.
+
+        Raises
+        ------
+        UsageError
+            If nothing of that name is offered; says what is near, and which plugins are down.
+        """
+        try:
+            return self._offers[kind][name]
+        except KeyError:
+            raise UsageError(self.unknown(kind, name)) from None
+
+    def unknown(self, kind: str, name: str) -> str:
+        """Return the text that says a name is not on offer, with what is near."""
+        names = self.names(kind)
+        text = f"no {kind[:-1]} named {name!r}{did_you_mean(name, names)}"
+        if not did_you_mean(name, names):
+            text += f"; there are: {one_of(names)}"
+        down = [p.name for p in self.plugins if p.error]
+        return text + (f" (plugins that failed to load: {', '.join(down)})" if down else "")
+
+    def has(self, kind: str, name: str) -> bool:
+        """Return whether something of that kind and name is on offer."""
+        return name in self._offers[kind]
+
+    def load(self, kind: str, name: str) -> Any:
+        """Return the thing itself, imported if it was offered by import string."""
+        offer = self.offer(kind, name)
+        if isinstance(offer.target, str):
+            offer.target = _import(offer)
+        return offer.target
+
+    def step(self, name: str) -> Signature:
+        """Return what the step of that name needs and gives; imports its module."""
+        if name not in self._signatures:
+            from tactile_graph.steps.signature import read_signature
+
+            self._signatures[name] = read_signature(name, self.load("steps", name))
+        return self._signatures[name]
+
+    def path(self, kind: str, name: str) -> Path:
+        """Return the file of a pipeline, pad or preset."""
+        return Path(self.offer(kind, name).target)
+
+
+def _import(offer: Offer) -> Any:
+    module_name, _, attribute = str(offer.target).partition(":")
+    where = f"{offer.name!r} of {offer.plugin.label}"
+    try:
+        module = importlib.import_module(module_name)
+    except Exception as error:
+        raise PluginError(f"{where}: cannot import {module_name}: {error}") from error
+    try:
+        return getattr(module, attribute)
+    except AttributeError:
+        raise PluginError(f"{where}: {module_name} has no {attribute!r}") from None
+
+
+def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
+    """Return the installed entry points, sorted, ours first among equals of a name."""
+
+    def place(entry: EntryPoint) -> tuple[bool, str, str]:
+        package = entry.dist.name if entry.dist else ""
+        return (package != "tactile-graph", entry.name, package)
+
+    def row(entry: EntryPoint) -> tuple[str, str, str, Callable[[], ModuleType]]:
+        dist = entry.dist
+        return (entry.name, dist.name if dist else "", dist.version if dist else "", entry.load)
+
+    return [row(e) for e in sorted(set(entry_points(group=GROUP)), key=place)]
+
+
+_override: str | None = None
+
+
+def restrict(selection: str) -> None:
+    """Restrict or block plugins for this process; ``selection`` as in `Selection`."""
+    global _override
+    _override = selection
+    installed.cache_clear()
+
+
+@cache
+def installed() -> Registry:
+    """Return the registry of this environment's plugins; found once per process."""
+    text = os.environ.get(ENVIRONMENT, "") if _override is None else _override
+    return Registry(_installed(), Selection.parse(text))

@@ -1,0 +1,6 @@
+"""Steps: what they need, read from their signatures, and the rules they can declare."""
+
+from tactile_graph.steps.injected import Report, TimeGap
+from tactile_graph.steps.rules import Grid, Quantity
+
+__all__ = ["Grid", "Quantity", "Report", "TimeGap"]

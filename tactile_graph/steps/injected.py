@@ -1,0 +1,66 @@
+"""What the engine hands to a step that asks for it by annotation.
+
+A keyword-only parameter annotated ``np.random.Generator`` receives a generator seeded for the
+run, the step and the frame; one annotated `Report` receives the run's report (sources only);
+one annotated `TimeGap` (``__call__`` of a stateful step only) receives the true time since the
+step last ran.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Annotated
+
+
+class _Gap:
+    """Marks a parameter that takes the seconds since the step last ran."""
+
+
+TimeGap = Annotated[float | None, _Gap()]
+"""Seconds since the step last ran; None at its first frame or where the source keeps no time."""
+
+
+def is_time_gap(metadata: tuple[object, ...]) -> bool:
+    """Return whether an annotation's metadata marks a `TimeGap`."""
+    return any(isinstance(m, _Gap) for m in metadata)
+
+
+class Report:
+    """What a source has to say beside its frames: counters, troubles by place, frames to expect.
+
+    Parameters
+    ----------
+    listener : callable, optional
+        Called with ``(where, what)`` at each trouble, as it happens.
+    keep : int
+        How many troubles are kept word for word; all are counted.
+    """
+
+    def __init__(self, listener: Callable[[str, str], None] | None = None, keep: int = 1000) -> None:
+        self.counts: Counter[str] = Counter()
+        self.troubles: list[tuple[str, str]] = []
+        self.n_expected: int | None = None
+        self.digests: dict[str, str] = {}
+        self._listener = listener
+        self._keep = keep
+
+    def count(self, what: str, n: int = 1) -> None:
+        """Add ``n`` to the counter ``what``."""
+        self.counts[what] += n
+
+    def trouble(self, where: str, what: str) -> None:
+        """Note that ``what`` was wrong at ``where`` (file and line, or port) and was left out."""
+        self.counts["troubles"] += 1
+        if len(self.troubles) < self._keep:
+            self.troubles.append((where, what))
+        if self._listener is not None:
+            self._listener(where, what)
+
+    def expect(self, n_frames: int) -> None:
+        """Say how many more frames are coming, for progress bars."""
+        self.n_expected = (self.n_expected or 0) + n_frames
+
+    def digest(self, source: str, sha256: str) -> None:
+        """Note the SHA-256 of a file the frames come from, for the record of how it was made."""
+        self.digests[source] = sha256

@@ -1,0 +1,88 @@
+"""Rules a step can declare about images: quantity and grid (shape and pitch).
+
+They stand in ``Annotated`` beside the type of a port, of a setting or of the return value::
+
+    def subdivide(
+        image: Mask, *, factor: Annotated[int, Ge(1)] = 2
+    ) -> Annotated[Mask, Grid.like("image", finer_by="factor")]: ...
+
+The loader checks them along the wires as far as they are known before the first frame, and
+the rest on the first frame of a source.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from tactile_graph.wires.image import QUANTITIES
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What an image's values mean.
+
+    On a port: the quantities it takes. On a return value: the one it gives. On a setting: what
+    the port ``of`` must carry whenever the setting is given.
+    """
+
+    names: tuple[str, ...] = ()
+    port: str = ""
+
+    def __init__(self, *names: str, of: str = "") -> None:
+        unknown = set(names) - set(QUANTITIES)
+        if unknown:
+            raise ValueError(f"unknown quantity {sorted(unknown)}, allowed: {', '.join(QUANTITIES)}")
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "port", of)
+
+    @classmethod
+    def like(cls, port: str) -> Quantity:
+        """On a return value: the same quantity as came in at ``port``."""
+        return cls(of=port)
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Shape and pitch of an image.
+
+    On a port: ``Grid.like("other")`` demands the same grid as another port's; ``Grid(rows=16)``,
+    ``Grid(pitch_cm=1.3)`` and ``Grid(min_rows=3)`` demand numbers. On a return value:
+    ``Grid.like("image", finer_by="factor")`` says that each cell became factor x factor cells,
+    where ``finer_by`` is a number or the name of a setting.
+    """
+
+    rows: int | None = None
+    columns: int | None = None
+    pitch_cm: float | None = None
+    min_rows: int = 1
+    min_columns: int = 1
+    port: str = ""
+    finer_by: str | int = 1
+
+    @classmethod
+    def like(cls, port: str, finer_by: str | int = 1) -> Grid:
+        """Return the rule "as at ``port``", each cell cut into ``finer_by`` a side."""
+        return cls(port=port, finer_by=finer_by)
+
+
+@dataclass(frozen=True, slots=True)
+class GridFact:
+    """What the loader knows of a grid: which original grid, and how much finer per side."""
+
+    origin: str
+    finer: Fraction = Fraction(1)
+    rows: int | None = None
+    columns: int | None = None
+    pitch_cm: tuple[float, float] | None = None
+
+    def refined(self, factor: int) -> GridFact:
+        """Return the fact for each cell cut into ``factor`` a side."""
+        pitch = self.pitch_cm
+        return GridFact(
+            self.origin,
+            self.finer * factor,
+            None if self.rows is None else self.rows * factor,
+            None if self.columns is None else self.columns * factor,
+            None if pitch is None else (pitch[0] / factor, pitch[1] / factor),
+        )

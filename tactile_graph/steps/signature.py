@@ -1,0 +1,276 @@
+"""Read what a step needs and gives from its signature."""
+
+from __future__ import annotations
+
+import inspect
+import types
+import typing
+from collections.abc import Callable, Generator, Iterable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from tactile_graph.errors import PluginError
+from tactile_graph.steps.injected import Report, is_time_gap
+from tactile_graph.steps.rules import Grid, Quantity
+
+REQUIRED: Any = inspect.Parameter.empty
+
+
+class Kind(Enum):
+    """How a step is called."""
+
+    FUNCTION = "function"
+    CLASS = "class"
+    SOURCE = "source"
+
+
+@dataclass(frozen=True)
+class Port:
+    """One input of a step: a positional parameter."""
+
+    name: str
+    type: Any
+    default: Any = REQUIRED
+    quantity: Quantity | None = None
+    grid: Grid | None = None
+
+    @property
+    def required(self) -> bool:
+        """Whether the node is skipped when this port is."""
+        return self.default is REQUIRED
+
+    @property
+    def item(self) -> Any:
+        """The item type of a list port; None for any other port."""
+        return list_item(self.type)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One setting of a step: a keyword-only parameter, or one of a class's ``__init__``."""
+
+    name: str
+    annotation: Any
+    default: Any = REQUIRED
+    quantity: Quantity | None = None
+
+    @property
+    def required(self) -> bool:
+        """Whether a pipeline must give it."""
+        return self.default is REQUIRED
+
+
+@dataclass(frozen=True)
+class Signature:
+    """Ports, settings and output of a step."""
+
+    name: str
+    target: Callable[..., Any]
+    kind: Kind
+    ports: tuple[Port, ...]
+    settings: tuple[Setting, ...]
+    output: Any
+    output_quantity: Quantity | None = None
+    output_grid: Grid | None = None
+    rng: str = ""
+    report: str = ""
+    gap: str = ""
+    stateful: bool = False
+
+    @cached_property
+    def doc(self) -> str:
+        """The step's whole docstring, dedented."""
+        return inspect.getdoc(self.target) or ""
+
+    @property
+    def summary(self) -> str:
+        """First sentence of the docstring."""
+        return self.doc.partition("\n\n")[0].replace("\n", " ").strip()
+
+    def port(self, name: str) -> Port | None:
+        """Return the port of that name, or None."""
+        return next((p for p in self.ports if p.name == name), None)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of the outputs of a NamedTuple return, else empty."""
+        return tuple(getattr(self.output, "_fields", ()))
+
+
+def strip(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
+    """Return the bare type and the ``Annotated`` metadata."""
+    if get_origin(annotation) is Annotated:
+        bare, *metadata = get_args(annotation)
+        return bare, tuple(metadata)
+    return annotation, ()
+
+
+def list_item(kind: Any) -> Any:
+    """Return X for ``list[X]``, ``tuple[X, ...]`` or ``Sequence[X]``, else None."""
+    origin = get_origin(kind)
+    if origin in (Union, types.UnionType):
+        inner = [list_item(a) for a in get_args(kind) if a is not type(None)]
+        return inner[0] if len(inner) == 1 else None
+    args = get_args(kind)
+    if origin is tuple:
+        return args[0] if len(args) == 2 and args[1] is Ellipsis else None
+    is_list = isinstance(origin, type) and issubclass(origin, Iterable) and len(args) == 1
+    return args[0] if is_list else None
+
+
+def _pick(metadata: tuple[Any, ...], kind: type) -> Any:
+    return next((m for m in metadata if isinstance(m, kind)), None)
+
+
+def _parameters(target: Callable[..., Any]) -> list[inspect.Parameter]:
+    return [p for p in inspect.signature(target).parameters.values() if p.name != "self"]
+
+
+def _hints(name: str, target: Callable[..., Any]) -> dict[str, Any]:
+    try:
+        return get_type_hints(target, include_extras=True)
+    except Exception as error:
+        raise PluginError(f"step {name!r}: its annotations cannot be read: {error}") from error
+
+
+def _annotation(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Any:
+    if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
+        raise PluginError(f"step {name!r}: *args and **kwargs cannot be wired; name each parameter")
+    if p.name not in hints:
+        raise PluginError(f"step {name!r}: parameter {p.name!r} has no annotation")
+    return hints[p.name]
+
+
+def _port(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Port:
+    bare, metadata = strip(_annotation(name, hints, p))
+    return Port(p.name, bare, p.default, _pick(metadata, Quantity), _pick(metadata, Grid))
+
+
+def _setting(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Setting:
+    annotation = _annotation(name, hints, p)
+    return Setting(p.name, annotation, p.default, _pick(strip(annotation)[1], Quantity))
+
+
+def read_signature(name: str, target: Callable[..., Any]) -> Signature:
+    """Return what ``target`` needs and gives.
+
+    Raises
+    ------
+    PluginError
+        If the target is no step: not callable, unannotated, or with ``*args``.
+    """
+    if inspect.isclass(target):
+        return _read_class(name, target)
+    if not callable(target):
+        raise PluginError(f"step {name!r}: {target!r} is not a function or class")
+    hints = _hints(name, target)
+    parameters = _parameters(target)
+    positional = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
+    injected, settings = _split(name, hints, [p for p in parameters if p.kind is p.KEYWORD_ONLY])
+    source = inspect.isgeneratorfunction(target)
+    if source and positional:
+        raise PluginError(
+            f"step {name!r}: a source takes no ports, but {positional[0].name!r} is positional"
+        )
+    if injected["gap"]:
+        raise PluginError(f"step {name!r}: only a class's __call__ can take a TimeGap")
+    output, quantity, grid = _output(name, hints, source)
+    return Signature(
+        name,
+        target,
+        Kind.SOURCE if source else Kind.FUNCTION,
+        tuple(_port(name, hints, p) for p in positional),
+        settings,
+        output,
+        quantity,
+        grid,
+        rng=injected["rng"],
+        report=injected["report"],
+    )
+
+
+def _split(
+    name: str, hints: dict[str, Any], parameters: list[inspect.Parameter]
+) -> tuple[dict[str, str], tuple[Setting, ...]]:
+    """Tell the engine's own parameters (generator, report, gap) from settings."""
+    injected = {"rng": "", "report": "", "gap": ""}
+    settings: list[Setting] = []
+    for p in parameters:
+        bare, metadata = strip(_annotation(name, hints, p))
+        if bare is np.random.Generator:
+            injected["rng"] = p.name
+        elif bare is Report:
+            injected["report"] = p.name
+        elif is_time_gap(metadata):
+            injected["gap"] = p.name
+        else:
+            settings.append(_setting(name, hints, p))
+    return injected, tuple(settings)
+
+
+def _output(
+    name: str, hints: dict[str, Any], source: bool
+) -> tuple[Any, Quantity | None, Grid | None]:
+    if "return" not in hints:
+        raise PluginError(f"step {name!r}: it has no return annotation")
+    bare, metadata = strip(hints["return"])
+    if source:
+        if get_origin(bare) not in (Iterator, Iterable, Generator):
+            raise PluginError(f"step {name!r}: a source returns Iterator[Frame]")
+        bare, inner = strip(get_args(bare)[0])
+        metadata = (*metadata, *inner)
+    return bare, _pick(metadata, Quantity), _pick(metadata, Grid)
+
+
+def _read_class(name: str, target: type) -> Signature:
+    call = target.__call__ if "__call__" in dir(target) else None
+    if call is None or not inspect.isfunction(call):
+        raise PluginError(f"step {name!r}: class {target.__name__} has no __call__ for its ports")
+    has_init = inspect.isfunction(target.__init__)
+    init_hints = _hints(name, target.__init__) if has_init else {}
+    init_parameters = _parameters(target.__init__) if has_init else []
+    from_init, settings = _split(name, init_hints, init_parameters)
+    hints = _hints(name, call)
+    parameters = _parameters(call)
+    positional = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
+    injected, extra = _split(name, hints, [p for p in parameters if p.kind is p.KEYWORD_ONLY])
+    if extra:
+        raise PluginError(
+            f"step {name!r}: setting {extra[0].name!r} belongs into __init__, not __call__"
+        )
+    if from_init["gap"] or from_init["report"] or injected["report"]:
+        raise PluginError(f"step {name!r}: a TimeGap goes to __call__, a Report only to a source")
+    output, quantity, grid = _output(name, hints, source=False)
+    return Signature(
+        name,
+        target,
+        Kind.CLASS,
+        tuple(_port(name, hints, p) for p in positional),
+        settings,
+        output,
+        quantity,
+        grid,
+        rng=from_init["rng"] or injected["rng"],
+        gap=injected["gap"],
+        stateful=not getattr(target, "stateless", False),
+    )
+
+
+def type_name(kind: Any) -> str:
+    """Return a type as a person would write it: ``list[Circle]``, ``Image | Mask``."""
+    bare, _ = strip(kind)
+    if bare is type(None):
+        return "None"
+    origin = get_origin(bare)
+    if origin in (Union, types.UnionType):
+        return " | ".join(type_name(a) for a in get_args(bare))
+    if origin is typing.Literal:
+        return " | ".join(repr(a) for a in get_args(bare))
+    if origin is not None:
+        inner = ", ".join("..." if a is Ellipsis else type_name(a) for a in get_args(bare))
+        return f"{getattr(origin, '__name__', origin)}[{inner}]"
+    return str(getattr(bare, "__name__", bare))

@@ -1,0 +1,202 @@
+"""``Image`` and ``Mask``: a pad's values, or a yes/no per cell, with their place on the pad."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+QUANTITIES = ("counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary")
+"""What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
+
+
+class _Gridded:
+    """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
+
+    __slots__ = ("origin_cm", "pitch_cm", "values")
+    values: NDArray[Any]
+    pitch_cm: tuple[float, float]
+    origin_cm: tuple[float, float]
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot set {name!r}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot delete {name!r}")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        rows, columns = self.values.shape
+        return rows, columns
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return int(self.values.shape[0])
+
+    @property
+    def columns(self) -> int:
+        """Number of columns."""
+        return int(self.values.shape[1])
+
+    @property
+    def cell_area_cm2(self) -> float:
+        """Area of one cell, gaps between the elements included."""
+        return self.pitch_cm[0] * self.pitch_cm[1]
+
+    @property
+    def extent_cm(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top edge in pad coordinates (y down), as matplotlib takes them."""
+        x, y = self.origin_cm
+        rows, columns = self.values.shape
+        return (x, x + columns * self.pitch_cm[0], y + rows * self.pitch_cm[1], y)
+
+    @property
+    def x_cm(self) -> NDArray[np.float64]:
+        """Cell centres along x, shape (columns,)."""
+        return self.origin_cm[0] + (np.arange(self.columns) + 0.5) * self.pitch_cm[0]
+
+    @property
+    def y_cm(self) -> NDArray[np.float64]:
+        """Cell centres along y (down), shape (rows,)."""
+        return self.origin_cm[1] + (np.arange(self.rows) + 0.5) * self.pitch_cm[1]
+
+
+class Image(_Gridded):
+    """Values of a pad or of a part of it. Takes ownership: the arrays become read-only.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows, columns)
+        One number per cell; row 0 is the top of the pad.
+    pitch_cm : (float, float)
+        Distance of neighbouring cells along x and y.
+    origin_cm : (float, float)
+        Top left corner of the first cell, in pad coordinates (x right, y down).
+    quantity : str
+        What the values mean, one of `QUANTITIES`.
+    valid : ndarray of bool, shape (rows, columns), optional
+        False where a cell is missing or broken (its value is then 0); None where all are good.
+    """
+
+    __slots__ = ("quantity", "valid")
+    columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
+    quantity: str
+    valid: NDArray[np.bool_] | None
+
+    def __init__(
+        self,
+        values: NDArray[Any],
+        pitch_cm: tuple[float, float] = (1.0, 1.0),
+        origin_cm: tuple[float, float] = (0.0, 0.0),
+        quantity: str = "raw",
+        valid: NDArray[np.bool_] | None = None,
+    ) -> None:
+        values.setflags(False)
+        if valid is not None:
+            valid.setflags(False)
+        _set_values(self, values)
+        _set_pitch(self, pitch_cm)
+        _set_origin(self, origin_cm)
+        _set_quantity(self, quantity)
+        _set_valid(self, valid)
+
+    def with_values(
+        self,
+        values: NDArray[Any],
+        quantity: str | None = None,
+        valid: NDArray[np.bool_] | None = None,
+    ) -> Image:
+        """Return an image on the same grid; ``valid`` and ``quantity`` stay unless given."""
+        return Image(
+            values,
+            self.pitch_cm,
+            self.origin_cm,
+            self.quantity if quantity is None else quantity,
+            self.valid if valid is None else valid,
+        )
+
+    def mask(self, values: NDArray[np.bool_]) -> Mask:
+        """Return a mask on the same grid."""
+        return Mask(values, self.pitch_cm, self.origin_cm)
+
+    def filled(self, fill: float = 0.0) -> NDArray[Any]:
+        """Return the values with ``fill`` in the invalid cells; the array itself if all are good."""
+        return self.values if self.valid is None else np.where(self.valid, self.values, fill)
+
+    @property
+    def total(self) -> float:
+        """Sum over the valid cells, in units of the quantity."""
+        return float(self.values.sum() if self.valid is None else self.values[self.valid].sum())
+
+    @property
+    def peak(self) -> float:
+        """Largest valid value, in units of the quantity; 0 where no cell is valid."""
+        values = self.values if self.valid is None else self.values[self.valid]
+        return float(values.max()) if values.size else 0.0
+
+    def __repr__(self) -> str:
+        return (
+            f"<Image {self.rows}x{self.columns} {self.quantity}, pitch {self.pitch_cm} cm, "
+            f"origin {self.origin_cm} cm>"
+        )
+
+
+class Mask(_Gridded):
+    """A yes/no per cell. Takes ownership: the array becomes read-only.
+
+    Parameters
+    ----------
+    values : ndarray of bool, shape (rows, columns)
+    pitch_cm, origin_cm : (float, float)
+        As in `Image`.
+    """
+
+    __slots__ = ()
+    values: NDArray[np.bool_]
+    columns_shown: ClassVar[tuple[str, ...]] = ("count", "area_cm2")
+
+    def __init__(
+        self,
+        values: NDArray[np.bool_],
+        pitch_cm: tuple[float, float] = (1.0, 1.0),
+        origin_cm: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        values.setflags(False)
+        _set_values(self, values)
+        _set_pitch(self, pitch_cm)
+        _set_origin(self, origin_cm)
+
+    def with_values(self, values: NDArray[np.bool_]) -> Mask:
+        """Return a mask on the same grid."""
+        return Mask(values, self.pitch_cm, self.origin_cm)
+
+    @property
+    def count(self) -> int:
+        """Number of cells that are on."""
+        return int(np.count_nonzero(self.values))
+
+    @property
+    def fraction(self) -> float:
+        """Share of the cells that are on, 0 to 1."""
+        return self.count / self.values.size if self.values.size else 0.0
+
+    @property
+    def area_cm2(self) -> float:
+        """Area of the cells that are on, gaps between the elements included."""
+        return self.count * self.cell_area_cm2
+
+    def __repr__(self) -> str:
+        return f"<Mask {self.rows}x{self.columns}, {self.count} on, pitch {self.pitch_cm} cm>"
+
+
+# The slots' own setters: the one way past the frozen __setattr__, at half a dataclass's cost.
+_slots: Mapping[str, Any] = {**vars(_Gridded), **vars(Image)}
+_set_values = _slots["values"].__set__
+_set_pitch = _slots["pitch_cm"].__set__
+_set_origin = _slots["origin_cm"].__set__
+_set_quantity = _slots["quantity"].__set__
+_set_valid = _slots["valid"].__set__

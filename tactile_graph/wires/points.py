@@ -1,0 +1,40 @@
+"""``Points``: positions on the pad."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Points:
+    """Positions in pad coordinates. Takes ownership: the array becomes read-only.
+
+    Parameters
+    ----------
+    xy_cm : ndarray of float64, shape (N, 2)
+        x right and y down from the top left corner of the pad.
+    """
+
+    __slots__ = ("xy_cm",)
+    xy_cm: NDArray[np.float64]
+
+    def __init__(self, xy_cm: NDArray[np.float64]) -> None:
+        xy_cm.setflags(False)
+        _set_xy(self, xy_cm)
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"Points is frozen: cannot set {name!r}")
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return len(self.xy_cm)
+
+    def __repr__(self) -> str:
+        return f"<Points {self.count}>"
+
+
+_slots: Any = vars(Points)
+_set_xy = _slots["xy_cm"].__set__
