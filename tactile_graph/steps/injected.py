@@ -37,7 +37,9 @@ class Report:
         How many troubles are kept word for word; all are counted.
     """
 
-    def __init__(self, listener: Callable[[str, str], None] | None = None, keep: int = 1000) -> None:
+    def __init__(
+        self, listener: Callable[[str, str], None] | None = None, keep: int = 1000
+    ) -> None:
         self.counts: Counter[str] = Counter()
         self.troubles: list[tuple[str, str]] = []
         self.n_expected: int | None = None

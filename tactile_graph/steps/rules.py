@@ -32,7 +32,9 @@ class Quantity:
     def __init__(self, *names: str, of: str = "") -> None:
         unknown = set(names) - set(QUANTITIES)
         if unknown:
-            raise ValueError(f"unknown quantity {sorted(unknown)}, allowed: {', '.join(QUANTITIES)}")
+            raise ValueError(
+                f"unknown quantity {sorted(unknown)}, allowed: {', '.join(QUANTITIES)}"
+            )
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "port", of)
 

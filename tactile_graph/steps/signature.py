@@ -230,9 +230,10 @@ def _read_class(name: str, target: type) -> Signature:
     call = target.__call__ if "__call__" in dir(target) else None
     if call is None or not inspect.isfunction(call):
         raise PluginError(f"step {name!r}: class {target.__name__} has no __call__ for its ports")
-    has_init = inspect.isfunction(target.__init__)
-    init_hints = _hints(name, target.__init__) if has_init else {}
-    init_parameters = _parameters(target.__init__) if has_init else []
+    init = inspect.getattr_static(target, "__init__")
+    has_init = inspect.isfunction(init)
+    init_hints = _hints(name, init) if has_init else {}
+    init_parameters = _parameters(init) if has_init else []
     from_init, settings = _split(name, init_hints, init_parameters)
     hints = _hints(name, call)
     parameters = _parameters(call)

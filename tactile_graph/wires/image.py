@@ -49,7 +49,7 @@ class _Gridded:
 
     @property
     def extent_cm(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top edge in pad coordinates (y down), as matplotlib takes them."""
+        """Left, right, bottom and top edge on the pad (y down), as matplotlib takes them."""
         x, y = self.origin_cm
         rows, columns = self.values.shape
         return (x, x + columns * self.pitch_cm[0], y + rows * self.pitch_cm[1], y)
@@ -57,12 +57,12 @@ class _Gridded:
     @property
     def x_cm(self) -> NDArray[np.float64]:
         """Cell centres along x, shape (columns,)."""
-        return self.origin_cm[0] + (np.arange(self.columns) + 0.5) * self.pitch_cm[0]
+        return np.asarray(self.origin_cm[0] + (np.arange(self.columns) + 0.5) * self.pitch_cm[0])
 
     @property
     def y_cm(self) -> NDArray[np.float64]:
         """Cell centres along y (down), shape (rows,)."""
-        return self.origin_cm[1] + (np.arange(self.rows) + 0.5) * self.pitch_cm[1]
+        return np.asarray(self.origin_cm[1] + (np.arange(self.rows) + 0.5) * self.pitch_cm[1])
 
 
 class Image(_Gridded):
@@ -95,9 +95,9 @@ class Image(_Gridded):
         quantity: str = "raw",
         valid: NDArray[np.bool_] | None = None,
     ) -> None:
-        values.setflags(False)
+        values.setflags(write=False)
         if valid is not None:
-            valid.setflags(False)
+            valid.setflags(write=False)
         _set_values(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
@@ -124,7 +124,7 @@ class Image(_Gridded):
         return Mask(values, self.pitch_cm, self.origin_cm)
 
     def filled(self, fill: float = 0.0) -> NDArray[Any]:
-        """Return the values with ``fill`` in the invalid cells; the array itself if all are good."""
+        """Return the values with ``fill`` in the invalid cells; no copy if all are good."""
         return self.values if self.valid is None else np.where(self.valid, self.values, fill)
 
     @property
@@ -165,7 +165,7 @@ class Mask(_Gridded):
         pitch_cm: tuple[float, float] = (1.0, 1.0),
         origin_cm: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        values.setflags(False)
+        values.setflags(write=False)
         _set_values(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)

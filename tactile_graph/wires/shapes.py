@@ -47,7 +47,8 @@ class Circle:
     def outline_cm(self, n: int = 90) -> NDArray[np.float64]:
         """Return ``n`` points of the outline, shape (n, 2), to draw."""
         t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
-        return _turned(self.radius_cm * np.cos(t), self.radius_cm * np.sin(t), self.x_cm, self.y_cm, 0.0)
+        u, v = self.radius_cm * np.cos(t), self.radius_cm * np.sin(t)
+        return _turned(u, v, self.x_cm, self.y_cm, 0.0)
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,11 @@ class Ellipse:
     semi_minor_cm: float
     angle_rad: float
     columns_shown: ClassVar[tuple[str, ...]] = (
-        "x_cm", "y_cm", "semi_major_cm", "semi_minor_cm", "angle_deg",
+        "x_cm",
+        "y_cm",
+        "semi_major_cm",
+        "semi_minor_cm",
+        "angle_deg",
     )
 
     @property
@@ -90,7 +95,11 @@ class Rectangle:
     breadth_cm: float
     angle_rad: float
     columns_shown: ClassVar[tuple[str, ...]] = (
-        "x_cm", "y_cm", "length_cm", "breadth_cm", "angle_deg",
+        "x_cm",
+        "y_cm",
+        "length_cm",
+        "breadth_cm",
+        "angle_deg",
     )
 
     @property
