@@ -73,6 +73,7 @@ class Kernel(Generic[P, R]):
         _kernels.append(self)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Run whichever of the two serves now; positional arguments only."""
         return self._call(*args)
 
     def reset(self) -> None:

@@ -1,4 +1,4 @@
-"""Every error of the project, in words for people; exceptions carry data, ``__str__`` makes the text."""
+"""Every error of the project; exceptions carry data, ``__str__`` makes the text for people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class TactileGraphError(Exception):
     """Base of every error that a user can cause or meet."""
 
 
-class Degenerate(TactileGraphError):
+class Degenerate(TactileGraphError):  # noqa: N818 -- the name of an outcome
     """An expected numeric failure of a step: the input holds too little for an answer.
 
     A step raises it instead of returning NaN; the node's outcome is then ``failed`` with

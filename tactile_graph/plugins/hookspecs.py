@@ -15,7 +15,7 @@ hookimpl = pluggy.HookimplMarker(PROJECT)
 
 @hookspec
 def tactile_graph_steps() -> Mapping[str, str | Callable[..., Any]]:  # type: ignore[empty-body]
-    """Step name -> import string ``"package.module:name"`` (loaded when first used), or the step."""
+    """Step name -> import string ``"package.module:name"`` (loaded when used), or the step."""
 
 
 @hookspec

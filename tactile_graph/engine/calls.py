@@ -1,0 +1,127 @@
+"""The callable of each node: settings filled in, randomness, time gaps and lists provided."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
+from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.wires.frame import Frame
+
+if TYPE_CHECKING:
+    from tactile_graph.engine.runner import Runner
+
+Call = Callable[..., Any]
+
+
+def make_call(node: Node, runner: Runner) -> Call:
+    """Return the callable of a node's ports for one runner; stateful steps get a new instance."""
+    if node.kind is NodeKind.MAP:
+        return _mapped(node, runner)
+    call = _seeded(node, runner)
+    assert node.signature is not None
+    if node.signature.gap:
+        call = _with_gap(call, node.signature.gap, runner)
+    return _for_each(node, call) if node.each else call
+
+
+def _seeded(node: Node, runner: Runner) -> Call:
+    signature = node.signature
+    assert signature is not None
+    if not signature.rng:
+        return node.bound()
+    words = [runner.seed, int(node.key[:16], 16)]
+    if signature.stateful:
+        made: Call = signature.target(
+            **node.settings, **{signature.rng: np.random.default_rng(words)}
+        )
+        return made
+    step = node.bound()
+
+    def call(*args: Any, **kwargs: Any) -> Any:
+        # Of the frame's number too: a frame gets the same numbers wherever a run starts.
+        rng = np.random.default_rng([*words, runner.frame.index])
+        return step(*args, **kwargs, **{signature.rng: rng})
+
+    return call
+
+
+def _with_gap(step: Call, name: str, runner: Runner) -> Call:
+    last: float | None = None
+
+    def call(*args: Any, **kwargs: Any) -> Any:
+        nonlocal last
+        now = runner.frame.time_s
+        gap = None if last is None or now is None else now - last
+        last = now if now is not None else last
+        return step(*args, **kwargs, **{name: gap})
+
+    return call
+
+
+def _for_each(node: Node, step: Call) -> Call:
+    """Return the step run over the items of whichever ports hold lists it does not want whole."""
+    assert node.signature is not None
+    over = [b.port.name for b in node.inputs if b.iterates]
+    order = [p.name for p in node.signature.ports]
+
+    def call(*args: Any, **kwargs: Any) -> Any:
+        values = {**dict(zip(order, args, strict=False)), **kwargs}
+        lists = {name: values[name] for name in over}
+        counts = {name: len(v) for name, v in lists.items()}
+        if len(set(counts.values())) > 1:
+            raise ValueError(f"lists of different length at one node: {counts}")
+        n = next(iter(counts.values()))
+        outcomes = []
+        for i in range(n):
+            item = {**values, **{name: v[i] for name, v in lists.items()}}
+            outcomes.append(_try(step, item, node.name))
+        return gathered(outcomes, node.name)
+
+    return call
+
+
+def _try(step: Call, arguments: dict[str, Any], name: str) -> Any:
+    from tactile_graph.engine.program import failure
+
+    try:
+        return step(**arguments)
+    except Exception as error:
+        return failure(name, error, tuple(arguments.values()), "")
+
+
+def gathered(outcomes: list[Any], name: str) -> Any:
+    """Return the values among the outcomes of a node's items; its own outcome if there are none."""
+    values = tuple([o for o in outcomes if o.__class__ not in NO_VALUE])
+    if values:
+        return values
+    failed = next((o for o in outcomes if o.__class__ is Failed), None)
+    if failed is not None:
+        return failed
+    return Skipped(name, "no items to run for" if not outcomes else outcomes[0].reason)
+
+
+def _mapped(node: Node, runner: Runner) -> Call:
+    """Return the embedded pipeline run over a list of images."""
+    from tactile_graph.engine.runner import Runner as Inner
+
+    assert node.inner is not None
+    inner = Inner(node.inner, tuple(node.inner.outputs), runner.seed)
+    fields = getattr(node.output, "_fields", ())
+    names = list(node.inner.outputs)
+
+    def call(frame: Any) -> Any:
+        results = []
+        for image in frame:
+            outer = runner.frame
+            results.append(inner(Frame(image, outer.index, outer.time_s, label=outer.label)))
+        runner.inner_results[node.name] = results
+        columns = [gathered([r.outcome(n) for r in results], node.name) for n in names]
+        if not fields or all(c.__class__ in NO_VALUE for c in columns):
+            return columns[0]
+        return node.output(*columns)
+
+    return call

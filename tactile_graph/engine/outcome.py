@@ -1,0 +1,123 @@
+"""What a node comes to for a frame: a value, skipped (why, whence) or failed (what, whence)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from tactile_graph.errors import Degenerate
+
+
+class Skipped:
+    """A node that was not needed, with the reason and the node it began at.
+
+    The text of the reason is made only when somebody asks for it.
+    """
+
+    __slots__ = ("_reason", "_values", "origin")
+
+    def __init__(
+        self,
+        origin: str,
+        reason: str | Callable[[tuple[Any, ...]], str],
+        values: tuple[Any, ...] = (),
+    ) -> None:
+        self.origin = origin
+        self._reason = reason
+        self._values = values
+
+    @property
+    def reason(self) -> str:
+        """Why, in words."""
+        return self._reason if isinstance(self._reason, str) else self._reason(self._values)
+
+    def __repr__(self) -> str:
+        return f"<skipped at {self.origin!r}: {self.reason}>"
+
+
+class Failed:
+    """A node whose step failed, or that needed one that did.
+
+    Parameters
+    ----------
+    origin : str
+        The node that failed first.
+    error : Exception
+        What its step raised, without the traceback.
+    where : str
+        File and line the error was raised at.
+    inputs : str
+        What went in: types and shapes.
+    step : str
+        Step and plugin of the node.
+    """
+
+    __slots__ = ("error", "inputs", "origin", "step", "where")
+
+    def __init__(
+        self, origin: str, error: Exception, where: str = "", inputs: str = "", step: str = ""
+    ) -> None:
+        self.origin = origin
+        self.error = error
+        self.where = where
+        self.inputs = inputs
+        self.step = step
+
+    @property
+    def kind(self) -> str:
+        """``degenerate`` for an expected numeric failure, ``error`` for any other."""
+        return "degenerate" if isinstance(self.error, Degenerate) else "error"
+
+    @property
+    def reason(self) -> str:
+        """What went wrong, in words."""
+        if isinstance(self.error, Degenerate):
+            return str(self.error)
+        return f"{type(self.error).__name__}: {self.error}"
+
+    def __repr__(self) -> str:
+        return f"<failed at {self.origin!r}: {self.reason}>"
+
+
+Outcome = Any
+"""A value, or `Skipped`, or `Failed`; never None."""
+
+NO_VALUE = frozenset({Skipped, Failed})
+NOT_ASKED = Skipped("", "nothing asked for it")
+
+
+class Done:
+    """The value of a sink that has run."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return "done"
+
+
+DONE = Done()
+
+
+def describe_inputs(values: tuple[Any, ...]) -> str:
+    """Return types and shapes of what went into a step, for error reports."""
+    return ", ".join(_describe(v) for v in values)
+
+
+def _describe(value: Any) -> str:
+    name = type(value).__name__
+    shape = getattr(getattr(value, "values", value), "shape", None)
+    if isinstance(shape, tuple):
+        return f"{name} {'x'.join(map(str, shape))}"
+    count = getattr(value, "count", None)
+    return f"{name} of {count}" if isinstance(count, int) else name
+
+
+def raised_at(error: BaseException) -> str:
+    """Return ``file:line in function`` of the innermost frame an error passed through."""
+    traceback = error.__traceback__
+    if traceback is None:
+        return ""
+    while traceback.tb_next is not None:
+        traceback = traceback.tb_next
+    code = traceback.tb_frame.f_code
+    return f"{code.co_filename}:{traceback.tb_lineno} in {code.co_name}"

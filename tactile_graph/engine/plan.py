@@ -1,0 +1,253 @@
+"""Compile a pipeline for a demand into a flat plan over slots.
+
+A plan is a list of items in an order in which every item comes after what it reads. `Plan.main`
+holds those needed for any frame. Whatever only a guard, a choice or a skippable input decides on
+is *lazy*: it stands in the block of the item that may need it, and runs when that item says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from tactile_graph.pipeline.node import FRAME, Node, NodeKind
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.wiring import Ref
+
+
+@dataclass
+class Input:
+    """What a port reads: slots, and what runs only when the port's turn comes."""
+
+    slots: tuple[int, ...]
+    collects: bool
+    required: bool
+    default: object
+    name: str
+    lazy: tuple[int, ...] = ()
+
+
+@dataclass
+class Item:
+    """One slot of a plan: a node's outcome, or a view (field) of another slot's."""
+
+    slot: int
+    name: str
+    node: Node | None = None
+    view: Ref | None = None
+    source: int = 0
+    guard: tuple[int, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    reads: tuple[int, ...] = ()
+    constant: bool = False
+    skippable: bool = False
+
+
+@dataclass
+class Plan:
+    """Everything needed to run a pipeline for a demand, as flat data."""
+
+    pipeline: Pipeline
+    asked: dict[str, int]
+    items: list[Item]
+    main: tuple[int, ...]
+    slots: dict[str, int]
+    reads_frame: tuple[Ref, ...] = ()
+    depth: int = 0
+    rules: tuple[object, ...] = field(default=())
+
+    @property
+    def n_slots(self) -> int:
+        """Number of slots, the frame's included."""
+        return len(self.items)
+
+    @property
+    def nodes(self) -> list[Item]:
+        """The items that are nodes, in order."""
+        return [i for i in self.items if i.node is not None]
+
+    @property
+    def stateful(self) -> bool:
+        """Whether any step in it keeps state."""
+        return any(i.node.stateful for i in self.items if i.node is not None)
+
+    @property
+    def repeatable(self) -> bool:
+        """Whether the same image gives the same result, whatever its time and number."""
+        return not self.stateful and all(
+            r.path[:1] == ("image",) for r in self.reads_frame
+        ) and not any(i.node.is_sink or _varies(i.node) for i in self.items if i.node)  # fmt: skip
+
+
+def _varies(node: Node) -> bool:
+    """Return whether a node may answer differently to the same image."""
+    if node.inner is not None:
+        inner = node.inner.nodes.values()
+        refs = [r for n in inner for r in n.wires()] + list(node.inner.outputs.values())
+        whole = any(r.node == FRAME and r.path[:1] != ("image",) for r in refs)
+        return whole or any(_varies(n) for n in inner)
+    return node.signature is not None and bool(node.signature.rng)
+
+
+def make_plan(pipeline: Pipeline, asked: Sequence[str]) -> Plan:
+    """Return the plan for the nodes or fields asked for.
+
+    Raises
+    ------
+    UsageError
+        If one of them does not exist.
+    """
+    return _Planner(pipeline, asked).plan()
+
+
+class _Planner:
+    def __init__(self, pipeline: Pipeline, asked: Sequence[str]) -> None:
+        self.pipeline = pipeline
+        self.asked = {name: pipeline.outputs.get(name) or pipeline.ref(name) for name in asked}
+        self.items: list[Item] = []
+        self.by_ref: dict[Ref, int] = {}
+
+    def plan(self) -> Plan:
+        self._number()
+        for item in self.items:
+            self._wire(item)
+        for item in self.items:
+            self._classify(item)
+        targets = [self.by_ref[r] for r in self.asked.values()]
+        main = self._eager(targets)
+        for item in self.items:
+            self._place_lazies(item, main)
+        used = {r.node for r in self._refs()} | {r.node for r in self.asked.values()}
+        return Plan(
+            self.pipeline,
+            {name: self.by_ref[r] for name, r in self.asked.items()},
+            self.items,
+            tuple(sorted(main - {0})),
+            {i.name: i.slot for i in self.items},
+            tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
+            self._depth(),
+            tuple(r for r in self.pipeline.frame_rules if r.node in used),
+        )
+
+    # -- slots -------------------------------------------------------------------------------
+
+    def _needed(self) -> list[str]:
+        """Return the nodes the demand reaches, each after those it reads."""
+        nodes, needed = self.pipeline.nodes, set[str]()
+        waiting = [r.node for r in self.asked.values()]
+        while waiting:
+            name = waiting.pop()
+            if name != FRAME and name not in needed:
+                needed.add(name)
+                waiting += [r.node for r in nodes[name].wires()]
+        return [name for name in nodes if name in needed]
+
+    def _number(self) -> None:
+        """Give every node and every view of one a slot; a view follows its node."""
+        views: dict[str, dict[Ref, None]] = {FRAME: {}}
+        names = self._needed()
+        for name in names:
+            views[name] = {}
+        for name in names:
+            for ref in self.pipeline.nodes[name].wires():
+                if ref.path:
+                    views[ref.node][ref] = None
+        for ref in self.asked.values():
+            if ref.path:
+                views[ref.node][ref] = None
+        for name in [FRAME, *names]:
+            self._add(Item(0, name, self.pipeline.nodes.get(name)), Ref(name))
+            for ref in views[name]:
+                self._add(Item(0, str(ref), view=ref, source=self.by_ref[Ref(name)]), ref)
+
+    def _add(self, item: Item, ref: Ref) -> None:
+        item.slot = self.by_ref[ref] = len(self.items)
+        self.items.append(item)
+
+    def _refs(self) -> list[Ref]:
+        return [r for i in self.items if i.node is not None for r in i.node.wires()]
+
+    def _wire(self, item: Item) -> None:
+        node = item.node
+        if item.view is not None:
+            item.reads = (item.source,)
+        elif node is not None:
+            item.guard = tuple(self.by_ref[r] for r in node.guard.refs) if node.guard else ()
+            if node.kind in (NodeKind.FIRST_OF, NodeKind.PASS):
+                item.inputs = tuple(
+                    Input((self.by_ref[r],), False, True, None, str(r)) for r in node.choices
+                )
+            else:
+                item.inputs = tuple(
+                    Input(tuple(self.by_ref[r] for r in b.refs), b.collects, b.port.required,
+                          b.port.default, b.port.name)
+                    for b in node.inputs
+                )  # fmt: skip
+            item.reads = item.guard + tuple(s for i in item.inputs for s in i.slots)
+
+    def _classify(self, item: Item) -> None:
+        """Find out whether the item depends on no frame, and whether it can come out skipped."""
+        node = item.node
+        read = [self.items[s] for s in item.reads]
+        if node is None:
+            item.constant = item.slot != 0 and all(r.constant for r in read)
+            item.skippable = any(r.skippable for r in read)
+            return
+        item.constant = all(r.constant for r in read) and not node.stateful and not node.is_sink
+        inputs = [any(self.items[s].skippable for s in i.slots) for i in item.inputs if i.required]
+        through = all(inputs) if node.kind is NodeKind.FIRST_OF else any(inputs)
+        item.skippable = node.guard is not None or (bool(inputs) and through)
+        item.skippable |= any(self.items[s].skippable for s in item.guard)
+        item.skippable |= node.each  # an empty list leaves nothing to run for
+
+    # -- what is needed at once, and what may wait ---------------------------------------------
+
+    def _eager_inputs(self, item: Item) -> list[Input]:
+        """Return the inputs that are settled whatever the others come to."""
+        node = item.node
+        if node is not None and node.guard is not None:
+            return []
+        if node is not None and node.kind is NodeKind.FIRST_OF:
+            return list(item.inputs[:1])
+        eager: list[Input] = []
+        for port in item.inputs:
+            eager.append(port)
+            if port.required and any(self.items[s].skippable for s in port.slots):
+                break
+        return eager
+
+    def _eager(self, targets: Iterable[int]) -> set[int]:
+        """Return the slots that are needed whenever the targets are."""
+        found: set[int] = set()
+        waiting = list(targets)
+        while waiting:
+            slot = waiting.pop()
+            if slot in found:
+                continue
+            found.add(slot)
+            item = self.items[slot]
+            if item.view is not None:
+                waiting.append(item.source)
+            waiting += item.guard
+            waiting += [s for port in self._eager_inputs(item) for s in port.slots]
+        return found
+
+    def _place_lazies(self, item: Item, main: set[int]) -> None:
+        eager = {id(port) for port in self._eager_inputs(item)}
+        done = main | self._eager(item.guard)
+        for port in item.inputs:
+            needed = self._eager(port.slots) - done - {0}
+            if id(port) not in eager:
+                # Eager inputs stand beside the item in whatever block it runs in.
+                port.lazy = tuple(sorted(needed))
+            done |= needed
+
+    def _depth(self) -> int:
+        """Return how deep lazy blocks nest, for the interpreter's stack."""
+        depth: dict[int, int] = {}
+        for item in self.items:
+            inner = [
+                depth.get(s, 0) for s in (*item.reads, *(s for p in item.inputs for s in p.lazy))
+            ]
+            depth[item.slot] = 1 + max(inner, default=0)
+        return max(depth.values(), default=0)

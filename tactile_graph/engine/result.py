@@ -1,0 +1,187 @@
+"""``Result``: what a frame came to, node by node, with reasons and times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped
+from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from rich.console import RenderableType
+
+    from tactile_graph.engine.plan import Plan
+    from tactile_graph.wires.frame import Frame
+
+
+class NoResult(TactileGraphError):  # noqa: N818 -- it reads as what it says
+    """An output was taken that has no value for this frame."""
+
+    def __init__(self, name: str, outcome: Outcome) -> None:
+        super().__init__(name, outcome)
+        self.name = name
+        self.outcome = outcome
+
+    def __str__(self) -> str:
+        outcome = self.outcome
+        word = "failed" if isinstance(outcome, Failed) else "was skipped"
+        at = f" at {outcome.origin!r}" if outcome.origin and outcome.origin != self.name else ""
+        return f"{self.name!r} {word}{at}: {outcome.reason}"
+
+
+class Explained(NamedTuple):
+    """One node's story for a frame."""
+
+    node: str
+    step: str
+    state: str
+    reason: str
+    time_us: float
+    value: Any = None
+
+
+class Result(Mapping[str, Any]):
+    """The outcome of one frame; as a mapping, the outputs that have a value.
+
+    ``result["circle"]`` is the output's value; `NoResult` says why where there is none.
+    """
+
+    __slots__ = ("_state", "frame", "inner", "plan", "reused")
+
+    def __init__(self, plan: Plan, state: list[Any], frame: Frame, reused: bool = False) -> None:
+        self.plan = plan
+        self._state = state
+        self.frame = frame
+        self.reused = reused
+        self.inner: dict[str, list[Result]] = {}
+
+    def again(self, frame: Frame) -> Result:
+        """Return the same outcomes for an equal frame; they took no time."""
+        result = Result(self.plan, self._state, frame, reused=True)
+        result.inner = self.inner
+        return result
+
+    # -- outputs -----------------------------------------------------------------------------
+
+    def __getitem__(self, name: str) -> Any:
+        outcome = self.outcome(name)
+        if outcome.__class__ in NO_VALUE:
+            raise NoResult(name, outcome)
+        return outcome
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return the value of an output or node, or ``default`` where it has none."""
+        outcome = self.outcome(name)
+        return default if outcome.__class__ in NO_VALUE else outcome
+
+    def __iter__(self) -> Iterator[str]:
+        return (n for n in self.plan.asked if self.outcome(n).__class__ not in NO_VALUE)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return name in list(self)
+
+    @property
+    def outputs(self) -> dict[str, Any]:
+        """The outputs that have a value."""
+        return {name: self[name] for name in self}
+
+    # -- outcomes ----------------------------------------------------------------------------
+
+    def outcome(self, name: str) -> Outcome:
+        """Return a node's or output's value, `Skipped` or `Failed`.
+
+        Raises
+        ------
+        UsageError
+            If the plan has no such node.
+        """
+        slot = self.plan.asked.get(name, self.plan.slots.get(name))
+        if slot is None:
+            if name in self.plan.pipeline.nodes:
+                return NOT_ASKED
+            known = [*self.plan.asked, *self.plan.pipeline.nodes]
+            hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
+            raise UsageError(f"no node or output named {name!r}{hint}")
+        outcome = self._state[slot]
+        return NOT_ASKED if outcome is None else outcome
+
+    @property
+    def outcomes(self) -> dict[str, Outcome]:
+        """The outcome of every node of the pipeline, in the order of the file."""
+        return {name: self.outcome(name) for name in self.plan.pipeline.nodes}
+
+    @property
+    def times_us(self) -> dict[str, float]:
+        """Microseconds each node's step took; 0 where it did not run."""
+        n = self.plan.n_slots
+        return {
+            i.name: 0.0 if self.reused else self._state[n + i.slot] / 1e3 for i in self.plan.nodes
+        }
+
+    @property
+    def failures(self) -> list[Failed]:
+        """The failures of this frame, each once, at the node it began."""
+        found: dict[int, Failed] = {}
+        for item in self.plan.nodes:
+            outcome = self._state[item.slot]
+            if outcome.__class__ is Failed:
+                found[id(outcome)] = outcome
+        return list(found.values())
+
+    @property
+    def ok(self) -> bool:
+        """Whether every output asked for has a value."""
+        return len(self) == len(self.plan.asked)
+
+    def explain(self) -> list[Explained]:
+        """Return for each node whether it ran, was skipped or failed, why, and how long it took."""
+        times = self.times_us
+        return [self._story(name, times.get(name, 0.0)) for name in self.plan.pipeline.nodes]
+
+    def _story(self, name: str, time_us: float) -> Explained:
+        outcome, step = self.outcome(name), self.plan.pipeline.nodes[name].what
+        if isinstance(outcome, Skipped):
+            at = f"{outcome.origin}: " if outcome.origin not in ("", name) else ""
+            return Explained(name, step, "skipped", at + outcome.reason, time_us)
+        if isinstance(outcome, Failed):
+            if outcome.origin != name:
+                return Explained(name, step, "failed", f"{outcome.origin} failed", time_us)
+            return Explained(name, step, "failed", outcome.reason, time_us)
+        state = "reused" if self.reused else "ran"
+        return Explained(name, step, state, "", time_us, outcome)
+
+    # -- to look at --------------------------------------------------------------------------
+
+    def row(self) -> dict[str, Any]:
+        """Return the outputs flattened into named scalars, as tables and CSV have them."""
+        from tactile_graph.engine.rows import result_row
+
+        return result_row(self)
+
+    def picture(self, *names: str) -> Figure:
+        """Return a figure of the named nodes' values (all, if none is named), axes in cm."""
+        from tactile_graph.draw.strip import strip_figure
+
+        return strip_figure([self], list(names) or None)
+
+    def _repr_png_(self) -> bytes:
+        from tactile_graph.draw.strip import figure_png
+
+        return figure_png(self.picture())
+
+    def __rich__(self) -> RenderableType:
+        from tactile_graph.draw.tables import result_table
+
+        return result_table(self)
+
+    def __repr__(self) -> str:
+        parts = []
+        for name in self.plan.asked:
+            outcome = self.outcome(name)
+            parts.append(f"{name}={outcome!r}")
+        return f"<Result frame {self.frame.index}: {', '.join(parts)}>"

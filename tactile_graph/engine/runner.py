@@ -1,0 +1,147 @@
+"""``Runner``: a plan made ready to run, with the state of its stateful steps."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from tactile_graph.engine.calls import make_call
+from tactile_graph.engine.plan import Plan, make_plan
+from tactile_graph.engine.program import make_program
+from tactile_graph.engine.result import Result
+from tactile_graph.errors import RuleError
+from tactile_graph.pipeline.facts import quantity_text
+from tactile_graph.pipeline.node import FrameRule
+from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.image import Image
+
+if TYPE_CHECKING:
+    from tactile_graph.pipeline.pipeline import Pipeline
+
+
+class Runner:
+    """Call it with a frame, get the result; stateful steps keep their state between calls.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    asked : tuple of str
+        Nodes or ``node.field`` to ask for.
+    seed : int
+        Seed of the steps that take randomness.
+    """
+
+    def __init__(self, pipeline: Pipeline, asked: tuple[str, ...], seed: int = 0) -> None:
+        asked = asked or tuple(pipeline.outputs)
+        self.plan: Plan = make_plan(pipeline, asked)
+        self.seed = seed
+        self.frame: Frame
+        self.inner_results: dict[str, list[Result]] = {}
+        n = self.plan.n_slots
+        self._blank: list[Any] = [None] * n + [0] * n
+        self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
+        self._repeatable = self.plan.repeatable
+        self._last: Frame | None = None
+        self._last_bytes = b""
+        self._last_result: Result | None = None
+        self._checked: tuple[object, ...] = ()
+        _make_room(self.plan.depth)
+
+    @property
+    def stateful(self) -> bool:
+        """Whether a step keeps something from frame to frame."""
+        return self.plan.stateful
+
+    def __call__(self, frame: Frame) -> Result:
+        """Return the result for the frame.
+
+        Raises
+        ------
+        RuleError
+            If the frame's quantity, shape or pitch breaks a rule of a step.
+        """
+        image = frame.image
+        what = (image.quantity, image.values.shape, image.pitch_cm)
+        if what != self._checked:
+            check_frame(image, self.plan)
+            self._checked = what
+        if self._repeatable:
+            content = image.values.tobytes()
+            if self._last_result is not None and content == self._last_bytes:
+                assert self._last is not None
+                if _same_but_values(image, self._last.image):
+                    return self._last_result.again(frame)
+            self._last_bytes = content
+        self.frame = frame
+        state = self._blank.copy()
+        state[0] = frame
+        for settle in self._operations:
+            settle(state)
+        result = Result(self.plan, state, frame)
+        if self.inner_results:
+            result.inner = self.inner_results
+            self.inner_results = {}
+        self._last = frame
+        self._last_result = result
+        return result
+
+
+def _same_but_values(image: Image, last: Image) -> bool:
+    """Return whether two images of equal bytes are equal in everything else."""
+    if image is last:
+        return True
+    valid, last_valid = image.valid, last.valid
+    return (
+        image.values.dtype == last.values.dtype
+        and image.values.shape == last.values.shape
+        and image.pitch_cm == last.pitch_cm
+        and image.origin_cm == last.origin_cm
+        and image.quantity == last.quantity
+        and (
+            valid is last_valid
+            or (valid is not None and last_valid is not None and bool((valid == last_valid).all()))
+        )
+    )
+
+
+def check_frame(image: Image, plan: Plan) -> None:
+    """Check the rules that only a frame can settle.
+
+    Raises
+    ------
+    RuleError
+        Naming the node, its step, what is allowed and what came.
+    """
+    if image.values.ndim != 2 or 0 in image.values.shape:
+        raise RuleError(f"a frame holds values of shape (rows, columns), got {image.values.shape}")
+    for rule in plan.rules:
+        assert isinstance(rule, FrameRule)
+        trouble = _broken(rule, image)
+        if trouble:
+            raise RuleError(f"pipeline {plan.pipeline.name!r}, node {rule.node!r}: {trouble}")
+
+
+def _broken(rule: FrameRule, image: Image) -> str:
+    quantity = rule.quantity
+    if quantity is not None and quantity.names and image.quantity not in quantity.names:
+        return quantity_text(rule.step, rule.port, quantity, f"a frame of {image.quantity}")
+    rows, columns = image.shape
+    if (rule.rows or rows) != rows or (rule.columns or columns) != columns:
+        wanted = f"{rule.rows or 'any'} x {rule.columns or 'any'}"
+        return f"step {rule.step!r} takes {wanted} cells, got a frame of {rows} x {columns}"
+    if rows < rule.min_rows or columns < rule.min_columns:
+        wanted = f"{rule.min_rows} x {rule.min_columns}"
+        return (
+            f"step {rule.step!r} takes at least {wanted} cells, got a frame of {rows} x {columns}"
+        )
+    pitch = rule.pitch_cm
+    if pitch is not None and any(abs(p - pitch) > 1e-6 * pitch for p in image.pitch_cm):
+        return f"step {rule.step!r} takes a pitch of {pitch} cm, got a frame of {image.pitch_cm} cm"
+    return ""
+
+
+def _make_room(depth: int) -> None:
+    """Let lazy blocks nest as deep as the plan does; each level takes up to three calls."""
+    needed = 4 * depth + 1000
+    if depth > 100 and sys.getrecursionlimit() < needed:
+        sys.setrecursionlimit(needed)

@@ -1,0 +1,1 @@
+"""Pipeline files: read, checked in full, and turned into a frozen graph."""

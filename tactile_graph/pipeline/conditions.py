@@ -1,0 +1,270 @@
+"""Conditions of ``when``: a small whitelisted expression language over nodes and their fields."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_origin
+
+import numpy as np
+
+from tactile_graph.errors import did_you_mean, one_of
+from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
+from tactile_graph.steps.signature import list_item, type_name
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
+LONGEST = 2_000
+
+_ALLOWED = (
+    ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
+    ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod,
+    ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn,
+    ast.Call, ast.Name, ast.Attribute, ast.Constant, ast.Load, ast.Tuple, ast.List,
+)  # fmt: skip
+
+
+class ConditionError(Exception):
+    """What is wrong with a condition, in words, and at which character of it."""
+
+    def __init__(self, message: str, offset: int = 0) -> None:
+        super().__init__(message)
+        self.message = message
+        self.offset = offset
+
+
+@dataclass(frozen=True)
+class Guard:
+    """A compiled condition: what it reads, and the function of those values."""
+
+    text: str
+    refs: tuple[Ref, ...]
+    function: Callable[..., Any]
+
+    def reason(self, values: tuple[Any, ...]) -> str:
+        """Return why a node was skipped: the condition and what it read."""
+        read = ", ".join(
+            f"{ref} = {v:.6g}" if isinstance(v, float) else f"{ref} = {_short(v)}"
+            for ref, v in zip(self.refs, values, strict=True)
+        )
+        return f"when {self.text} is false" + (f" ({read})" if read else "")
+
+
+def _short(value: Any) -> str:
+    return repr(value) if isinstance(value, bool | int | str) else f"{len(value)} items"
+
+
+def names_in(text: str) -> set[str]:
+    """Return the names at the root of a condition's references; empty if it cannot be parsed."""
+    try:
+        tree = ast.parse(text.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return set()
+    names = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
+    return names - FUNCTIONS.keys()
+
+
+def compile_condition(
+    text: str, types: Mapping[str, Any], named: Mapping[str, str] | None = None
+) -> Guard:
+    """Return the guard that ``text`` spells.
+
+    Parameters
+    ----------
+    text : str
+        The condition.
+    types : mapping
+        Node name -> type of its value; also ``use`` outputs as ``node.output``.
+    named : mapping, optional
+        Named conditions, by name.
+
+    Raises
+    ------
+    ConditionError
+        If it is no condition: bad syntax, something not allowed, an unknown node or field.
+    """
+    compiler = _Compiler(types, named or {})
+    tree = compiler.parse(text, ())
+    if not compiler.is_truth(tree):
+        raise ConditionError(compiler.not_truth(tree))
+    arguments = [ast.arg(f"v{i}") for i in range(len(compiler.refs))]
+    body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), tree)
+    code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
+    function = eval(code, {"__builtins__": {}, **FUNCTIONS})  # whitelisted above
+    return Guard(" ".join(text.split()), tuple(compiler.refs), function)
+
+
+class _Compiler:
+    def __init__(self, types: Mapping[str, Any], named: Mapping[str, str]) -> None:
+        self.types = types
+        self.named = named
+        self.refs: list[Ref] = []
+        self.kinds: list[Any] = []
+
+    def parse(self, text: str, within: tuple[str, ...]) -> ast.expr:
+        if len(text) > LONGEST:
+            raise ConditionError(f"longer than {LONGEST} characters")
+        try:
+            tree = ast.parse(text.strip(), mode="eval")
+        except SyntaxError as error:
+            raise ConditionError(f"{error.msg}", max(0, (error.offset or 1) - 1)) from None
+        except (ValueError, RecursionError, MemoryError) as error:
+            raise ConditionError(f"cannot be read: {error}") from None
+        for node in ast.walk(tree):
+            if not isinstance(node, _ALLOWED):
+                raise ConditionError(
+                    f"{type(node).__name__.lower()} is not allowed in a condition; allowed are "
+                    "and, or, not, comparisons, + - * / // %, numbers, texts, node fields, "
+                    f"{', '.join(FUNCTIONS)}",
+                    getattr(node, "col_offset", 0),
+                )
+        return self.rewrite(tree.body, within)
+
+    def rewrite(self, node: ast.expr, within: tuple[str, ...]) -> ast.expr:
+        if isinstance(node, ast.Call):
+            return self.call(node, within)
+        chain = _chain(node)
+        if chain is not None:
+            return self.reference(chain, node.col_offset, within)
+        if isinstance(node, ast.Attribute):
+            raise ConditionError("a field can only be taken from a node", node.col_offset)
+        if isinstance(node, ast.Constant) and not isinstance(node.value, int | float | str):
+            raise ConditionError(f"{node.value!r} is not allowed in a condition", node.col_offset)
+        for field, value in ast.iter_fields(node):
+            if isinstance(value, ast.expr):
+                setattr(node, field, self.rewrite(value, within))
+            elif isinstance(value, list):
+                new = [self.rewrite(v, within) if isinstance(v, ast.expr) else v for v in value]
+                setattr(node, field, new)
+        for part in _truth_parts(node):
+            if not self.is_truth(part):
+                raise ConditionError(self.not_truth(part), getattr(node, "col_offset", 0))
+        for part in _compared_parts(node):
+            if not self.is_comparable(part):
+                raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
+        return node
+
+    def call(self, node: ast.Call, within: tuple[str, ...]) -> ast.expr:
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if name not in FUNCTIONS or node.keywords:
+            raise ConditionError(
+                f"only {', '.join(FUNCTIONS)} can be called in a condition", node.col_offset
+            )
+        node.args = [self.rewrite(a, within) for a in node.args]
+        if not node.args or (name in ("len", "abs") and len(node.args) != 1):
+            raise ConditionError(f"{name}() takes one argument", node.col_offset)
+        return node
+
+    def reference(self, chain: tuple[str, ...], offset: int, within: tuple[str, ...]) -> ast.expr:
+        root = chain[0]
+        if root in self.named and len(chain) == 1:
+            if root in within:
+                loop = " -> ".join((*within[within.index(root) :], root))
+                raise ConditionError(f"condition {root!r} refers to itself: {loop}", offset)
+            return self.parse(self.named[root], (*within, root))
+        ref, kind = resolve(chain, self.types, list(self.named), offset)
+        if ref not in self.refs:
+            self.refs.append(ref)
+            self.kinds.append(kind)
+        return ast.Name(f"v{self.refs.index(ref)}", ast.Load())
+
+    def kind(self, node: ast.expr) -> Any:
+        if isinstance(node, ast.Name) and node.id[:1] == "v" and node.id[1:].isdigit():
+            return self.kinds[int(node.id[1:])]
+        return None
+
+    def is_truth(self, node: ast.expr) -> bool:
+        kind = self.kind(node)
+        return kind is None or all(_scalar(a) or list_item(a) is not None for a in arms(kind))
+
+    def is_comparable(self, node: ast.expr) -> bool:
+        kind = self.kind(node)
+        return kind is None or all(_scalar(a) for a in arms(kind))
+
+    def not_truth(self, node: ast.expr) -> str:
+        kind = self.kind(node)
+        return (
+            f"{self.refs[int(node.id[1:])]} is a {type_name(kind)}, "  # type: ignore[attr-defined]
+            f"not a yes/no or a number{_fields_hint(kind)}"
+        )
+
+    def not_comparable(self, node: ast.expr) -> str:
+        kind = self.kind(node)
+        return (
+            f"{self.refs[int(node.id[1:])]} is a {type_name(kind)} "  # type: ignore[attr-defined]
+            f"and cannot be compared{_fields_hint(kind)}"
+        )
+
+
+def resolve(
+    chain: tuple[str, ...], types: Mapping[str, Any], also: list[str], offset: int = 0
+) -> tuple[Ref, Any]:
+    """Return the reference and the type of ``node.field…``.
+
+    Raises
+    ------
+    ConditionError
+        If the node is unknown or its type has no such field.
+    """
+    name, rest = chain[0], chain[1:]
+    if len(chain) > 1 and ".".join(chain[:2]) in types:
+        name, rest = ".".join(chain[:2]), chain[2:]
+    if name not in types:
+        inner = [n.partition(".")[2] for n in types if n.startswith(f"{name}.")]
+        if inner:
+            given = f"{chain[1]!r} is none of them" if len(chain) > 1 else "name one"
+            raise ConditionError(f"{name!r} has the outputs {one_of(inner)}; {given}", offset)
+        known = [*types, *also]
+        hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
+        raise ConditionError(f"no node named {name!r}{hint}", offset)
+    kind = types[name]
+    for i, field in enumerate(rest):
+        found = None if field.startswith("_") else field_type(kind, field)
+        if found is None:
+            known = list(public_fields(kind))
+            hint = did_you_mean(field, known) or f"; it has: {one_of(known)}"
+            owner = ".".join((name, *rest[:i]))
+            raise ConditionError(
+                f"{owner} ({type_name(kind)}) has no field {field!r}{hint}", offset
+            )
+        kind = found
+    return Ref(name, rest), kind
+
+
+def _chain(node: ast.expr) -> tuple[str, ...] | None:
+    if isinstance(node, ast.Name):
+        return (node.id,)
+    if isinstance(node, ast.Attribute):
+        inner = _chain(node.value)
+        return None if inner is None else (*inner, node.attr)
+    return None
+
+
+def _truth_parts(node: ast.expr) -> list[ast.expr]:
+    if isinstance(node, ast.BoolOp):
+        return node.values
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+        return [node.operand]
+    return []
+
+
+def _compared_parts(node: ast.expr) -> list[ast.expr]:
+    if isinstance(node, ast.Compare):
+        return [
+            node.left,
+            *(c for c in node.comparators if not isinstance(c, ast.Tuple | ast.List)),
+        ]
+    if isinstance(node, ast.BinOp):
+        return [node.left, node.right]
+    return []
+
+
+def _scalar(kind: Any) -> bool:
+    if kind is Any or kind is type(None) or get_origin(kind) is Literal:
+        return True
+    return isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic)
+
+
+def _fields_hint(kind: Any) -> str:
+    fields = [n for n, k in public_fields(kind).items() if all(_scalar(a) for a in arms(k))]
+    return f"; it has: {one_of(fields)}" if fields else ""

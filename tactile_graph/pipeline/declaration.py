@@ -1,0 +1,250 @@
+"""What a pipeline file declares, checked for shape only: keys, kinds of values, names."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from tactile_graph.errors import did_you_mean, one_of
+from tactile_graph.pipeline.document import Document, Path
+
+TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
+NODE_KEYS = ("step", "use", "first_of", "in", "with", "when", "each", "about")
+SOURCE_KEYS = ("step", "with")
+RESERVED = ("frame", "and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_REF = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
+
+
+@dataclass
+class NodeDeclaration:
+    """One node as the file has it."""
+
+    name: str
+    path: Path
+    step: str | None = None
+    use: str | None = None
+    first_of: list[str] | None = None
+    inputs: Any = None
+    settings: dict[str, Any] = field(default_factory=dict)
+    when: str | None = None
+    each: bool = False
+
+
+@dataclass
+class Declaration:
+    """A whole pipeline file as it stands, with the document it was read from."""
+
+    document: Document
+    name: str = ""
+    about: str = ""
+    evolves: str = ""
+    source_step: str | None = None
+    source_settings: dict[str, Any] = field(default_factory=dict)
+    conditions: dict[str, str] = field(default_factory=dict)
+    nodes: dict[str, NodeDeclaration] = field(default_factory=dict)
+    outputs: list[str] = field(default_factory=list)
+
+
+def kind_of(value: Any) -> str:
+    """Return what a person calls the kind of a YAML value."""
+    kinds = {
+        dict: "a mapping",
+        list: "a list",
+        str: "a text",
+        bool: "a yes/no",
+        type(None): "nothing",
+    }
+    kind = kinds.get(type(value))
+    return f"{kind}: {_cut(value)}" if kind and value not in (None, {}, []) else kind or _cut(value)
+
+
+def _cut(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+class _Declarer:
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.result = Declaration(document)
+
+    def problem(self, message: str, *path: str | int, key: bool = False) -> None:
+        self.document.problem(message, *path, key=key)
+
+    def keys(self, data: dict[str, Any], allowed: tuple[str, ...], path: Path, what: str) -> None:
+        for name in data:
+            if name not in allowed:
+                hint = did_you_mean(name, allowed) or f"; allowed: {', '.join(allowed)}"
+                self.problem(f"{what}: unknown key {name!r}{hint}", *path, name, key=True)
+
+    def text(self, data: dict[str, Any], key: str, *path: str | int, what: str) -> str:
+        value = data.get(key)
+        if value is None or isinstance(value, str):
+            return value or ""
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return str(value)
+        self.problem(f"{what} must be a text, got {kind_of(value)}", *path, key)
+        return ""
+
+    def top(self) -> Declaration:
+        data = self.document.data
+        if not isinstance(data, dict):
+            if not self.document.problems:
+                self.problem(f"a pipeline file is a mapping, got {kind_of(data)}")
+            return self.result
+        self.keys(data, TOP_KEYS, (), "pipeline file")
+        self.result.name = self.text(data, "pipeline", what="'pipeline'")
+        if not self.result.name:
+            self.problem("'pipeline' is missing: every file names its pipeline")
+        self.result.about = self.text(data, "about", what="'about'")
+        self.result.evolves = self.text(data, "evolves", what="'evolves'")
+        self.source(data.get("source"))
+        self.conditions(data.get("conditions"))
+        self.nodes(data.get("nodes"))
+        self.outputs(data)
+        return self.result
+
+    def source(self, data: Any) -> None:
+        if data is None:
+            return
+        if not isinstance(data, dict):
+            self.problem(f"'source' must be {{step: …, with: …}}, got {kind_of(data)}", "source")
+            return
+        self.keys(data, SOURCE_KEYS, ("source",), "source")
+        step = self.text(data, "step", "source", what="source, 'step'")
+        if not step:
+            self.problem("source: 'step' is missing", "source")
+        self.result.source_step = step or None
+        self.result.source_settings = self.mapping(data.get("with"), ("source", "with"), "source")
+
+    def mapping(self, data: Any, path: Path, what: str) -> dict[str, Any]:
+        if data is None:
+            return {}
+        if not isinstance(data, dict):
+            self.problem(f"{what}: 'with' must be a mapping, got {kind_of(data)}", *path)
+            return {}
+        return data
+
+    def conditions(self, data: Any) -> None:
+        if data is None:
+            return
+        if not isinstance(data, dict):
+            self.problem(f"'conditions' must be a mapping, got {kind_of(data)}", "conditions")
+            return
+        for name, text in data.items():
+            path = ("conditions", name)
+            self.name(name, path, "condition")
+            if isinstance(text, bool | int | float):
+                text = str(text)
+            if not isinstance(text, str):
+                self.problem(
+                    f"condition {name!r} must be an expression, got {kind_of(text)}", *path
+                )
+                continue
+            self.result.conditions[name] = text
+
+    def name(self, name: str, path: Path, what: str) -> None:
+        if not _NAME.match(name):
+            self.problem(
+                f"{what} name {name!r}: letters, digits and '_' only, not starting with a digit",
+                *path, key=True,
+            )  # fmt: skip
+        elif name in RESERVED:
+            self.problem(f"{what} name {name!r} is reserved", *path, key=True)
+
+    def nodes(self, data: Any) -> None:
+        if not isinstance(data, dict) or not data:
+            what = "is missing: it maps a name to each node" if data is None else (
+                f"must be a mapping of nodes, got {kind_of(data)}")  # fmt: skip
+            self.problem(f"'nodes' {what}", *(() if data is None else ("nodes",)))
+            return
+        for name, body in data.items():
+            path: Path = ("nodes", name)
+            self.name(name, path, "node")
+            if name in self.result.conditions:
+                self.problem(f"{name!r} is both a node and a condition", *path, key=True)
+            if isinstance(body, dict):
+                self.result.nodes[name] = self.node(name, path, body)
+            else:
+                self.problem(f"node {name!r} must be a mapping, got {kind_of(body)}", *path)
+
+    def node(self, name: str, path: Path, body: dict[str, Any]) -> NodeDeclaration:
+        what = f"node {name!r}"
+        node = NodeDeclaration(name, path)
+        self.keys(body, NODE_KEYS, path, what)
+        kinds = [k for k in ("step", "use", "first_of") if k in body]
+        if len(kinds) != 1:
+            got = " and ".join(repr(k) for k in kinds) or "none"
+            self.problem(
+                f"{what}: exactly one of 'step', 'use', 'first_of' is needed, got {got}", *path
+            )
+        node.step = self.text(body, "step", *path, what=f"{what}, 'step'") or None
+        node.use = self.text(body, "use", *path, what=f"{what}, 'use'") or None
+        if "first_of" in body:
+            node.first_of = self.refs(body["first_of"], (*path, "first_of"), f"{what}, 'first_of'")
+            for key in ("in", "with", "each"):
+                if key in body:
+                    self.problem(
+                        f"{what}: {key!r} makes no sense beside 'first_of'", *path, key, key=True
+                    )
+        node.inputs = self.inputs(body.get("in"), (*path, "in"), what)
+        node.settings = self.mapping(body.get("with"), (*path, "with"), what)
+        node.when = self.text(body, "when", *path, what=f"{what}, 'when'") or None
+        if isinstance(body.get("when"), bool):
+            node.when = str(body["when"])
+        each = body.get("each", False)
+        if not isinstance(each, bool):
+            self.problem(
+                f"{what}, 'each' must be true or false, got {kind_of(each)}", *path, "each"
+            )
+        node.each = each is True
+        return node
+
+    def refs(self, data: Any, path: Path, what: str) -> list[str]:
+        if not isinstance(data, list) or not data:
+            self.problem(f"{what} must be a list of nodes, got {kind_of(data)}", *path)
+            return []
+        return [r for i, r in enumerate(data) if self.ref(r, (*path, i), what)]
+
+    def ref(self, value: Any, path: Path, what: str) -> bool:
+        if isinstance(value, str) and _REF.match(value):
+            return True
+        self.problem(f"{what}: a node or node.field is needed, got {kind_of(value)}", *path)
+        return False
+
+    def inputs(self, data: Any, path: Path, what: str) -> Any:
+        where = f"{what}, 'in'"
+        if data is None:
+            return None
+        if isinstance(data, list):
+            return self.refs(data, path, where)
+        if isinstance(data, dict):
+            result: dict[str, Any] = {}
+            for port, value in data.items():
+                if isinstance(value, list):
+                    result[port] = self.refs(value, (*path, port), f"{where}, {port}")
+                elif self.ref(value, (*path, port), f"{where}, {port}"):
+                    result[port] = value
+            return result
+        return data if self.ref(data, path, where) else None
+
+    def outputs(self, data: dict[str, Any]) -> None:
+        if "outputs" not in data:
+            self.problem(
+                f"'outputs' is missing: a list of nodes out of {one_of(self.result.nodes)}"
+            )
+            return
+        value = data["outputs"]
+        value = [value] if isinstance(value, str) else value
+        outputs = self.refs(value, ("outputs",), "'outputs'")
+        for i, name in enumerate(outputs):
+            if name in outputs[:i]:
+                self.problem(f"output {name!r} is given twice", "outputs", i)
+        self.result.outputs = list(dict.fromkeys(outputs))
+
+
+def declare(document: Document) -> Declaration:
+    """Return what the document declares; problems go to the document."""
+    return _Declarer(document).top()

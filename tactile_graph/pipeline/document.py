@@ -1,0 +1,191 @@
+"""Read YAML into plain data that remembers where each value stood."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from tactile_graph.errors import Mark, Problem
+
+Path = tuple[str | int, ...]
+MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
+DEEPEST = 40
+MOST_CHARACTERS = 1_000_000
+
+_SCALARS = {
+    "tag:yaml.org,2002:" + kind for kind in ("null", "bool", "int", "float", "str", "timestamp")
+}
+
+
+@dataclass
+class Document:
+    """One YAML file as plain data, with a mark for each key and value, and all its problems."""
+
+    file: str
+    text: str
+    data: Any = None
+    problems: list[Problem] = field(default_factory=list)
+    _keys: dict[Path, Mark] = field(default_factory=dict)
+    _values: dict[Path, Mark] = field(default_factory=dict)
+
+    def mark(self, *path: str | int, key: bool = False) -> Mark:
+        """Return where the value (or its key) at ``path`` stands, else its nearest parent."""
+        while path:
+            found = (self._keys.get(path) if key else None) or self._values.get(path)
+            if found is not None:
+                return found
+            path = path[:-1]
+        return self._values.get((), Mark(self.file, 1, 1))
+
+    def problem(self, message: str, *path: str | int, key: bool = False) -> None:
+        """Note a problem at ``path``."""
+        self.problem_at(self.mark(*path, key=key), message)
+
+    def problem_at(self, mark: Mark, message: str) -> None:
+        """Note a problem at ``mark``."""
+        found = Problem(mark, message, self.snippet(mark))
+        if found not in self.problems:
+            self.problems.append(found)
+
+    def snippet(self, mark: Mark) -> str:
+        """Return the marked line with a caret below its column."""
+        lines = self.text.splitlines()
+        if not 1 <= mark.line <= len(lines):
+            return ""
+        line = lines[mark.line - 1]
+        start = max(0, mark.column - 60)
+        shown = line[start : start + 100].replace("\t", " ")
+        label = f"  {mark.line} | "
+        return f"{label}{shown}\n{' ' * (len(label) + mark.column - 1 - start)}^"
+
+
+def read_document(text: str, file: str) -> Document:
+    """Return the document; what is wrong with its YAML stands in its ``problems``."""
+    document = Document(file, text)
+    if len(text) > MOST_CHARACTERS:
+        document.problem_at(Mark(file, 1, 1), f"the file is too long: {len(text)} characters, "
+                            f"allowed are {MOST_CHARACTERS}")  # fmt: skip
+        return document
+    loader = yaml.SafeLoader(text) if _clean(document) else None
+    if loader is None:
+        return document
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            document.problem_at(Mark(file, 1, 1), "the file is empty")
+            return document
+        _measure(node, document)
+        document.data = _Reader(document, loader).read(node, ())
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
+        document.problem_at(place, f"this is not YAML: {error.problem or error.context}")
+    except (yaml.YAMLError, _TooMuch) as error:
+        document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
+    finally:
+        loader.dispose()
+    return document
+
+
+def _clean(document: Document) -> bool:
+    """Return whether YAML's reader takes every character; note the first that it does not."""
+    bad = yaml.reader.Reader.NON_PRINTABLE.search(document.text)
+    if bad is None:
+        return True
+    before = document.text[: bad.start()]
+    mark = Mark(document.file, before.count("\n") + 1, len(before) - before.rfind("\n"))
+    document.problem_at(mark, f"a character that YAML does not allow: {bad.group()!r}")
+    return False
+
+
+class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
+    pass
+
+
+def _measure(node: yaml.Node, document: Document) -> None:
+    """Refuse documents that aliases make endless or huge, before anything is built."""
+    count = 0
+
+    def visit(node: yaml.Node, depth: int, open_nodes: tuple[int, ...]) -> None:
+        nonlocal count
+        count += 1
+        if count > MOST_NODES or depth > DEEPEST:
+            raise _TooMuch(f"more than {MOST_NODES} values, or deeper than {DEEPEST} levels")
+        if id(node) in open_nodes:
+            raise _TooMuch("an alias that contains itself")
+        if isinstance(node, yaml.CollectionNode):
+            inner = (*open_nodes, id(node))
+            for child in _children(node):
+                visit(child, depth + 1, inner)
+
+    try:
+        visit(node, 0, ())
+    except RecursionError:
+        raise _TooMuch(f"deeper than {DEEPEST} levels") from None
+
+
+def _children(node: yaml.CollectionNode) -> Iterable[yaml.Node]:
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            yield key
+            yield value
+    else:
+        yield from node.value
+
+
+class _Reader:
+    def __init__(self, document: Document, loader: yaml.SafeLoader) -> None:
+        self.document = document
+        self.loader = loader
+
+    def _mark(self, node: yaml.Node) -> Mark:
+        return Mark(self.document.file, node.start_mark.line + 1, node.start_mark.column + 1)
+
+    def read(self, node: yaml.Node, path: Path) -> Any:
+        self.document._values[path] = self._mark(node)
+        if isinstance(node, yaml.MappingNode) and node.tag == "tag:yaml.org,2002:map":
+            return self._mapping(node, path)
+        if isinstance(node, yaml.SequenceNode) and node.tag == "tag:yaml.org,2002:seq":
+            return [self.read(child, (*path, i)) for i, child in enumerate(node.value)]
+        if isinstance(node, yaml.ScalarNode) and node.tag in _SCALARS:
+            return self._scalar(node)
+        self.document.problem_at(
+            self._mark(node),
+            f"the tag {node.tag!r} is refused: pipeline files hold plain values only",
+        )
+        return None
+
+    def _scalar(self, node: yaml.ScalarNode) -> Any:
+        if node.tag == "tag:yaml.org,2002:timestamp":
+            return node.value
+        try:
+            return self.loader.construct_object(node, deep=True)
+        except (ValueError, yaml.YAMLError) as error:
+            self.document.problem_at(self._mark(node), f"{node.value!r} cannot be read: {error}")
+            return None
+
+    def _mapping(self, node: yaml.MappingNode, path: Path) -> dict[str, Any]:
+        result: dict[str, Any] = {}
+        for key_node, value_node in node.value:
+            mark = self._mark(key_node)
+            if not isinstance(key_node, yaml.ScalarNode):
+                self.document.problem_at(mark, "a key must be a plain word")
+                continue
+            key = str(key_node.value)
+            if key_node.tag == "tag:yaml.org,2002:merge":
+                self.document.problem_at(
+                    mark, "merge keys ('<<') are refused: write the values out"
+                )
+                continue
+            if key in result:
+                first = self.document._keys[(*path, key)]
+                self.document.problem_at(
+                    mark, f"{key!r} is given twice; the first is in line {first.line}"
+                )
+                continue
+            self.document._keys[(*path, key)] = mark
+            result[key] = self.read(value_node, (*path, key))
+        return result

@@ -1,0 +1,100 @@
+"""Put a pipeline into another: inlined node by node, or run over the items of a list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from tactile_graph.errors import Mark
+from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.node import FRAME, Binding, Facts, Node, NodeKind
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.wiring import Ref, fit
+from tactile_graph.steps.signature import Port, list_item, type_name
+from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.image import Image
+
+
+def inline_nodes(
+    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
+) -> tuple[list[Node], list[str]]:
+    """Return the inner nodes under ``name/…`` and one passing node per output."""
+    rename, troubles = _renamer(name, ref, kind)
+    nodes = [_moved(node, name, rename, ref) for node in inner.nodes.values()]
+    single = len(inner.outputs) == 1
+    for output, source in inner.outputs.items():
+        nodes.append(
+            Node(
+                name if single else f"{name}.{output.replace('.', '_')}",
+                NodeKind.PASS,
+                inner.type_of(source),
+                mark,
+                choices=(rename(source),),
+                guard=guard,
+                key=inner.key + output,
+            )
+        )
+    return nodes, troubles
+
+
+def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list[str]]:
+    troubles: list[str] = []
+    image = fit(ref, kind, Image)
+
+    def rename(inner: Ref) -> Ref:
+        if inner.node != FRAME:
+            return replace(inner, node=f"{name}/{inner.node}")
+        if kind is Frame:
+            return Ref(ref.node, (*ref.path, *inner.path))
+        if inner.path[:1] == ("image",) and image is not None:
+            return Ref(image.node, (*image.path, *inner.path[1:]))
+        text = f"the pipeline reads {inner}, but {ref} is a {type_name(kind)}"
+        if text not in troubles:
+            troubles.append(text)
+        return Ref(ref.node, ref.path)
+
+    return rename, troubles
+
+
+def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], ref: Ref) -> Node:
+    guard = node.guard
+    if guard is not None:
+        guard = Guard(guard.text, tuple(rename(r) for r in guard.refs), guard.function)
+    return replace(
+        node,
+        name=f"{name}/{node.name}",
+        inputs=tuple(replace(b, refs=tuple(rename(r) for r in b.refs)) for b in node.inputs),
+        choices=tuple(rename(c) for c in node.choices),
+        guard=guard,
+        facts=node.facts if ref == Ref(FRAME) else Facts(),
+    )
+
+
+def map_node(
+    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
+) -> tuple[Node, str]:
+    """Return a node that runs the inner pipeline over each item, and what is wrong with it."""
+    trouble = ""
+    fitted = fit(ref, kind, list[Image])
+    if fitted is None:
+        hint = "" if list_item(kind) is not None else " ('each' needs a list)"
+        trouble = f"{ref} is a {type_name(kind)}, a list of images is needed{hint}"
+        fitted = ref
+    stateful = [n.name for n in inner.nodes.values() if n.stateful]
+    if stateful:
+        trouble = f"stateful node {stateful[0]!r} of {inner.name!r} cannot run for each item"
+    binding = Binding(Port(FRAME, list[Image]), (fitted,))
+    return (
+        Node(name, NodeKind.MAP, _map_output(name, inner), mark, inputs=(binding,), guard=guard,
+             each=True, inner=inner),
+        trouble,
+    )  # fmt: skip
+
+
+def _map_output(name: str, inner: Pipeline) -> Any:
+    kinds = {n.replace(".", "_"): inner.type_of(r) for n, r in inner.outputs.items()}
+    if len(kinds) == 1:
+        return list[next(iter(kinds.values()))]  # type: ignore[misc]
+    fields = [(n, list[k]) for n, k in kinds.items()]  # type: ignore[valid-type]
+    return NamedTuple(f"{name}_outputs", fields)  # type: ignore[misc]

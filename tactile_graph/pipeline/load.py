@@ -1,0 +1,151 @@
+"""Load a pipeline by name, file or text; report all that is wrong with it at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
+from tactile_graph.pipeline.declaration import declare
+from tactile_graph.pipeline.document import read_document
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.resolve import Overrides, Resolver
+from tactile_graph.plugins.registry import Registry, installed
+
+Sourced = tuple[str, dict[str, Any]] | None
+
+
+def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline of that name or in that file.
+
+    Parameters
+    ----------
+    name : str or Path
+        A name some plugin offers, or a path ending in ``.yaml`` or ``.yml``.
+    registry : Registry, optional
+        Where steps and names are looked up; the installed plugins if not given.
+
+    Raises
+    ------
+    PipelineError
+        With every problem of the file.
+    UsageError
+        If there is no such pipeline or file.
+    """
+    return _load(name, registry or installed(), {}, None, ())
+
+
+def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline that YAML text declares.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        The name its errors carry.
+    registry : Registry, optional
+        As in `load`.
+
+    Raises
+    ------
+    PipelineError
+        With every problem of the text.
+    """
+    return _build(text, file, registry or installed(), {}, None, ())
+
+
+def rebuild(pipeline: Pipeline, overrides: Overrides, source: Sourced) -> Pipeline:
+    """Return the pipeline resolved again with other settings or another source."""
+    registry = pipeline.registry or installed()
+    return _build(pipeline.text, pipeline.file, registry, overrides, source, ())
+
+
+def find(name: str | Path, registry: Registry) -> Path:
+    """Return the file of a pipeline.
+
+    Raises
+    ------
+    UsageError
+        If there is none; says what is near.
+    """
+    text = str(name)
+    if isinstance(name, Path) or text.endswith((".yaml", ".yml")) or "/" in text:
+        path = Path(name)
+        if path.is_file():
+            return path
+        siblings = path.parent.glob("*.y*ml") if path.parent.is_dir() else ()
+        hint = did_you_mean(path.name, [p.name for p in siblings])
+        raise UsageError(f"no pipeline file {text!r}{hint}")
+    if not registry.has("pipelines", text) and Path(text).is_file():
+        raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
+    return registry.path("pipelines", text)
+
+
+def _load(
+    name: str | Path,
+    registry: Registry,
+    overrides: Overrides,
+    source: Sourced,
+    within: tuple[str, ...],
+) -> Pipeline:
+    path = find(name, registry)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"pipeline file {str(path)!r} cannot be read: {error}") from None
+    return _build(text, _shown(path), registry, overrides, source, within)
+
+
+def _shown(path: Path) -> str:
+    """Return the path as short as it can be said from here."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def _build(
+    text: str,
+    file: str,
+    registry: Registry,
+    overrides: Mapping[str, Mapping[str, Any]],
+    source: Sourced,
+    within: tuple[str, ...],
+) -> Pipeline:
+    document = read_document(text, file)
+    declaration = declare(document)
+    if document.problems and not declaration.nodes:
+        raise PipelineError(_ordered(document.problems))
+    here = (*within, declaration.name)
+
+    def load_inner(name: str, inner_overrides: Overrides) -> Pipeline:
+        if name in here:
+            loop = " -> ".join((*here[here.index(name) :], name))
+            raise UsageError(f"pipelines use each other in a circle: {loop}")
+        beside = Path(file).parent / name
+        found = beside if name.endswith((".yaml", ".yml")) and beside.is_file() else name
+        return _load(found, registry, inner_overrides, None, here)
+
+    pipeline = Resolver(declaration, registry, load_inner, overrides, source).resolve()
+    _check_parent(declaration.evolves, document, registry)
+    if document.problems:
+        raise PipelineError(_ordered(document.problems))
+    return replace(pipeline, registry=registry)
+
+
+def _check_parent(parent: str, document: Any, registry: Registry) -> None:
+    if not parent or registry.has("pipelines", parent):
+        return
+    if parent.endswith((".yaml", ".yml")) and (Path(document.file).parent / parent).is_file():
+        return
+    names = registry.names("pipelines")
+    hint = did_you_mean(parent, names) or f"; there are: {one_of(names)}"
+    document.problem(f"'evolves': no pipeline named {parent!r}{hint}", "evolves")
+
+
+def _ordered(problems: list[Any]) -> list[Any]:
+    return sorted(
+        problems, key=lambda p: (p.mark.file, p.mark.line, p.mark.column) if p.mark else ("", 0, 0)
+    )

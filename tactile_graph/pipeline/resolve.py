@@ -1,0 +1,453 @@
+"""Turn a declaration into a frozen graph: steps, settings, wires, types, rules, guards."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from graphlib import CycleError, TopologicalSorter
+from typing import Any
+
+from tactile_graph.errors import (
+    Mark,
+    PluginError,
+    Problem,
+    TactileGraphError,
+    UsageError,
+    did_you_mean,
+    one_of,
+)
+from tactile_graph.pipeline import conditions
+from tactile_graph.pipeline.bind import bind_inputs
+from tactile_graph.pipeline.conditions import ConditionError, Guard, compile_condition, names_in
+from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
+from tactile_graph.pipeline.facts import output_facts, source_facts, step_troubles
+from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule, Node, NodeKind, node_key
+from tactile_graph.pipeline.pipeline import Pipeline, Source
+from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
+from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.settings import Trouble, validate_settings
+from tactile_graph.steps.signature import Kind, Signature
+from tactile_graph.wires import Frame
+
+Overrides = Mapping[str, Mapping[str, Any]]
+"""Node name -> settings that replace the file's."""
+
+Loader = Callable[[str, Overrides], Pipeline]
+"""Loads the pipeline a ``use`` names, with overrides for its nodes."""
+
+
+@dataclass
+class Scope:
+    """What is known while a graph is being resolved."""
+
+    types: dict[str, Any] = field(default_factory=lambda: {FRAME: Frame})
+    facts: dict[str, Facts] = field(default_factory=dict)
+    nodes: dict[str, Node] = field(default_factory=dict)
+    keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME})
+    rules: list[FrameRule] = field(default_factory=list)
+
+    def add(self, node: Node) -> None:
+        """Enter a resolved node."""
+        self.nodes[node.name] = node
+        self.types[node.name] = node.output
+        self.facts[node.name] = node.facts
+        self.keys[node.name] = node.key
+
+
+class Resolver:
+    """Resolves one declaration; problems go to its document.
+
+    Parameters
+    ----------
+    declaration : Declaration
+    registry : Registry
+    load : Loader
+        For ``use``.
+    overrides : mapping
+        Node name -> settings from outside (``--set``, ``with_settings``, ``use … with``).
+    source : tuple of (step name, settings), optional
+        Replaces the file's source.
+    """
+
+    def __init__(
+        self,
+        declaration: Declaration,
+        registry: Registry,
+        load: Loader,
+        overrides: Overrides | None = None,
+        source: tuple[str, dict[str, Any]] | None = None,
+    ) -> None:
+        self.declaration = declaration
+        self.document = declaration.document
+        self.registry = registry
+        self.load = load
+        self.overrides = {k: dict(v) for k, v in (overrides or {}).items()}
+        self.replaced_source = source
+        self.scope = Scope()
+
+    def resolve(self) -> Pipeline:
+        """Return the pipeline; it is only fit to run if the document has no problems."""
+        source = self._source()
+        self.scope.facts[FRAME] = source_facts(source)
+        for name in self._order():
+            declared = self.declaration.nodes[name]
+            try:
+                self._node(declared)
+            except TactileGraphError as error:
+                self._problem(declared, str(error))
+                self.scope.types.setdefault(name, UNKNOWN)
+        self._check_conditions()
+        self._check_overrides()
+        outputs = self._outputs()
+        d = self.declaration
+        return Pipeline(
+            name=d.name, about=d.about, evolves=d.evolves, source=source,
+            nodes=self.scope.nodes, outputs=outputs, file=self.document.file,
+            text=self.document.text, frame_rules=tuple(self.scope.rules),
+            overrides=self.overrides, source_override=self.replaced_source,
+        )  # fmt: skip
+
+    def _problem(
+        self, node: NodeDeclaration, message: str, *path: str | int, key: bool = False
+    ) -> None:
+        self.document.problem(
+            f"node {node.name!r}{message_join(message)}", *node.path, *path, key=key
+        )
+
+    # -- source ------------------------------------------------------------------------------
+
+    def _source(self) -> Source | None:
+        d = self.declaration
+        step, given = d.source_step, d.source_settings
+        mark = self.document.mark("source", "step")
+        if self.replaced_source is not None:
+            step, given = self.replaced_source
+        if step is None:
+            return None
+        try:
+            signature = self.registry.step(step)
+        except (UsageError, PluginError) as error:
+            self.document.problem(f"source: {error}", "source", "step")
+            return None
+        if signature.kind is not Kind.SOURCE:
+            text = f"source: step {step!r} is no source: it yields no frames"
+            self.document.problem(text, "source", "step")
+            return None
+        values, troubles = validate_settings(signature, given)
+        for path, message in troubles:
+            where = f"{path[0]}: " if path else ""
+            self.document.problem(f"source, {where}{message}", "source", "with", *path)
+        return Source(signature, values, mark)
+
+    # -- order -------------------------------------------------------------------------------
+
+    def _order(self) -> list[str]:
+        """Return the nodes, each after those it reads; a cycle is reported as a path."""
+        graph = {name: sorted(self._reads(n)) for name, n in self.declaration.nodes.items()}
+        try:
+            return _in_file_order(graph)
+        except CycleError as error:
+            loop = list(reversed(error.args[1]))
+            self.document.problem(
+                f"the nodes form a cycle: {' -> '.join(loop)}", "nodes", loop[0], key=True
+            )
+            inside = set(loop)
+            for name in inside:
+                self.scope.types[name] = UNKNOWN
+            rest = {
+                n: [r for r in reads if r not in inside]
+                for n, reads in graph.items()
+                if n not in inside
+            }
+            try:
+                return _in_file_order(rest)
+            except CycleError:
+                return []
+
+    def _reads(self, node: NodeDeclaration) -> set[str]:
+        texts: list[str] = list(node.first_of or [])
+        values = node.inputs.values() if isinstance(node.inputs, dict) else [node.inputs]
+        for value in values:
+            texts += value if isinstance(value, list) else [value] if value else []
+        names = {t.partition(".")[0] for t in texts}
+        if node.when:
+            names |= self._names_in(node.when, set())
+        return names & self.declaration.nodes.keys()
+
+    def _names_in(self, text: str, seen: set[str]) -> set[str]:
+        names = names_in(text)
+        for name in names & self.declaration.conditions.keys() - seen:
+            names |= self._names_in(self.declaration.conditions[name], seen | {name})
+        return names
+
+    # -- nodes -------------------------------------------------------------------------------
+
+    def _node(self, declared: NodeDeclaration) -> None:
+        guard = self._guard(declared)
+        if declared.first_of is not None:
+            self._first_of(declared, guard)
+        elif declared.use:
+            self._use(declared, guard)
+        elif declared.step:
+            self._step(declared, guard)
+        else:
+            self.scope.types[declared.name] = UNKNOWN
+
+    def _guard(self, declared: NodeDeclaration) -> Guard | None:
+        if not declared.when:
+            return None
+        try:
+            return compile_condition(declared.when, self.scope.types, self.declaration.conditions)
+        except ConditionError as error:
+            mark = self.document.mark(*declared.path, "when")
+            column = mark.column + (error.offset if "\n" not in declared.when else 0)
+            self.document.problem_at(
+                Mark(mark.file, mark.line, column),
+                f"node {declared.name!r}, 'when': {error.message}",
+            )
+            return None
+
+    def _mark(self, declared: NodeDeclaration) -> Mark:
+        return self.document.mark(*declared.path, key=True)
+
+    def _guard_key(self, guard: Guard | None) -> object:
+        return None if guard is None else (guard.text, [self._ref_key(r) for r in guard.refs])
+
+    def _ref_key(self, ref: Ref) -> tuple[object, ...]:
+        return (self.scope.keys.get(ref.node, ref.node), ref.path, ref.over_items)
+
+    def ref(self, declared: NodeDeclaration, text: str, *path: str | int) -> tuple[Ref, Any] | None:
+        """Return reference and type for ``node.field``, or report what is wrong with it."""
+        try:
+            ref, kind = conditions.resolve(tuple(text.split(".")), self.scope.types, [])
+        except ConditionError as error:
+            self._problem(declared, f": {error.message}", *path)
+            return None
+        return ref, kind
+
+    def _first_of(self, declared: NodeDeclaration, guard: Guard | None) -> None:
+        found = [
+            self.ref(declared, t, "first_of", i) for i, t in enumerate(declared.first_of or [])
+        ]
+        choices = tuple(f[0] for f in found if f)
+        kind = common_type([f[1] for f in found if f]) if choices else UNKNOWN
+        facts = [self.scope.facts.get(c.node, Facts()) for c in choices if not c.path]
+        same = facts[0] if len(facts) == len(choices) and len(set(facts)) == 1 else Facts()
+        key = node_key("first_of", [self._ref_key(c) for c in choices], self._guard_key(guard))
+        self.scope.add(
+            Node(declared.name, NodeKind.FIRST_OF, kind, self._mark(declared), choices=choices,
+                 guard=guard, facts=same, key=key)
+        )  # fmt: skip
+
+    def _settings(self, declared: NodeDeclaration, signature: Signature) -> dict[str, Any]:
+        given = {**declared.settings, **self.overrides.get(declared.name, {})}
+        values, troubles = validate_settings(signature, given)
+        self._report(declared, troubles)
+        return values
+
+    def _report(self, declared: NodeDeclaration, troubles: list[Trouble]) -> None:
+        outside = self.overrides.get(declared.name, {})
+        for path, message in troubles:
+            where = f", {path[0]}: " if path else ": "
+            if path and path[0] in outside:
+                text = f"setting {declared.name}.{path[0]}: {message}"
+                found = Problem(None, text)
+                if found not in self.document.problems:
+                    self.document.problems.append(found)
+            else:
+                self._problem(declared, where + message, "with", *path)
+
+    def _step(self, declared: NodeDeclaration, guard: Guard | None) -> None:
+        assert declared.step is not None
+        try:
+            signature = self.registry.step(declared.step)
+        except (UsageError, PluginError) as error:
+            self._problem(declared, f": {error}", "step")
+            self.scope.types[declared.name] = UNKNOWN
+            return
+        if signature.kind is Kind.SOURCE:
+            self._problem(
+                declared, f": {declared.step!r} is a source; it belongs under 'source'", "step"
+            )
+        before = len(self.document.problems)
+        settings = self._settings(declared, signature)
+        inputs = bind_inputs(self, declared, signature, self.scope.types)
+        self._rules(declared, signature, settings, inputs)
+        output: Any = signature.output
+        if declared.each:
+            output = list[output]
+            if signature.stateful:
+                text = f": a stateful step ({declared.step}) cannot run for each item"
+                self._problem(declared, text, "each")
+        key = node_key(
+            declared.step, sorted(settings.items(), key=lambda kv: kv[0]), declared.each,
+            [(b.port.name, [self._ref_key(r) for r in b.refs]) for b in inputs],
+            self._guard_key(guard),
+        )  # fmt: skip
+        node = Node(
+            declared.name, NodeKind.STEP, output, self._mark(declared), signature, settings, inputs,
+            guard=guard, each=declared.each, key=key,
+            facts=output_facts(signature, settings, inputs, self.scope.facts),
+        )  # fmt: skip
+        if len(self.document.problems) == before and signature.kind is Kind.CLASS:
+            node = self._made(declared, node)
+        self.scope.add(node)
+
+    def _made(self, declared: NodeDeclaration, node: Node) -> Node:
+        """Build a class step once, so that settings it refuses are an error of the file."""
+        try:
+            return replace(node, callable=node.bound())
+        except Exception as error:  # a constructor may raise anything about its settings
+            self._problem(declared, f": {error}", "with")
+            return node
+
+    def _rules(
+        self,
+        declared: NodeDeclaration,
+        signature: Signature,
+        settings: dict[str, Any],
+        inputs: tuple[Binding, ...],
+    ) -> None:
+        given = {**declared.settings, **self.overrides.get(declared.name, {})}
+        troubles, rules = step_troubles(
+            declared.name, signature, given, settings, inputs, self.scope.facts
+        )
+        self.scope.rules += rules
+        for port, message in troubles:
+            path = ("in", port) if isinstance(declared.inputs, dict) else ("in",)
+            self._problem(declared, f": {message}", *path)
+
+    # -- embedded pipelines ------------------------------------------------------------------
+
+    def _use(self, declared: NodeDeclaration, guard: Guard | None) -> None:
+        assert declared.use is not None
+        inner = self._inner(declared)
+        if inner is None:
+            self.scope.types[declared.name] = UNKNOWN
+            return
+        inputs = self._use_input(declared)
+        if inputs is None:
+            self.scope.types[declared.name] = UNKNOWN
+        elif declared.each:
+            self._map(declared, inner, inputs, guard)
+        else:
+            self._inline(declared, inner, inputs, guard)
+
+    def _inner(self, declared: NodeDeclaration) -> Pipeline | None:
+        overrides: dict[str, dict[str, Any]] = {}
+        for name, value in declared.settings.items():
+            node, dot, setting = name.rpartition(".")
+            if not dot:
+                text = f", {name}: settings of an embedded pipeline are named node.setting"
+                self._problem(declared, text, "with", name)
+                continue
+            overrides.setdefault(node, {})[setting] = value
+        prefix = f"{declared.name}/"
+        for name, values in self.overrides.items():
+            if name.startswith(prefix):
+                overrides.setdefault(name[len(prefix) :], {}).update(values)
+        try:
+            return self.load(str(declared.use), overrides)
+        except TactileGraphError as error:
+            self._problem(declared, f": pipeline {declared.use!r} cannot be used: {error}", "use")
+            return None
+
+    def _use_input(self, declared: NodeDeclaration) -> Ref | None:
+        wired = declared.inputs
+        if isinstance(wired, dict) and list(wired) == [FRAME]:
+            wired = wired[FRAME]
+        if wired is None:
+            wired = FRAME
+        if not isinstance(wired, str):
+            self._problem(declared, ": an embedded pipeline has one port, 'frame'", "in")
+            return None
+        found = self.ref(declared, wired, "in")
+        return None if found is None else found[0]
+
+    def _map(
+        self, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
+    ) -> None:
+        from tactile_graph.pipeline.embed import map_node
+
+        kind = conditions.resolve((ref.node, *ref.path), self.scope.types, [])[1]
+        node, trouble = map_node(declared.name, inner, ref, kind, guard, self._mark(declared))
+        if trouble:
+            self._problem(declared, f": {trouble}", "in")
+        key = node_key("map", inner.key, self._ref_key(ref), self._guard_key(guard))
+        self.scope.add(replace(node, key=key))
+
+    def _inline(
+        self, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
+    ) -> None:
+        from tactile_graph.pipeline.embed import inline_nodes
+
+        kind = conditions.resolve((ref.node, *ref.path), self.scope.types, [])[1]
+        nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, self._mark(declared))
+        for trouble in troubles:
+            self._problem(declared, f": {trouble}", "in")
+        for node in nodes:
+            key = node_key("in", node.key, self._ref_key(ref), self._guard_key(node.guard))
+            self.scope.add(replace(node, key=key))
+
+    # -- the whole ---------------------------------------------------------------------------
+
+    def _check_conditions(self) -> None:
+        """Report conditions that no node uses yet are wrong; used ones were met already."""
+        for name, text in self.declaration.conditions.items():
+            try:
+                compile_condition(text, self.scope.types, self.declaration.conditions)
+            except ConditionError as error:
+                self.document.problem(f"condition {name!r}: {error.message}", "conditions", name)
+
+    def _check_overrides(self) -> None:
+        known = set(self.declaration.nodes) | set(self.scope.nodes)
+        for name in self.overrides:
+            head = name.partition("/")[0]
+            if name not in known and head not in self.declaration.nodes:
+                hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
+                self.document.problems.append(
+                    Problem(None, f"setting {name}.{next(iter(self.overrides[name]), '')}: "
+                            f"no node named {name!r}{hint}")
+                )  # fmt: skip
+
+    def _outputs(self) -> dict[str, Ref]:
+        outputs: dict[str, Ref] = {}
+        for i, text in enumerate(self.declaration.outputs):
+            try:
+                ref, _ = conditions.resolve(tuple(text.split(".")), self.scope.types, [])
+            except ConditionError as error:
+                self.document.problem(f"output {text!r}: {error.message}", "outputs", i)
+                continue
+            outputs[text] = ref
+        if not outputs and not self.document.problems:
+            self.document.problem("'outputs' is empty: nothing is asked for", "outputs")
+        return outputs
+
+
+def message_join(message: str) -> str:
+    """Return the message with ``": "`` before it unless it brings its own joint."""
+    return message if message[:1] in ",:" else f": {message}"
+
+
+def _in_file_order(graph: Mapping[str, list[str]]) -> list[str]:
+    """Return the nodes, each after those it reads, otherwise in the order of the file.
+
+    Raises
+    ------
+    CycleError
+        If the nodes read each other in a circle.
+    """
+    place = {name: i for i, name in enumerate(graph)}
+    sorter = TopologicalSorter(graph)
+    sorter.prepare()
+    ready: list[int] = []
+    order: list[str] = []
+    names = list(graph)
+    while sorter.is_active():
+        for name in sorter.get_ready():
+            heapq.heappush(ready, place[name])
+        name = names[heapq.heappop(ready)]
+        order.append(name)
+        sorter.done(name)
+    return order
