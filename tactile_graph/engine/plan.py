@@ -8,9 +8,9 @@ is *lazy*: it stands in the block of the item that may need it, and runs when th
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from tactile_graph.pipeline.node import FRAME, Node, NodeKind
+from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind
 from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.pipeline.wiring import Ref
 
@@ -54,7 +54,7 @@ class Plan:
     slots: dict[str, int]
     reads_frame: tuple[Ref, ...] = ()
     depth: int = 0
-    rules: tuple[object, ...] = field(default=())
+    rules: tuple[FrameRule, ...] = ()
 
     @property
     def n_slots(self) -> int:

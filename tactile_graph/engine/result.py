@@ -48,20 +48,30 @@ class Result(Mapping[str, Any]):
     ``result["circle"]`` is the output's value; `NoResult` says why where there is none.
     """
 
-    __slots__ = ("_state", "frame", "inner", "plan", "reused")
+    __slots__ = ("_inner", "_state", "frame", "plan", "reused")
 
-    def __init__(self, plan: Plan, state: list[Any], frame: Frame, reused: bool = False) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        state: list[Any],
+        frame: Frame,
+        inner: dict[str, list[Result]] | None = None,
+        reused: bool = False,
+    ) -> None:
         self.plan = plan
         self._state = state
         self.frame = frame
         self.reused = reused
-        self.inner: dict[str, list[Result]] = {}
+        self._inner = inner
 
     def again(self, frame: Frame) -> Result:
         """Return the same outcomes for an equal frame; they took no time."""
-        result = Result(self.plan, self._state, frame, reused=True)
-        result.inner = self.inner
-        return result
+        return Result(self.plan, self._state, frame, self._inner, reused=True)
+
+    @property
+    def inner(self) -> dict[str, list[Result]]:
+        """For each node that ran a pipeline over a list, the results of its items."""
+        return self._inner or {}
 
     # -- outputs -----------------------------------------------------------------------------
 

@@ -43,6 +43,8 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
     row: dict[str, Any] = {}
     for field in fields:
         inner = getattr(value, field)
+        if isinstance(inner, list | tuple) and "count" in fields:
+            continue  # the record counts them itself
         if inner is not None and not isinstance(inner, Skipped | Failed):
             row.update(scalars(f"{name}.{field}", inner))
     if fields:

@@ -41,10 +41,13 @@ class Runner:
         self._blank: list[Any] = [None] * n + [0] * n
         self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
         self._repeatable = self.plan.repeatable
-        self._last: Frame | None = None
+        self._last: Result | None = None
         self._last_bytes = b""
-        self._last_result: Result | None = None
-        self._checked: tuple[object, ...] = ()
+        self._shape: tuple[int, ...] = ()
+        self._quantity = ""
+        # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
+        self._rules = any(r.quantity is None for r in self.plan.rules)
+        self._maps = any(i.node.inner is not None for i in self.plan.nodes if i.node is not None)
         _make_room(self.plan.depth)
 
     @property
@@ -61,32 +64,31 @@ class Runner:
             If the frame's quantity, shape or pitch breaks a rule of a step.
         """
         image = frame.image
-        what = (image.quantity, image.values.shape, image.pitch_cm)
-        if what != self._checked:
+        values = image.values
+        if values.shape != self._shape or image.quantity != self._quantity or self._rules:
             check_frame(image, self.plan)
-            self._checked = what
+            self._shape, self._quantity = values.shape, image.quantity
         if self._repeatable:
-            content = image.values.tobytes()
-            if self._last_result is not None and content == self._last_bytes:
-                assert self._last is not None
-                if _same_but_values(image, self._last.image):
-                    return self._last_result.again(frame)
+            content = values.tobytes()
+            last = self._last
+            if last is not None and content == self._last_bytes and _alike(image, last.frame.image):
+                return last.again(frame)
             self._last_bytes = content
         self.frame = frame
         state = self._blank.copy()
         state[0] = frame
         for settle in self._operations:
             settle(state)
-        result = Result(self.plan, state, frame)
-        if self.inner_results:
-            result.inner = self.inner_results
+        if self._maps:
+            result = Result(self.plan, state, frame, self.inner_results)
             self.inner_results = {}
-        self._last = frame
-        self._last_result = result
+        else:
+            result = Result(self.plan, state, frame)
+        self._last = result
         return result
 
 
-def _same_but_values(image: Image, last: Image) -> bool:
+def _alike(image: Image, last: Image) -> bool:
     """Return whether two images of equal bytes are equal in everything else."""
     if image is last:
         return True
@@ -115,7 +117,6 @@ def check_frame(image: Image, plan: Plan) -> None:
     if image.values.ndim != 2 or 0 in image.values.shape:
         raise RuleError(f"a frame holds values of shape (rows, columns), got {image.values.shape}")
     for rule in plan.rules:
-        assert isinstance(rule, FrameRule)
         trouble = _broken(rule, image)
         if trouble:
             raise RuleError(f"pipeline {plan.pipeline.name!r}, node {rule.node!r}: {trouble}")

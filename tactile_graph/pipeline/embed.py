@@ -97,4 +97,4 @@ def _map_output(name: str, inner: Pipeline) -> Any:
     if len(kinds) == 1:
         return list[next(iter(kinds.values()))]  # type: ignore[misc]
     fields = [(n, list[k]) for n, k in kinds.items()]  # type: ignore[valid-type]
-    return NamedTuple(f"{name}_outputs", fields)  # type: ignore[misc]
+    return NamedTuple(f"{name}_outputs", fields)

@@ -1,0 +1,170 @@
+"""circle-3 on one 16x16 frame: against scikit-image and OpenCV scripts, and the engine's own cost.
+
+Run with ``python benchmarks/circle_frame.py``. Needs the ``bench`` extra for OpenCV; peers that
+are not installed are left out. All contestants see the same two frames in turn (so that nothing
+is reused), and all run in the same process, round by round.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).parent))
+from rounds import print_table, time_side_by_side
+
+from tactile_graph import Frame, load
+from tactile_graph.compiled import have_compiler, warm_up
+
+LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
+DISC5 = np.array(
+    [[0, 1, 1, 1, 0], [1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [0, 1, 1, 1, 0]], np.uint8
+)
+Values = NDArray[np.float64]
+Circle = tuple[float, float, float]
+
+
+def frames() -> list[Frame]:
+    """Two frames of the second disc of table 4.2, from the bundled recording."""
+    found = [f for f in load("circle-3").frames() if f.index % 3 == 1]
+    return found[:2]
+
+
+def fit_circle_numpy(xy: Values) -> Circle:
+    """Algebraic (Kåsa) fit by least squares: the cheapest a script would write."""
+    a = np.column_stack([xy, np.ones(len(xy))])
+    p, q, r = np.linalg.lstsq(a, (xy * xy).sum(axis=1), rcond=None)[0]
+    x, y = p / 2, q / 2
+    return float(x), float(y), float(np.sqrt(r + x * x + y * y))
+
+
+def to_cm(points: Values) -> Values:
+    return ORIGIN_CM + (points + 0.5) * (PITCH_CM / 2)
+
+
+def opencv_script() -> Callable[[Values], Circle]:
+    import cv2
+
+    def script(values: Values) -> Circle:
+        mask = (values >= LEVEL_V).view(np.uint8)
+        fine = cv2.resize(mask, None, fx=2, fy=2, interpolation=cv2.INTER_NEAREST)
+        eroded = cv2.erode(fine, DISC5, borderType=cv2.BORDER_CONSTANT, borderValue=0)
+        dilated = cv2.dilate(eroded, DISC5)
+        contours, _ = cv2.findContours(dilated, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        hull = cv2.convexHull(np.vstack(contours))
+        return fit_circle_numpy(to_cm(hull[:, 0, :].astype(np.float64)))
+
+    return script
+
+
+def skimage_script() -> Callable[[Values], Circle]:
+    from skimage.measure import CircleModel
+    from skimage.morphology import convex_hull_image, dilation, erosion
+    from skimage.segmentation import find_boundaries
+
+    del convex_hull_image
+    from scipy.spatial import ConvexHull
+
+    def script(values: Values) -> Circle:
+        fine = np.kron(values >= LEVEL_V, np.ones((2, 2))).astype(np.uint8)
+        opened = dilation(erosion(fine, DISC5, mode="constant", cval=0), DISC5)
+        rows, columns = np.nonzero(find_boundaries(opened, mode="inner"))
+        xy = to_cm(np.column_stack([columns, rows]).astype(np.float64))
+        model = CircleModel.from_estimate(xy[ConvexHull(xy).vertices])
+        return float(model.center[0]), float(model.center[1]), float(model.radius)
+
+    return script
+
+
+def cycled(call: Callable[[object], object], inputs: list[object]) -> Callable[[], object]:
+    source: Iterator[object] = itertools.cycle(inputs)
+    return lambda: call(next(source))
+
+
+def by_hand() -> Callable[[Frame], object]:
+    """The same step functions called one after the other, without the engine."""
+    pipeline = load("circle-3")
+    steps = {n: node.bound() for n, node in pipeline.nodes.items()}
+    threshold, subdivide, erode, dilate = (
+        steps[n] for n in ("footprint", "fine", "eroded", "dilated")
+    )
+    boundary, hull, fit = (steps[n] for n in ("boundary", "hull", "circle"))
+
+    def call(frame: Frame) -> object:
+        return fit(hull(boundary(dilate(erode(subdivide(threshold(frame.image))))).points))
+
+    return call
+
+
+def empty_frames() -> list[Frame]:
+    rng = np.random.default_rng(0)
+    return [
+        Frame.of(rng.uniform(0, 0.005, (16, 16)), PITCH_CM, (ORIGIN_CM,) * 2, "volt")
+        for _ in range(2)
+    ]
+
+
+def one_frame() -> None:
+    both, runner = frames(), load("circle-3").runner()
+    images: list[object] = [f.image.values for f in both]
+    ours = {
+        "tactile-graph, circle-3": cycled(runner, list(both)),  # type: ignore[arg-type]
+        "the same steps by hand": cycled(by_hand(), list(both)),  # type: ignore[arg-type]
+        "tactile-graph, an empty pad": cycled(
+            load("circle-3").runner(), list(empty_frames())  # type: ignore[arg-type]
+        ),
+        "tactile-graph, the same frame again": lambda: runner(both[0]),
+    }
+    peers = {"OpenCV script": ("cv2", opencv_script), "scikit-image script": ("skimage", skimage_script)}
+    for name, (module, make) in peers.items():
+        if find_spec(module):
+            ours[name] = cycled(make(), images)  # type: ignore[arg-type]
+    print("One 16x16 frame with a disc; answers (x, y, radius in cm):")
+    circle = runner(both[0])["circle"]
+    print(f"  tactile-graph  {circle.x_cm:.3f} {circle.y_cm:.3f} {circle.radius_cm:.3f}")
+    for name, (module, make) in peers.items():
+        if find_spec(module):
+            x, y, r = make()(both[0].image.values)
+            print(f"  {name.split()[0]:14} {x:.3f} {y:.3f} {r:.3f}")
+    times = time_side_by_side(ours)
+    print_table(times, "OpenCV script" if "OpenCV script" in times else "scikit-image script")
+    full, hand = times["tactile-graph, circle-3"], times["the same steps by hand"]
+    extra = [a - b for a, b in zip(full.rounds_us, hand.rounds_us, strict=True)]
+    print(f"engine cost per node: {statistics.median(extra) / 7:.3f} us (7 nodes, target 1 us)")
+    share = times["tactile-graph, an empty pad"].ratio_to(full)[0]
+    print(f"an empty pad takes {100 * share:.1f} % of a full frame (target 10 %)")
+    result = runner(both[1])
+    print("per node, us: " + ", ".join(f"{n} {t:.2f}" for n, t in result.times_us.items()) + "\n")
+
+
+def start_up(rounds: int = 15) -> None:
+    """Whole-process time of ``--help`` over that of an interpreter that does nothing."""
+    command = [sys.executable, "-m", "tactile_graph", "--help"]
+    bare = [sys.executable, "-c", "pass"]
+    extra = []
+    for _ in range(rounds):
+        spent = []
+        for argv in (command, bare):
+            start = time.perf_counter()
+            subprocess.run(argv, check=True, stdout=subprocess.DEVNULL, env={**os.environ})
+            spent.append(time.perf_counter() - start)
+        extra.append(spent[0] - spent[1])
+    print(f"--help over bare Python: {statistics.median(extra):.3f} s (target 0.15 s)")
+
+
+if __name__ == "__main__":
+    if not have_compiler():
+        print("numba is not installed: these are the times of the plain references\n")
+    warm_up()
+    one_frame()
+    start_up()

@@ -1,0 +1,121 @@
+"""Check the documentation: docstrings, doctests, links between pages, and the commands shown.
+
+Run with ``python docs/check.py``; exits with 1 and says what is wrong.
+"""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import importlib
+import pkgutil
+import re
+import shlex
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = sorted(
+    p.parent.name
+    for folder in (ROOT, ROOT / "plugins", ROOT / "pipelines")
+    for p in folder.glob("tactile_graph*/__init__.py")
+)
+CHECKS = {"PR01", "PR02"}
+FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.M | re.S)
+LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+
+
+def modules() -> Iterator[ModuleType]:
+    """Yield every module of the project."""
+    for name in PACKAGES:
+        package = importlib.import_module(name)
+        yield package
+        for info in pkgutil.walk_packages(package.__path__, f"{name}."):
+            if not info.name.endswith("__main__"):
+                yield importlib.import_module(info.name)
+
+
+def docstrings(module: ModuleType) -> Iterator[str]:
+    """Yield where a documented parameter list and the signature differ (PR01, PR02)."""
+    from numpydoc.validate import validate
+
+    tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
+    for node in tree.body:
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+            continue
+        text = ast.get_docstring(node) or ""
+        if "Parameters\n" not in text:
+            continue
+        for code, message in validate(f"{module.__name__}.{node.name}")["errors"]:
+            if code in CHECKS:
+                yield f"{module.__file__}:{node.lineno}: {node.name}: {code} {message}"
+
+
+def doctests(module: ModuleType) -> Iterator[str]:
+    """Yield the module's doctests that fail."""
+    failed, _ = doctest.testmod(module)
+    if failed:
+        yield f"{module.__file__}: {failed} doctests fail"
+
+
+def pages() -> list[Path]:
+    """Return the Markdown pages."""
+    return [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def links(page: Path) -> Iterator[str]:
+    """Yield the page's links to files that are not there."""
+    for target, _ in LINK.findall(page.read_text(encoding="utf-8")):
+        if "://" not in target and not (page.parent / target).exists():
+            yield f"{page}: no such file: {target}"
+
+
+def commands(page: Path) -> Iterator[str]:
+    """Yield the ``tactile-graph`` commands of a page whose name or options do not exist."""
+    from tactile_graph.cli import cli
+
+    for language, block in FENCE.findall(page.read_text(encoding="utf-8")):
+        if language not in ("sh", "console"):
+            continue
+        for line in block.replace("\\\n", " ").splitlines():
+            yield from _command(page, line, cli)
+
+
+def _command(page: Path, line: str, cli: object) -> Iterator[str]:
+    import click
+
+    assert isinstance(cli, click.Group)
+    for part in re.split(r"&&|\|", line):
+        words = shlex.split(part.strip().removeprefix("$ "), comments=True)
+        if not words or not words[0].endswith("tactile-graph"):
+            continue
+        name = next((w for w in words[1:] if not w.startswith("-")), "")
+        context = click.Context(cli)
+        command = cli.get_command(context, name) if name else cli
+        if command is None:
+            yield f"{page}: no such command: {line}"
+            continue
+        known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}
+        known |= {o for p in cli.params for o in p.opts} | {"--help"}
+        for word in words[1:]:
+            if word.startswith("-") and word != "-" and word.partition("=")[0] not in known:
+                yield f"{page}: no such option {word} in: {line}"
+
+
+def main() -> int:
+    """Run every check; return the exit code."""
+    found = [text for page in pages() for check in (links, commands) for text in check(page)]
+    n = 0
+    for module in modules():
+        n += 1
+        found += [*docstrings(module), *doctests(module)]
+    for text in found:
+        print(text)
+    print(f"{n} modules and {len(pages())} pages checked, {len(found)} troubles")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,125 @@
+"""Step ``load``: total load, force, contact area, peak and centre of pressure of an image."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.wires import Image
+from tactile_graph_filters.nan import refuse_nan
+
+NEWTON_PER_GRAM = 9.80665e-3
+"""Weight of one gram under standard gravity."""
+NEWTON_PER_KILOPASCAL_CM2 = 0.1
+
+
+class Load(NamedTuple):
+    """What an image says as a whole.
+
+    ``force_n`` is None where the quantity is no force or pressure; ``x_cm`` and ``y_cm`` are
+    None where nothing is loaded, which ``loaded`` says for conditions.
+    """
+
+    loaded: bool
+    total: float
+    force_n: float | None
+    contact_area_cm2: float
+    peak: float
+    x_cm: float | None
+    y_cm: float | None
+
+
+def _measure_plain(
+    values: NDArray[np.float64], usable: NDArray[np.bool_], above: float
+) -> tuple[float, float, float, float, float]:
+    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
+    on = usable & ~(values <= above)  # NaN stays in, to be found out by its sum
+    load = values[on]
+    y, x = np.nonzero(on)
+    peak = float(load.max()) if load.size else 0.0
+    return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
+
+
+@compiled_twin_of(_measure_plain)
+def measure(values, usable, above):  # type: ignore[no-untyped-def]
+    """Return number, sum, maximum and moments of the usable cells above."""
+    n = total = peak = moment_x = moment_y = 0.0
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if usable[i, j] and not value <= above:
+                peak = value if n == 0.0 else max(peak, value)
+                n += 1.0
+                total += value
+                moment_x += j * value
+                moment_y += i * value
+    return n, total, peak, moment_x, moment_y
+
+
+class LoadOf:
+    """Return total load, force, contact area, peak and centre of pressure of the valid cells.
+
+    Parameters
+    ----------
+    above : float
+        Cells that do not read more than this, in the image's unit, count for nothing.
+
+    Notes
+    -----
+    The force of an image in grams is that of the weight under standard gravity, 9.80665 m/s^2;
+    in kilopascals it is pressure times cell area (pitch by pitch), summed. The centre is the
+    mean of the cell centres weighted by the readings.
+    """
+
+    stateless = True
+
+    def __init__(self, *, above: float = 0.0) -> None:
+        self._above = above
+        self._all: dict[tuple[int, int], NDArray[Any]] = {}
+
+    def __call__(self, image: Image) -> Load:
+        """Return the load of the image."""
+        values = np.ascontiguousarray(image.values, np.float64)
+        n, total, peak, moment_x, moment_y = measure(values, self._usable(image), self._above)
+        if not np.isfinite(total):
+            refuse_nan(image, infinite=True)
+        if total > 0.0:
+            (x, y), (pitch_x, pitch_y) = image.origin_cm, image.pitch_cm
+            x_cm: float | None = x + (moment_x / total + 0.5) * pitch_x
+            y_cm: float | None = y + (moment_y / total + 0.5) * pitch_y
+        else:
+            x_cm = y_cm = None
+        force_n = force_of(total, image)
+        return Load(total > 0.0, total, force_n, n * image.cell_area_cm2, peak, x_cm, y_cm)
+
+    def _usable(self, image: Image) -> NDArray[Any]:
+        if image.valid is not None:
+            return image.valid
+        if image.shape not in self._all:
+            everywhere = np.ones(image.shape, np.bool_)
+            everywhere.setflags(write=False)  # as an image's own are: one compiled kernel for both
+            self._all = {image.shape: everywhere}
+        return self._all[image.shape]
+
+
+def force_of(total: float, image: Image) -> float | None:
+    """Return the force in newton of a sum of readings; None where these are no force.
+
+    Parameters
+    ----------
+    total : float
+        Sum of readings of ``image``, in its unit.
+    image : Image
+
+    Returns
+    -------
+    float or None
+    """
+    if image.quantity == "gram":
+        return total * NEWTON_PER_GRAM
+    if image.quantity == "kilopascal":
+        return total * image.cell_area_cm2 * NEWTON_PER_KILOPASCAL_CM2
+    return None

@@ -1,0 +1,90 @@
+"""Step ``threshold_valley``: the level in the valley of the grey-level histogram."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from annotated_types import Ge, Le
+from numpy.typing import NDArray
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image
+from tactile_graph_filters.threshold import footprint
+from tactile_graph_filters.thresholded import Thresholded, grey_values
+
+
+def threshold_valley(
+    image: Image,
+    *,
+    n_bins: Annotated[int, Ge(3), Le(65536)] = 64,
+    smoothing: Annotated[int, Ge(0), Le(100_000)] = 1000,
+) -> Thresholded:
+    """Return the footprint above the valley between the two peaks of the histogram.
+
+    Parameters
+    ----------
+    image : Image
+    n_bins : int
+        Number of equally wide bins between the smallest and the largest value. Wider bins make
+        the level coarser, narrower ones need more smoothing.
+    smoothing : int
+        How often the histogram may be smoothed (mean of three bins) until two peaks are left.
+
+    Returns
+    -------
+    Thresholded
+        ``level`` is the lower edge of the lowest bin between the peaks (of the middle one of
+        equally low ones).
+
+    Raises
+    ------
+    Degenerate
+        If the histogram has one peak, or more than two after all smoothing, or the image has
+        fewer than two grey levels.
+    DataError
+        If a valid cell holds NaN or infinity.
+
+    Notes
+    -----
+    Thesis section 3.1.1 (Horn 1986, pages 90 and 91); smoothed until bimodal as Prewitt and
+    Mendelsohn do (1966, 10.1111/j.1749-6632.1965.tb11715.x).
+    """
+    values = grey_values(image)
+    low, high = float(values.min()), float(values.max())
+    edges = np.linspace(low, high, n_bins + 1)
+    counts = np.histogram(values, edges)[0].astype(np.float64)
+    peaks = _peaks(counts)
+    for _ in range(smoothing):
+        if len(peaks) <= 2:
+            break
+        counts = _smoothed(counts)
+        peaks = _peaks(counts)
+    if len(peaks) != 2:
+        n = "one peak" if len(peaks) == 1 else f"{len(peaks)} peaks"
+        raise Degenerate(
+            f"the histogram of {n_bins} bins from {low:g} to {high:g} has {n}"
+            f" after at most {smoothing} smoothings: a valley lies between two"
+        )
+    level = float(edges[_valley(counts, *peaks)])
+    return Thresholded(footprint(image, level), level)
+
+
+def _smoothed(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+    padded = np.pad(counts, 1, mode="edge")
+    return np.asarray((padded[:-2] + padded[1:-1] + padded[2:]) / 3.0)
+
+
+def _peaks(counts: NDArray[np.float64]) -> list[int]:
+    """Return the bins (the first of a level stretch) that are higher than both sides."""
+    starts = np.flatnonzero(np.diff(counts, prepend=-1.0) != 0)  # of stretches of equal bins
+    heights: NDArray[Any] = np.concatenate([[-1.0], counts[starts], [-1.0]])
+    higher = (heights[1:-1] > heights[:-2]) & (heights[1:-1] > heights[2:])
+    return [int(start) for start in starts[higher]]
+
+
+def _valley(counts: NDArray[np.float64], left: int, right: int) -> int:
+    """Return the lowest bin between two peaks; the middle one of equally low bins."""
+    between = counts[left : right + 1]
+    lowest = np.flatnonzero(between == between.min())
+    return left + int(lowest[len(lowest) // 2])

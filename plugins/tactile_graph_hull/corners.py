@@ -1,0 +1,164 @@
+"""What all hulls share: from points to a finished ``Polygon``, whatever the algorithm between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Polygon
+from tactile_graph_hull.nested import compiled_as_is
+from tactile_graph_hull.orientation import LARGEST, SMALLEST
+
+Corners: TypeAlias = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
+
+EPS = 2.0**-52
+
+
+def hull_polygon(
+    xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: float
+) -> Polygon:
+    """Return the hull that ``corners`` finds.
+
+    Parameters
+    ----------
+    xy_cm : ndarray of float64, shape (N, 2)
+        The points.
+    corners : callable
+        ``corners(xy, ulps)`` gives the hull's corners, shape (K, 2), counter-clockwise as seen
+        from the lowest (x, y) on; none at all where it cannot be exact (see `in_range`).
+    rounding_ulps : float
+        See `hull`.
+
+    Raises
+    ------
+    Degenerate
+        If there are no points, or some are not finite.
+    """
+    xy = np.ascontiguousarray(xy_cm, dtype=np.float64)
+    found = corners(xy, rounding_ulps)
+    if len(found) == 0:
+        found = _out_of_range(xy, corners, rounding_ulps)
+    return Polygon(found)
+
+
+def _out_of_range(
+    xy: NDArray[np.float64], corners: Corners, rounding_ulps: float
+) -> NDArray[np.float64]:
+    """Return the corners of points of any size, by a power of two brought into range."""
+    if len(xy) == 0:
+        raise Degenerate("0 points: a hull needs at least one")
+    bad = len(xy) - int(np.isfinite(xy).all(axis=1).sum())
+    if bad:
+        raise Degenerate(f"{bad} of {len(xy)} points are not finite: no hull")
+    _, exponent = math.frexp(float(np.abs(xy).max()))
+    shift = exponent - 479
+    scaled = np.ldexp(xy, -shift)
+    # Beside the largest coordinate these are 270 decimal places down: far below its rounding.
+    scaled[np.abs(scaled) < SMALLEST] = 0.0
+    return np.ldexp(corners(scaled, rounding_ulps), shift)
+
+
+@compiled_as_is
+def in_range(xy: NDArray[np.float64]) -> bool:
+    """Return whether there are points, all finite and of a size `turn` is exact for."""
+    for i in range(xy.shape[0]):
+        for k in range(2):
+            size = abs(xy[i, k])
+            if size != 0.0 and not SMALLEST <= size <= LARGEST:
+                return False
+    return xy.shape[0] > 0
+
+
+@compiled_as_is
+def finished(corners: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
+    """Return an exact hull's corners without those that only rounding makes stick out.
+
+    Corners further than ``ulps`` units in the last place of the largest coordinate from the
+    line through the kept ones stay. Two corners far apart are kept in any case and the two
+    chains between them are thinned on their own, so that the answer depends on the hull alone.
+    """
+    n = corners.shape[0]
+    if n < 3 or ulps == 0.0:
+        return corners
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, abs(corners[i, 0]), abs(corners[i, 1]))
+    limit = ulps * EPS * largest
+    first = _farthest(corners, 0)
+    second = _farthest(corners, first)
+    kept = np.zeros(n, dtype=np.bool_)
+    _thin(corners, first, second, limit, kept)
+    _thin(corners, second, first, limit, kept)
+    if kept.all():
+        return corners
+    return _from_lowest(corners[kept])
+
+
+@compiled_as_is
+def _farthest(corners: NDArray[np.float64], start: int) -> int:
+    """Return the corner farthest from ``start``."""
+    best, largest = start, -1.0
+    for i in range(corners.shape[0]):
+        distance = math.hypot(
+            corners[i, 0] - corners[start, 0], corners[i, 1] - corners[start, 1]
+        )
+        if distance > largest:
+            best, largest = i, distance
+    return best
+
+
+@compiled_as_is
+def _beside(corners: NDArray[np.float64], i: int, a: int, b: int) -> float:
+    """Return the distance of corner i from the line through corners a and b."""
+    dx, dy = corners[b, 0] - corners[a, 0], corners[b, 1] - corners[a, 1]
+    length = math.hypot(dx, dy)
+    along, across = dx / length, dy / length
+    return abs(
+        along * (corners[i, 1] - corners[a, 1]) - across * (corners[i, 0] - corners[a, 0])
+    )
+
+
+@compiled_as_is
+def _thin(
+    corners: NDArray[np.float64], start: int, end: int, limit: float, kept: NDArray[np.bool_]
+) -> None:
+    """Mark the corners to keep from ``start`` (kept) to ``end`` (left to the other chain)."""
+    n = corners.shape[0]
+    count = (end - start) % n
+    last, widest = 0, 1  # offsets from start; on a convex chain the widest only moves on
+    kept[start] = True
+    for offset in range(2, count + 1):
+        a, b = (start + last) % n, (start + offset) % n
+        distance = _beside(corners, (start + widest) % n, a, b)
+        while widest + 1 < offset:
+            further = _beside(corners, (start + widest + 1) % n, a, b)
+            if further < distance:
+                break
+            widest += 1
+            distance = further
+        if distance > limit:
+            last = offset - 1
+            widest = offset
+            kept[(start + last) % n] = True
+
+
+@compiled_as_is
+def _from_lowest(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the corners turned so that the lowest x, then the lowest y, comes first."""
+    n = corners.shape[0]
+    lowest = 0
+    for i in range(1, n):
+        if corners[i, 0] < corners[lowest, 0] or (
+            corners[i, 0] == corners[lowest, 0] and corners[i, 1] < corners[lowest, 1]
+        ):
+            lowest = i
+    turned = np.empty_like(corners)
+    for i in range(n):
+        k = (lowest + i) % n
+        turned[i, 0], turned[i, 1] = corners[k, 0], corners[k, 1]
+    return turned

@@ -1,0 +1,142 @@
+"""``hull``: the convex hull of points by a monotone chain, the fast default."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge
+from numpy.typing import NDArray
+
+from tactile_graph.wires import Points, Polygon
+from tactile_graph_hull.corners import finished, hull_polygon, in_range
+from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
+from tactile_graph_hull.orientation import turn
+
+
+def hull(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Polygon:
+    """Return the smallest convex polygon around the points.
+
+    Parameters
+    ----------
+    points : Points
+        At least one; duplicates and points in a line are welcome.
+    rounding_ulps : float
+        Corners that stick out by no more than so many units in the last place of the largest
+        coordinate are taken for rounding and left out: cells in a slanting line are in one line
+        although their positions in cm are rounded. 0 keeps every corner of the exact hull.
+
+    Returns
+    -------
+    Polygon
+        The corners, counter-clockwise as seen from the lowest x (of these the lowest y) on, none
+        twice and none between its neighbours. All points equal: 1 corner; all in one line: 2.
+
+    Raises
+    ------
+    Degenerate
+        If there are no points, or some are not finite.
+
+    Notes
+    -----
+    `hull_graham`, `hull_beneath_beyond` and `hull_qhull` give the same corners, bit by bit: all
+    decide with exact arithmetic. Time is O(N) where the points come sorted by x, as
+    `boundary_scan` gives them, else O(N log N). Source: A. M. Andrew 1979,
+    10.1016/0020-0190(79)90072-3; thesis 3.1.4.
+    """
+    return hull_polygon(points.xy_cm, chain_corners, rounding_ulps)
+
+
+def _chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
+    """Return the hull's corners, shape (K, 2); none if `turn` would not be exact."""
+    sizes = np.abs(xy)
+    if len(xy) == 0 or not (sizes <= 2.0**480).all() or (sizes[sizes > 0] < 2.0**-430).any():
+        return xy[:0]
+    ordered = xy[np.lexsort((xy[:, 1], xy[:, 0]))] + 0.0
+    new_x = np.flatnonzero(np.diff(ordered[:, 0], prepend=-np.inf))
+    top = ordered[new_x].tolist()  # as seen: y runs down, so the first of an x is its uppermost
+    bottom = ordered[np.append(new_x[1:], len(ordered)) - 1].tolist()
+    corners: list[list[float]] = []
+    for chain in (bottom, top[::-1]):
+        kept: list[list[float]] = []
+        for p in chain:
+            while len(kept) > 1 and turn.reference(*kept[-2], *kept[-1], *p) <= 0:
+                kept.pop()
+            kept.append(p)
+        corners += kept[1:] if corners and corners[-1] == kept[0] else kept
+    if len(corners) > 1 and corners[-1] == corners[0]:
+        corners.pop()
+    start = min(range(len(corners)), key=lambda k: corners[k])
+    return finished.reference(np.array(corners[start:] + corners[:start]), ulps)
+
+
+@nested_twin_of(_chain_corners)
+def chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
+    """Do the same in loops, without sorting what is sorted."""
+    if not in_range(xy):
+        return np.empty((0, 2))
+    n = xy.shape[0]
+    ends = np.empty((n, 3))  # x, its least y, its greatest y
+    m = _columns(xy, ends)
+    chain = np.empty((2 * m + 1, 2))
+    chain[0, 0], chain[0, 1] = ends[0, 0], ends[0, 1]
+    size = 1 if ends[0, 2] > ends[0, 1] else 0  # the upper left corner starts, if there are two
+    size = _add_chain(ends, 0, m, 2, chain, size)
+    if ends[m - 1, 2] == ends[m - 1, 1]:
+        size -= 1  # the last corner below is the first one above
+    size = _add_chain(ends, m - 1, -1, 1, chain, size)
+    if size > 1:
+        size -= 1  # back at the start
+    return finished(chain[:size], ulps)
+
+
+@compiled_as_is
+def _columns(xy: NDArray[np.float64], ends: NDArray[np.float64]) -> int:
+    """Write each x with its least and greatest y, by rising x; return how many there are."""
+    n = xy.shape[0]
+    ordered = True
+    for i in range(1, n):
+        if xy[i, 0] < xy[i - 1, 0]:
+            ordered = False
+            break
+    order = np.arange(n) if ordered else np.argsort(xy[:, 0])
+    m = 0
+    for i in range(n):
+        x, y = xy[order[i], 0] + 0.0, xy[order[i], 1] + 0.0  # + 0.0 turns -0.0 into 0.0
+        if m > 0 and ends[m - 1, 0] == x:
+            ends[m - 1, 1] = min(ends[m - 1, 1], y)
+            ends[m - 1, 2] = max(ends[m - 1, 2], y)
+        else:
+            ends[m, 0], ends[m, 1], ends[m, 2] = x, y, y
+            m += 1
+    return m
+
+
+@compiled_as_is
+def _add_chain(
+    ends: NDArray[np.float64],
+    start: int,
+    stop: int,
+    side: int,
+    chain: NDArray[np.float64],
+    size: int,
+) -> int:
+    """Add one side's corners behind the first ``size`` of ``chain``; return the new size."""
+    first = size
+    for i in range(start, stop, 1 if stop > start else -1):
+        x, y = ends[i, 0], ends[i, side]
+        while size - first > 1 and (
+            turn(
+                chain[size - 2, 0],
+                chain[size - 2, 1],
+                chain[size - 1, 0],
+                chain[size - 1, 1],
+                x,
+                y,
+            )
+            <= 0
+        ):
+            size -= 1
+        chain[size, 0], chain[size, 1] = x, y
+        size += 1
+    return size

@@ -1,0 +1,153 @@
+"""Read a YAML document into a frozen record, with everything wrong reported by file and line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from tactile_graph.errors import PipelineError, Problem, did_you_mean, one_of
+from tactile_graph.pipeline.document import Document, Path
+
+T = TypeVar("T")
+_COMPARISONS = {
+    "greater_than": ("gt", ">"),
+    "greater_than_equal": ("ge", ">="),
+    "less_than": ("lt", "<"),
+    "less_than_equal": ("le", "<="),
+}
+
+
+class RecordError(PipelineError):
+    """All that is wrong with a pad or scene, found in one run."""
+
+
+def read_record(document: Document, kind: type[T], what: str) -> T:
+    """Return the record a document describes.
+
+    Parameters
+    ----------
+    document : Document
+        As read; its own problems are reported too.
+    kind : type
+        A frozen dataclass that forbids unknown keys.
+    what : str
+        What the file should be, for its errors: ``"a pad"``.
+
+    Raises
+    ------
+    RecordError
+        With every problem of the file.
+    """
+    if not document.problems and not isinstance(document.data, Mapping):
+        document.problem(f"{what} is a mapping of settings, got {document.data!r}")
+    if document.problems:
+        raise RecordError(document.problems)
+    try:
+        record = TypeAdapter(kind).validate_python(document.data)
+    except ValidationError as error:
+        for e in error.errors(include_url=False):
+            _note(document, e, kind)
+        raise RecordError(document.problems) from None
+    _refuse_yes_for_numbers(document, document.data, record, ())
+    if document.problems:
+        raise RecordError(document.problems)
+    return record
+
+
+def _refuse_yes_for_numbers(document: Document, data: Any, value: Any, path: Path) -> None:
+    """Note each yes or no that was taken as the number 1 or 0."""
+    if isinstance(data, Mapping):
+        for key, inner in data.items():
+            _refuse_yes_for_numbers(document, inner, getattr(value, key), (*path, key))
+    elif isinstance(data, list | tuple):
+        for index, inner in enumerate(data):
+            _refuse_yes_for_numbers(document, inner, value[index], (*path, index))
+    elif isinstance(data, bool) and not isinstance(value, bool):
+        document.problem(f"{path[-1]} must be a number, got {data!r}", *path)
+
+
+def inline(data: Mapping[str, Any], where: str) -> Document:
+    """Return a document around data that came from no file, so that errors name ``where``."""
+    return _Inline(where, "", dict(data))
+
+
+class _Inline(Document):
+    """Says where a value stands by its path: there is no line to point at."""
+
+    def problem(self, message: str, *path: str | int, key: bool = False) -> None:
+        place = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in path)
+        self.problems.append(Problem(None, f"{self.file}{place}: {message}"))
+
+
+def _note(document: Document, e: Any, kind: Any) -> None:
+    path, rest = _walk(document.data, e["loc"])
+    error, got, context = str(e["type"]), e["input"], e.get("ctx", {})
+    name = str(path[-1]) if path else ""
+    if error in ("unexpected_keyword_argument", "extra_forbidden"):
+        document.problem(_unknown_key(name, e["loc"][:-1], kind), *path, key=True)
+    elif error in ("missing", "missing_argument"):
+        document.problem(f"{rest[-1]!r} is missing", *path)
+    elif error == "union_tag_not_found":
+        tag = str(context["discriminator"]).strip("'")
+        document.problem(f"{tag!r} is missing, it says which kind this is", *path)
+    elif error == "union_tag_invalid":
+        tags = [t.strip().strip("'") for t in str(context["expected_tags"]).split(",")]
+        tag = str(context["discriminator"]).strip("'")
+        got = context["tag"]
+        message = f"{tag} must be one of {one_of(tags)}, got {got!r}{did_you_mean(got, tags)}"
+        document.problem(message, *path, tag)
+    elif error in _COMPARISONS:
+        key, sign = _COMPARISONS[error]
+        document.problem(f"{name} must be {sign} {context[key]:g}, got {got!r}", *path)
+    elif error == "value_error":
+        document.problem(str(context.get("error", e["msg"])), *path)
+    else:
+        text = str(e["msg"]).removeprefix("Input ")
+        document.problem(f"{name} {text[0].lower()}{text[1:]}, got {got!r}", *path)
+
+
+def _walk(data: Any, loc: Path) -> tuple[Path, Path]:
+    """Split pydantic's place into keys that are in the data and what is left at the end.
+
+    Pydantic also names the arms of a union, which stand nowhere in the file: those are left out.
+    """
+    path: list[str | int] = []
+    rest: list[str | int] = []
+    for part in loc:
+        if (isinstance(data, Mapping) and part in data) or (
+            isinstance(data, list | tuple) and isinstance(part, int) and part < len(data)
+        ):
+            data, rest = data[part], []
+            path.append(part)
+        else:
+            rest.append(part)
+    return tuple(path), tuple(rest)
+
+
+def _unknown_key(name: str, parents: Path, kind: Any) -> str:
+    known = _fields(kind, parents)
+    hint = did_you_mean(name, known) or f"; allowed are: {one_of(known)}"
+    return f"unknown key {name!r}{hint}"
+
+
+def _fields(kind: Any, parents: Path) -> list[str]:
+    """Return the keys allowed below ``parents``, read off the annotations."""
+    from dataclasses import fields, is_dataclass
+    from typing import get_args, get_type_hints
+
+    def records(annotation: Any) -> list[Any]:
+        if is_dataclass(annotation):
+            return [annotation]
+        return [r for a in get_args(annotation) for r in records(a)]
+
+    found = [kind]
+    for part in parents:
+        if isinstance(part, int):
+            continue
+        inner = [get_type_hints(k).get(part) for k in found]
+        deeper = [r for annotation in inner for r in records(annotation)]
+        tagged = [k for k in found if part == getattr(k, "kind", getattr(k, "shape", None))]
+        found = deeper or tagged or found
+    return sorted({f.name for k in found for f in fields(k)})

@@ -1,0 +1,173 @@
+"""``Decoder``: bytes in, frames out; knows nothing of ports, threads or clocks."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph_sources.devices.assembly import BetweenSilences, Pieces, Sequence, Whole
+from tactile_graph_sources.devices.counters import LinkCounts
+from tactile_graph_sources.devices.delimited import DelimitedFramer
+from tactile_graph_sources.devices.geometry import Placement
+from tactile_graph_sources.devices.layout import Layout
+from tactile_graph_sources.devices.packet import PacketFramer, ReplyFramer
+from tactile_graph_sources.devices.preset import Packet, Preset, Text
+from tactile_graph_sources.devices.text import TextFramer
+from tactile_graph_sources.devices.units import Assembled, Units
+
+
+class Decoded(NamedTuple):
+    """One frame: values (rows, columns), device clock, loss just before it, place of its end."""
+
+    values: NDArray[np.float64]
+    device_time_s: float | None
+    gap: bool
+    end: int
+
+
+class Decoder:
+    """Turns a kit's bytes into frames, whatever the chunks they come in.
+
+    Parameters
+    ----------
+    preset : Preset
+    """
+
+    def __init__(self, preset: Preset) -> None:
+        self.preset = preset
+        self.counts = LinkCounts()
+        self.placement = Placement(preset.geometry)
+        self.framer = _framer(preset, self.counts)
+        self.assembler = _assembler(preset, self.framer, self.counts)
+        self._clock = _clock(preset)
+        self._lost = False
+        self._out_of_range = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether a whole reply is there and only its silence is waited for."""
+        return isinstance(self.framer, ReplyFramer) and self.framer.complete
+
+    def feed(self, data: bytes) -> list[Decoded]:
+        """Take bytes, return the frames that they complete."""
+        self.counts.bytes += len(data)
+        return self._frames(self.framer.feed(data))
+
+    def boundary(self) -> list[Decoded]:
+        """Take note of a silence (the end of a reply, a pause), return what it completes.
+
+        A kit whose frames are found by what they hold takes no notice: a pause inside a line is
+        the host's own hiccup.
+        """
+        if not self.preset.framed_by_silence:
+            return []
+        return self._frames(self.framer.boundary())
+
+    def reset(self) -> None:
+        """Start afresh after a reconnect; the next frame is marked as following a gap."""
+        self.framer.reset()
+        self.assembler.reset()
+        if self._clock is not None:
+            self._clock.reset()
+        self._lost = self.counts.good > 0
+
+    def hint(self) -> str:
+        """Return what the bytes themselves say about why no frame is found; may be empty."""
+        return self.framer.hint() or self._out_of_range
+
+    def _frames(self, runs: list[Units]) -> list[Decoded]:
+        out: list[Decoded] = []
+        for units in runs:
+            for batch in self.assembler.feed(units):
+                self._emit(batch, out)
+        return out
+
+    def _emit(self, batch: Assembled, out: list[Decoded]) -> None:
+        good = self.placement.in_range(batch.cells)
+        gap = batch.gap
+        times = self._clock.seconds(batch.time) if self._clock and batch.time is not None else None
+        if not good.all():
+            self._refuse(batch.cells[~good])
+            gap = gap | np.concatenate([[False], ~good[:-1]])
+        images = self.placement.images(batch.cells)
+        gap_list, ends = gap.tolist(), batch.ends.tolist()
+        for i in range(len(images)) if good.all() else np.flatnonzero(good).tolist():
+            lost = (gap_list[i] or self._lost) and self.counts.good > 0
+            self.counts.good += 1
+            self._lost = False
+            out.append(Decoded(images[i], None if times is None else times[i], lost, ends[i]))
+        if not good[-1]:
+            self._lost = True
+
+    def _refuse(self, cells: NDArray[Any]) -> None:
+        self.counts.bad["out of range"] += len(cells)
+        self._out_of_range = (
+            f"values of {cells.min():g} to {cells.max():g} came, "
+            f"the preset allows {self.placement.range or 'finite ones'}"
+        )
+
+
+class DeviceClock:
+    """Turns a wrapping counter of ticks into seconds that only go on."""
+
+    def __init__(self, unit_s: float, modulus: int) -> None:
+        self.unit_s = unit_s
+        self.modulus = modulus
+        self.reset()
+
+    def reset(self) -> None:
+        """Start afresh: the device may have started anew."""
+        self._last: int | None = None
+        self._wraps = 0
+
+    def seconds(self, ticks: NDArray[Any]) -> list[float]:
+        """Return the times of consecutive frames."""
+        out = []
+        for tick in ticks.tolist():
+            # Half a turn back is a wrap; a small step back is the device's own jitter.
+            if self._last is not None and self._last - tick > self.modulus // 2:
+                self._wraps += 1
+            self._last = tick
+            out.append((tick + self._wraps * self.modulus) * self.unit_s)
+        return out
+
+
+Framer = PacketFramer | ReplyFramer | DelimitedFramer | TextFramer
+
+
+def _framer(preset: Preset, counts: LinkCounts) -> Framer:
+    if isinstance(preset.framer, Packet):
+        layout = Layout(preset)
+        if preset.framed_by_silence:
+            return ReplyFramer(layout, counts)
+        return PacketFramer(layout, counts)
+    if isinstance(preset.framer, Text):
+        return TextFramer(preset, counts)
+    return DelimitedFramer(preset, counts)
+
+
+def _assembler(
+    preset: Preset, framer: Framer, counts: LinkCounts
+) -> Whole | Pieces | BetweenSilences:
+    places = framer.layout.places if isinstance(framer, PacketFramer | ReplyFramer) else {}
+    number = places.get("sequence")
+    sequence = Sequence(256**number.dtype.itemsize if number else 1, counts)
+    g = preset.geometry
+    if preset.assembler == "full":
+        return Whole(sequence)
+    if isinstance(preset.framer, Text):
+        return BetweenSilences(g.rows, counts)
+    return Pieces(g.n_cells, g.columns if preset.assembler == "rows" else 1, sequence, counts)
+
+
+def _clock(preset: Preset) -> DeviceClock | None:
+    framer = preset.framer
+    if isinstance(framer, Text):
+        return DeviceClock(framer.time_unit_s, 2**32) if framer.time_unit_s else None
+    if isinstance(framer, Packet):
+        place = Layout(preset).places.get("time")
+        if place is not None:
+            return DeviceClock(place.value.unit_s, 256**place.dtype.itemsize)
+    return None

@@ -1,0 +1,76 @@
+"""Tables with one matrix row a line: matrices between blank lines, or so many rows each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.csv_layout import FRAME_LINE, Layout, is_blank, is_comment
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+
+NAME = "table of stacked matrices"
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file is such a table."""
+    return head.layout is not None and head.layout.kind == "stacked"
+
+
+@dataclass
+class _Matrix:
+    """The matrix being gathered."""
+
+    line: int = 0
+    index: int | None = None
+    rows: list[list[float]] = field(default_factory=list)
+    n_lines: int = 0
+    wrong: str = ""
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each matrix that has all its rows."""
+    layout = reading.head.layout or Layout("stacked")
+    reading.told.agree(str(reading.path), layout.rows, layout.width)
+    endless = layout.blank_run > 2  # no blank line ends a matrix, only its last row does
+    matrix, blanks = _Matrix(), 0
+    for number, line in reading.text():
+        if is_blank(line):
+            blanks += 1
+            continue
+        label = FRAME_LINE.fullmatch(line)
+        if label or blanks >= layout.blank_run or (endless and matrix.n_lines == layout.rows):
+            yield from _close(reading, layout, matrix)
+            matrix = _Matrix(index=int(label[1]) if label else None)
+        blanks = 0
+        if not label and not is_comment(line):
+            _take(layout, matrix, number, line)
+    yield from _close(reading, layout, matrix)
+
+
+def _take(layout: Layout, matrix: _Matrix, number: int, line: str) -> None:
+    matrix.line = matrix.line or number
+    matrix.n_lines += 1
+    try:
+        row = layout.dialect.row(line, layout.width)
+    except ValueError as error:
+        matrix.wrong = matrix.wrong or f"line {number}: {error}"
+    else:
+        if len(matrix.rows) <= layout.rows:
+            matrix.rows.append(row)
+
+
+def _close(reading: Reading, layout: Layout, matrix: _Matrix) -> Iterator[Frame]:
+    if not matrix.n_lines:
+        return
+    if matrix.n_lines != layout.rows and not matrix.wrong:
+        matrix.wrong = f"a matrix of {matrix.n_lines} rows, not {layout.rows}"
+    if matrix.wrong:
+        reading.damaged(matrix.line, matrix.wrong)
+    elif matrix.index is None or not reading.is_repeat(
+        matrix.line, matrix.index, f"frame {matrix.index}"
+    ):
+        yield reading.frame(np.array(matrix.rows))

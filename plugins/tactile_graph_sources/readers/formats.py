@@ -1,0 +1,73 @@
+"""The formats that are known, and which of them a file is, by its content alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers import (
+    capfingerid,
+    csv_flat,
+    csv_long,
+    csv_stacked,
+    emed,
+    npy,
+    npz,
+    pliance,
+    popu_bed,
+    tekscan,
+    xsensor,
+)
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+
+
+class Reader(Protocol):
+    """What a reader's module has."""
+
+    NAME: str
+
+    def recognises(self, head: Head) -> bool:
+        """Return whether the file is of this format."""
+
+    def read(self, reading: Reading) -> Iterator[Frame]:
+        """Yield the file's frames."""
+
+
+# The surest marks first; plain tables last, as any of the others could look like one.
+READERS: tuple[Reader, ...] = (
+    npy,
+    npz,
+    popu_bed,
+    xsensor,
+    tekscan,
+    pliance,
+    emed,
+    capfingerid,
+    csv_long,
+    csv_stacked,
+    csv_flat,
+)
+
+
+def known() -> str:
+    """Return the names of all formats, for messages."""
+    return ", ".join(reader.NAME for reader in READERS)
+
+
+def reader_of(head: Head) -> Reader:
+    """Return the reader for a file.
+
+    Raises
+    ------
+    DataError
+        If the file is of no known format.
+    """
+    reader = next((r for r in READERS if r.recognises(head)), None)
+    if reader is None:
+        raise DataError(
+            str(head.path), f"no recording: {head.found()}; formats that are read: {known()}"
+        )
+    return reader

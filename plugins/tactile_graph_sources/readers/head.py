@@ -1,0 +1,70 @@
+"""``Head``: the first bytes and lines of a file, by which its format is recognised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactile_graph_sources.readers.told import Told
+
+if TYPE_CHECKING:
+    from tactile_graph_sources.readers.csv_layout import Layout
+
+SAMPLE = 1 << 20
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+@dataclass
+class Head:
+    """The start of a file and what the settings say about it."""
+
+    path: Path
+    raw: bytes
+    told: Told
+
+    @classmethod
+    def of(cls, path: Path, told: Told) -> Head:
+        """Read the start of a file."""
+        with path.open("rb") as file:
+            return cls(path, file.read(SAMPLE), told)
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is all there is."""
+        return len(self.raw) < SAMPLE
+
+    @property
+    def encoding(self) -> str:
+        """Encoding by the byte-order mark; UTF-8 where there is none."""
+        return "utf-16" if self.raw[:2] in _UTF16 else "utf-8-sig"
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The first lines of a text; empty for a binary file."""
+        if self.encoding != "utf-16" and b"\0" in self.raw[:4096]:
+            return []
+        text = self.raw.decode(self.encoding, "backslashreplace")
+        lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        return lines if self.whole else lines[:-1]
+
+    @cached_property
+    def layout(self) -> Layout | None:
+        """How the numbers lie in a plain table; None where it is no table."""
+        from tactile_graph_sources.readers.csv_layout import layout_of
+
+        return layout_of(self.lines, self.told, self.whole)
+
+    def first(self, n: int = 60) -> list[str]:
+        """Return the first ``n`` lines that are not blank."""
+        return [line for line in self.lines[: 4 * n] if line.strip(" ,;\t\f")][:n]
+
+    def found(self) -> str:
+        """Return in words what the file starts with, for messages."""
+        if not self.raw:
+            return "an empty file"
+        if not self.lines:
+            return f"binary data starting {self.raw[:8]!r}"
+        first = self.first(1)
+        return f"text starting {first[0].strip()[:60]!r}" if first else "only blank lines"

@@ -1,0 +1,39 @@
+"""NumPy ``.npy`` files: one matrix, or matrices along the first axis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.stack import stack_of
+
+NAME = "NumPy .npy"
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file starts as NumPy's arrays do."""
+    return head.raw.startswith(b"\x93NUMPY")
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield the matrices of the array, read from disk as they are asked for.
+
+    Raises
+    ------
+    DataError
+        If the array is damaged, holds objects, or has the wrong number of axes.
+    """
+    try:
+        # Mapped, not read: a long recording never stands in memory as a whole; no pickle, ever.
+        array = np.load(reading.path, mmap_mode="r", allow_pickle=False)
+    except Exception as error:  # NumPy raises a dozen kinds over a damaged header
+        raise DataError(str(reading.path), f"its array cannot be read: {error}") from error
+    values = stack_of(reading, array, "its array")
+    reading.report.expect(len(values))
+    for matrix in values:
+        yield reading.frame(matrix)

@@ -1,0 +1,171 @@
+"""NumPy ``.npz`` files: our own recordings, CapContact frames, or any file with one stack."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.wires import QUANTITIES, Frame
+from tactile_graph_sources.readers import capcontact
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.stack import stack_of
+from tactile_graph_sources.readers.truth import Truth, truth_from_json
+
+NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file is a zip archive; NumPy's are the only ones read."""
+    return head.raw.startswith((b"PK\x03\x04", b"PK\x05\x06"))
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield the frames of whichever kind of archive it is.
+
+    Raises
+    ------
+    DataError
+        If the archive is damaged or holds no stack, or several and none is chosen by ``sensor``.
+    """
+    arrays = Archive(reading)
+    if {"cap", "ftir"} <= arrays.names.keys():
+        yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
+    elif "values" in arrays.names:
+        yield from _ours(reading, arrays)
+    else:
+        values = stack_of(reading, *_only(reading, arrays))
+        reading.report.expect(len(values))
+        for matrix in values:
+            yield reading.frame(matrix)
+
+
+class Archive:
+    """The arrays of an archive by name; each is read when it is asked for, never unpickled."""
+
+    def __init__(self, reading: Reading) -> None:
+        self.where = str(reading.path)
+        try:
+            with zipfile.ZipFile(reading.path) as archive:
+                members = archive.namelist()
+        except Exception as error:  # a damaged archive makes zipfile raise a dozen kinds
+            raise DataError(self.where, f"the archive is damaged: {error}") from error
+        self.names = {m.removesuffix(".npy"): m for m in members if m.endswith(".npy")}
+
+    def load(self, name: str) -> NDArray[Any]:
+        """Return an array.
+
+        Raises
+        ------
+        DataError
+            If it is damaged or holds objects.
+        """
+        try:
+            with zipfile.ZipFile(self.where) as archive:
+                data = archive.read(self.names[name])  # checks the CRC, unlike a partial read
+            return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
+        except Exception as error:
+            raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
+
+    def optional(self, name: str, shape: tuple[int, ...], kinds: str) -> NDArray[Any] | None:
+        """Return an array if it is there; a wrong shape or type is an error.
+
+        Raises
+        ------
+        DataError
+            If it is there and is not what it should be.
+        """
+        if name not in self.names:
+            return None
+        array = self.load(name)
+        if array.shape != shape or array.dtype.kind not in kinds:
+            raise DataError(
+                self.where,
+                f"array {name!r} has shape {array.shape} and type {array.dtype}, "
+                f"expected shape {shape}",
+            )
+        return array
+
+
+def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
+    where, wanted = str(reading.path), reading.told.sensor
+    if wanted:
+        if wanted not in arrays.names:
+            near = did_you_mean(wanted, arrays.names)
+            raise DataError(where, f"no array {wanted!r}, there are {one_of(arrays.names)}{near}")
+        reading.sensors[wanted] = None
+        return arrays.load(wanted), f"array {wanted!r}"
+    loaded = {name: arrays.load(name) for name in arrays.names}
+    stacks = [n for n, a in loaded.items() if a.ndim in (2, 3) and a.dtype.kind in "buif"]
+    if len(stacks) == 1:
+        return loaded[stacks[0]], f"array {stacks[0]!r}"
+    shapes = one_of(f"{n} {a.shape}" for n, a in loaded.items())
+    if stacks:
+        raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
+    raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}")
+
+
+def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | None:
+    pair = arrays.optional(name, (2,), "fiu")
+    if pair is None:
+        return None
+    x, y = float(pair[0]), float(pair[1])
+    if not (np.isfinite(pair).all() and min(x, y) > smallest):
+        raise DataError(arrays.where, f"{name} is ({x}, {y}), which no pad has")
+    return x, y
+
+
+def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
+    """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
+    values = stack_of(reading, arrays.load("values"), "array 'values'")
+    n = len(values)
+    valid = arrays.optional("valid", values.shape, "b")
+    times = arrays.optional("time_s", (n,), "fiu")
+    device_times = arrays.optional("device_time_s", (n,), "fiu")
+    gaps = arrays.optional("gap", (n,), "b")
+    labels = arrays.optional("label", (n,), "U")
+    quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
+    if quantity not in QUANTITIES:
+        raise DataError(arrays.where, f"unknown quantity {quantity!r}, known: {one_of(QUANTITIES)}")
+    pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
+    truths = _truths(reading, arrays, n)
+    reading.report.expect(n)
+    for k in range(n):
+        sensor = "" if labels is None else str(labels[k])
+        if reading.wants(sensor):
+            yield reading.frame(
+                values[k],
+                pitch_cm=pitch,
+                origin_cm=origin,
+                quantity=quantity,
+                time_s=_time(times, k),
+                sensor=sensor,
+                valid=None if valid is None else valid[k],
+                truth=truths[k],
+                device_time_s=_time(device_times, k),
+                gap=gaps is not None and bool(gaps[k]),
+            )
+
+
+def _time(times: NDArray[Any] | None, k: int) -> float | None:
+    return float(times[k]) if times is not None and np.isfinite(times[k]) else None
+
+
+def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth]:
+    text = arrays.optional("truth", (), "U")
+    if text is None:
+        return [None] * n
+    try:
+        truths = truth_from_json(str(text))
+        if len(truths) != n:
+            raise ValueError(f"truth of {len(truths)} frames for {n} frames")
+    except ValueError as error:
+        reading.report.trouble(reading.at("truth"), f"the truth is left out: {error}")
+        return [None] * n
+    return truths

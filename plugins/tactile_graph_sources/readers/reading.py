@@ -1,0 +1,171 @@
+"""``Reading``: one file while it is read, its troubles, and how its frames are made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph.steps import Report
+from tactile_graph.wires import Frame, Image, TrueObject
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.told import Told
+
+
+class Reading:
+    """One file on its way to frames.
+
+    Parameters
+    ----------
+    head : Head
+    told : Told
+        What the settings say; the file's own word counts where they say nothing.
+    report : Report
+        Takes counters and troubles.
+    index : int
+        Number of the first frame, where other files came before.
+    label : str
+        Put before the sensor's name in the frames' labels, where there are several files.
+    """
+
+    def __init__(
+        self, head: Head, told: Told, report: Report, index: int = 0, label: str = ""
+    ) -> None:
+        self.head = head
+        self.path: Path = head.path
+        self.told = told
+        self.report = report
+        self.index = index
+        self.label = label
+        self.sensors: dict[str, None] = {}
+        self.first_damage = ""
+        self._gaps: set[str] = set()
+        self._seen: dict[str, set[float]] = {}
+        self._fresh: set[str] = set()
+
+    def text(self) -> Iterator[tuple[int, str]]:
+        """Yield line numbers from 1 and lines without their ends, whatever ends them."""
+        with self.path.open(encoding=self.head.encoding, errors="backslashreplace") as file:
+            for number, line in enumerate(file, 1):
+                yield number, line.rstrip("\n")
+
+    def count_bytes(self, needle: bytes) -> int:
+        """Return how often ``needle`` stands in the file, to say how many frames to expect."""
+        n, tail = 0, b""
+        with self.path.open("rb") as file:
+            while block := file.read(1 << 20):
+                n += (tail + block).count(needle)
+                tail = (tail + block)[-len(needle) + 1 :] if len(needle) > 1 else b""
+        return n
+
+    def lines_from(self, needle: bytes) -> Iterator[str]:
+        """Yield the lines from the first one that starts with ``needle`` on; none without it."""
+        with self.path.open("rb") as file:
+            tail, place = b"", 0
+            while block := file.read(1 << 20):
+                found = (tail + block).find(b"\n" + needle)
+                if found >= 0:
+                    file.seek(place - len(tail) + found + 1)
+                    yield from (line.decode("utf-8", "backslashreplace") for line in file)
+                    return
+                place += len(block)
+                tail = block[-len(needle) :]
+
+    def at(self, line: int | str) -> str:
+        """Return a place in the file for messages."""
+        return f"{self.path}:{line}"
+
+    def damaged(self, line: int | str, what: str, sensor: str = "") -> None:
+        """Note a record that is left out; the next frame of the sensor is marked as after a gap.
+
+        Without a sensor's name the next frame of every sensor is.
+        """
+        self.report.count("damaged records skipped")
+        self.report.trouble(self.at(line), what)
+        self.first_damage = self.first_damage or f"line {line}: {what}"
+        self._gaps |= {sensor} if sensor else {"", *self.sensors}
+
+    def is_repeat(self, line: int | str, number: float, name: str, sensor: str = "") -> bool:
+        """Return whether a frame of that number was given before; if so, note that it is dropped.
+
+        Of frames with the same number the first whole one is kept.
+        """
+        seen = self._seen.setdefault(sensor, set())
+        if number in seen:
+            self.repeated(line, name)
+            return True
+        seen.add(number)
+        return False
+
+    def repeated(self, line: int | str, name: str) -> None:
+        """Note a frame that was given before and is dropped."""
+        self.report.count("repeated frames dropped")
+        self.report.trouble(self.at(line), f"{name} comes again; the first one is kept")
+
+    def wants(self, sensor: str) -> bool:
+        """Return whether the settings ask for that sensor, by name or part of it."""
+        self.sensors[sensor] = None
+        return self.told.sensor.lower() in sensor.lower()
+
+    def frame(
+        self,
+        values: NDArray[Any],
+        *,
+        pitch_cm: tuple[float, float] | None = None,
+        origin_cm: tuple[float, float] | None = None,
+        quantity: str = "raw",
+        factor: float = 1.0,
+        time_s: float | None = None,
+        sensor: str = "",
+        valid: NDArray[np.bool_] | None = None,
+        truth: tuple[TrueObject, ...] | None = None,
+        device_time_s: float | None = None,
+        gap: bool = False,
+    ) -> Frame:
+        """Return the next frame; cells that are NaN, infinite or not ``valid`` become invalid."""
+        with np.errstate(over="ignore"):
+            values = np.array(values, dtype=np.float64)  # the one copy: frames own their values
+            if factor != 1.0:
+                values *= factor
+        good = np.isfinite(values) if valid is None else np.isfinite(values) & valid
+        if good.all():
+            mask = None
+        else:
+            mask = good
+            values[~good] = 0.0  # a NaN left in place would spread through the first sum
+        image = Image(
+            values,
+            self._pitch(pitch_cm),
+            self.told.origin_cm or origin_cm or (0.0, 0.0),
+            self._quantity(quantity),
+            mask,
+        )
+        gap = gap or sensor in self._gaps
+        self._gaps.discard(sensor)
+        label = " ".join(filter(None, (self.label, sensor)))
+        frame = Frame(image, self.index, time_s, truth, device_time_s, gap, label)
+        self.index += 1
+        return frame
+
+    def _pitch(self, own: tuple[float, float] | None) -> tuple[float, float]:
+        pitch = self.told.pitch_cm or own
+        if pitch is None:
+            self._once("recordings whose pitch is assumed to be 1 cm")
+        return pitch or (1.0, 1.0)
+
+    def _quantity(self, own: str) -> str:
+        told = self.told.quantity
+        if told is not None and own not in ("raw", told):
+            raise DataError(
+                str(self.path), f"its values are {own}, the settings say {told}; leave that out"
+            )
+        return told or own
+
+    def _once(self, what: str) -> None:
+        if what not in self._fresh:
+            self._fresh.add(what)
+            self.report.count(what)

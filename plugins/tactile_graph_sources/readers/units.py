@@ -1,0 +1,65 @@
+"""Units of pressure and length as vendors spell them."""
+
+from __future__ import annotations
+
+import re
+
+_KILOPASCAL = {
+    "pa": 1e-3,
+    "hpa": 0.1,
+    "kpa": 1.0,
+    "mpa": 1e3,
+    "bar": 100.0,
+    "mbar": 0.1,
+    "mmhg": 0.133322387415,
+    "psi": 6.894757293168,
+    "n/cm2": 10.0,
+    "n/mm2": 1e3,
+    "kg/cm2": 98.0665,
+    "g/cm2": 0.0980665,
+    "atm": 101.325,
+}
+_CENTIMETRES = {"mm": 0.1, "cm": 1.0, "m": 100.0, "in": 2.54, "inch": 2.54, "inches": 2.54}
+_CENTIMETRES |= {f"{n}met{e}": f for n, f in (("milli", 0.1), ("centi", 1.0)) for e in ("er", "re")}
+_LENGTH = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([a-zA-Z]+)")
+
+
+def pressure_unit(text: str) -> tuple[str, float]:
+    """Return the quantity a unit stands for and the factor to it.
+
+    Parameters
+    ----------
+    text : str
+        A unit as a file spells it: ``mmHg``, ``KPa``, ``N/cm²``, ``raw``.
+
+    Returns
+    -------
+    (str, float)
+        ``("kilopascal", factor)`` for pressures, ``("raw", 1.0)`` for anything else.
+    """
+    name = text.strip().strip('"').lower().replace("²", "2").replace("^", "").replace(" ", "")
+    name = name.removesuffix("s") if name not in _KILOPASCAL else name
+    factor = _KILOPASCAL.get(name)
+    return ("raw", 1.0) if factor is None else ("kilopascal", factor)
+
+
+def length_cm(text: str, unit: str = "") -> float | None:
+    """Return a length in cm, as ``"5.08 mm"`` gives 0.508; None where it is no positive length.
+
+    Parameters
+    ----------
+    text : str
+        Number and unit.
+    unit : str
+        The unit, where it stands elsewhere.
+    """
+    found = _LENGTH.search(f"{text} {unit}")
+    if found is None:
+        return None
+    name = found[2].lower()
+    factor = _CENTIMETRES.get(name) or _CENTIMETRES.get(name.removesuffix("s"))
+    try:
+        number = float(found[1].replace(",", "."))
+    except ValueError:
+        return None
+    return number * factor if factor and 0.0 < number < 1e6 else None

@@ -1,0 +1,236 @@
+"""``Scene``: the objects that lie on a simulated pad, read from YAML or from a mapping."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from annotated_types import Ge, Gt, Len
+from numpy.typing import NDArray
+from pydantic import Field
+from tactile_graph_pads.contact import Grain
+from tactile_graph_pads.pad import read_file
+from tactile_graph_pads.records import inline, read_record
+
+from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
+
+SCENES = Path(__file__).parent / "scenes"
+Place = Literal["random"] | tuple[float, float]
+Angle = Literal["random"] | float
+Length = Annotated[float, Gt(0)]
+Grams = Annotated[float, Ge(0)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thing:
+    """What every object has, whatever its shape.
+
+    Parameters
+    ----------
+    weight_g : float
+        Its own weight.
+    place : "random" or (float, float)
+        Its centre, x and y in cm; random places keep it fully on the pad and off the others.
+    name : str
+        What it is called in the truth.
+    stacked_g : tuple of float
+        Weights piled on top.
+    stack_offset_cm : float
+        Standard deviation, along x and y, of where each stacked weight stands.
+    """
+
+    weight_g: Grams
+    place: Place = "random"
+    name: str = ""
+    stacked_g: tuple[Grams, ...] = ()
+    stack_offset_cm: Annotated[float, Ge(0)] = 0.0
+    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
+
+    @property
+    def total_g(self) -> float:
+        """Its weight with all that is stacked on it."""
+        return self.weight_g + sum(self.stacked_g)
+
+    def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
+        """Return its outline at a place."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc(Thing):
+    """A disc."""
+
+    shape: Literal["disc"] = "disc"
+    radius_cm: Length
+    angle_deg: ClassVar[Angle] = 0.0
+
+    def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
+        """Return its circle at a place."""
+        return Circle(x_cm, y_cm, self.radius_cm)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slab(Thing):
+    """A rectangle; ``angle_deg`` is that of its length."""
+
+    shape: Literal["rectangle"] = "rectangle"
+    length_cm: Length
+    breadth_cm: Length
+    angle_deg: Angle = "random"
+
+    def __post_init__(self) -> None:
+        if self.breadth_cm > self.length_cm:
+            raise ValueError(
+                f"length_cm is the longer side, got {self.length_cm:g} by {self.breadth_cm:g}"
+            )
+
+    def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
+        """Return its rectangle at a place."""
+        return Rectangle(x_cm, y_cm, self.length_cm, self.breadth_cm, angle_rad)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Oval(Thing):
+    """An ellipse; ``angle_deg`` is that of its major axis."""
+
+    shape: Literal["ellipse"] = "ellipse"
+    semi_major_cm: Length
+    semi_minor_cm: Length
+    angle_deg: Angle = "random"
+
+    def __post_init__(self) -> None:
+        if self.semi_minor_cm > self.semi_major_cm:
+            raise ValueError(
+                f"semi_major_cm is the longer half axis, got {self.semi_major_cm:g} and "
+                f"{self.semi_minor_cm:g}"
+            )
+
+    def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
+        """Return its ellipse at a place."""
+        return Ellipse(x_cm, y_cm, self.semi_major_cm, self.semi_minor_cm, angle_rad)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plate(Thing):
+    """A polygon: regular, by ``sides`` and ``radius_cm`` (to its corners), or by its corners.
+
+    Parameters
+    ----------
+    corners_cm : tuple of (float, float)
+        x right and y down, in order; its centroid comes to lie at the place.
+    sides : int
+        Number of corners of a regular polygon.
+    radius_cm : float
+        From the regular polygon's centre to its corners.
+    """
+
+    shape: Literal["polygon"] = "polygon"
+    corners_cm: Annotated[tuple[tuple[float, float], ...], Len(3)] | None = None
+    sides: Annotated[int, Ge(3)] | None = None
+    radius_cm: Length | None = None
+    angle_deg: Angle = "random"
+
+    def __post_init__(self) -> None:
+        regular = self.sides is not None and self.radius_cm is not None
+        if regular == (self.corners_cm is not None):
+            raise ValueError("a polygon takes either corners_cm or both sides and radius_cm")
+        if Polygon(self._corners.copy()).area_cm2 == 0.0:
+            raise ValueError("corners_cm: all corners lie on one line")
+
+    @property
+    def _corners(self) -> NDArray[np.float64]:
+        if self.corners_cm is not None:
+            return np.array(self.corners_cm, dtype=np.float64)
+        assert self.sides is not None
+        assert self.radius_cm is not None
+        turns = 2.0 * np.pi * np.arange(self.sides) / self.sides
+        return self.radius_cm * np.column_stack([np.cos(turns), -np.sin(turns)])
+
+    def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
+        """Return its polygon at a place, turned about its centroid."""
+        corners = self._corners
+        centre = Polygon(corners.copy())
+        u, v = (corners - (centre.x_cm, centre.y_cm)).T
+        cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+        return Polygon(np.column_stack([x_cm + u * cos + v * sin, y_cm - u * sin + v * cos]))
+
+
+Object = Annotated[Disc | Slab | Oval | Plate, Field(discriminator="shape")]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What lies on the pad.
+
+    Parameters
+    ----------
+    about : str
+        One line for people.
+    objects : tuple of objects
+        All on the pad together.
+    in_turn : tuple of tuples of objects
+        One group after the other instead, and round again.
+    hold : int
+        Frames for which each placement stays as it is; only the readings differ.
+    apart_cm : float
+        Least distance between objects placed at random, and from objects placed before.
+    sand : tuple of Grain
+        Grains of sand under single elements.
+    foam_cm : float, optional
+        Width of a foam pad on the array; the pad's own by default.
+    """
+
+    about: str = ""
+    objects: tuple[Object, ...] = ()
+    in_turn: tuple[tuple[Object, ...], ...] = ()
+    hold: Annotated[int, Ge(1)] = 1
+    apart_cm: Annotated[float, Ge(0)] = 0.0
+    sand: tuple[Grain, ...] = ()
+    foam_cm: Annotated[float, Ge(0)] | None = None
+    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
+
+    def __post_init__(self) -> None:
+        if self.objects and self.in_turn:
+            raise ValueError("a scene takes objects or in_turn, not both")
+
+    def group(self, placement: int) -> tuple[Disc | Slab | Oval | Plate, ...]:
+        """Return the objects of a placement, counted from 0."""
+        return self.in_turn[placement % len(self.in_turn)] if self.in_turn else self.objects
+
+
+@cache
+def scene_names() -> tuple[str, ...]:
+    """Return the names of the scenes that come with the plugin, sorted."""
+    return tuple(sorted(p.stem for p in SCENES.glob("*.yaml")))
+
+
+def load_scene(scene: str | Mapping[str, Any]) -> Scene:
+    """Return a scene by its name, by its YAML file, or from a mapping.
+
+    Parameters
+    ----------
+    scene : str or mapping
+        A name has no ending.
+
+    Raises
+    ------
+    UsageError
+        If no such scene or file is there.
+    RecordError
+        With everything wrong with it.
+    """
+    if isinstance(scene, Mapping):
+        return read_record(inline(scene, "scene"), Scene, "a scene")
+    path = Path(scene)
+    if path.suffix not in (".yaml", ".yml"):
+        if scene not in scene_names():
+            hint = did_you_mean(scene, scene_names()) or f"; there are: {one_of(scene_names(), 30)}"
+            raise UsageError(f"no scene named {scene!r}{hint}")
+        path = SCENES / f"{scene}.yaml"
+    return read_record(read_file(path, "scene"), Scene, "a scene")

@@ -1,0 +1,96 @@
+"""Write frames as a recording of ours: an ``.npz`` that ``recording`` reads back whole."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.truth import truth_to_json
+
+
+def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
+    """Return the number of frames written to ``path``, which appears whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        An existing file is replaced, at the end and at once.
+    frames : iterable of Frame
+        All of one shape, pitch, origin and quantity.
+
+    Raises
+    ------
+    ValueError
+        If there is no frame, or a frame lies on another grid than the first.
+
+    Notes
+    -----
+    Arrays: ``values`` (N, rows, columns), ``pitch_cm`` (2,), ``origin_cm`` (2,), ``quantity``;
+    where a frame has them ``valid`` (N, rows, columns), ``time_s``, ``device_time_s``, ``gap``,
+    ``label`` (N,), and ``truth``, a JSON text: for each frame null or a list of objects with
+    ``kind``, the fields of that shape, ``weight_g`` and ``name``.
+    """
+    arrays = _arrays(list(frames))
+    target = Path(path)
+    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            np.savez_compressed(file, allow_pickle=False, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(temporary, 0o666 & ~_umask())  # a temporary file is private, a recording is not
+        os.replace(temporary, target)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return len(arrays["values"])
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _grid(frame: Frame) -> tuple[Any, ...]:
+    image = frame.image
+    return image.shape, image.pitch_cm, image.origin_cm, image.quantity
+
+
+def _arrays(frames: list[Frame]) -> dict[str, Any]:
+    if not frames:
+        raise ValueError("there is no frame to write")
+    first = frames[0].image
+    for k, frame in enumerate(frames):
+        if _grid(frame) != _grid(frames[0]):
+            raise ValueError(
+                f"frame {k} is {frame.image}, the first is {first}; a recording has one grid"
+            )
+    arrays: dict[str, Any] = {
+        "values": np.stack([f.image.values for f in frames]),
+        "pitch_cm": np.array(first.pitch_cm, dtype=np.float64),
+        "origin_cm": np.array(first.origin_cm, dtype=np.float64),
+        "quantity": np.array(first.quantity),
+    }
+    if any(f.image.valid is not None for f in frames):
+        whole = np.ones(first.shape, dtype=bool)
+        arrays["valid"] = np.stack(
+            [whole if f.image.valid is None else f.image.valid for f in frames]
+        )
+    for name in ("time_s", "device_time_s"):
+        times = [getattr(f, name) for f in frames]
+        if any(t is not None for t in times):
+            arrays[name] = np.array([np.nan if t is None else t for t in times], dtype=np.float64)
+    if any(f.gap for f in frames):
+        arrays["gap"] = np.array([f.gap for f in frames])
+    if any(f.label for f in frames):
+        arrays["label"] = np.array([f.label for f in frames])
+    if any(f.truth is not None for f in frames):
+        arrays["truth"] = np.array(truth_to_json([f.truth for f in frames]))
+    return arrays

@@ -1,0 +1,1 @@
+"""Pictures for people: graphs as SVG and text, picture strips of results, tables."""

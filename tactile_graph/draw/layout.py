@@ -1,0 +1,311 @@
+"""Place boxes in columns from left to right, every wire going rightwards around the boxes.
+
+Layers by longest path, dummy places where a wire passes a column, barycentre sweeps against
+crossings (Sugiyama, Tagawa and Toda 1981, 10.1109/TSMC.1981.4308636), then heights by isotonic
+regression: each column's boxes come as near to their neighbours as their order allows.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right, insort
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+from typing import NamedTuple
+
+import networkx as nx
+
+COLUMN_GAP = 34.0
+ROW_GAP = 16.0
+WIRE_GAP = 12.0
+PORT_GAP = 15.0
+_SWEEPS = 12
+
+Key = str | tuple[int, int]
+"""A box by its name, or the place (wire, column) where a wire passes a column."""
+
+
+class Point(NamedTuple):
+    """A place on the drawing, y down."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a box stands: its top left corner and its size."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    @property
+    def middle(self) -> float:
+        """Height of the box's centre."""
+        return self.y + self.height / 2
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Places of the boxes, and for each wire the points it goes through, in pairs.
+
+    From an even point to the next a wire bends in the gap between two columns; from an odd one
+    to the next it runs straight through a column.
+    """
+
+    boxes: dict[str, Place]
+    routes: tuple[tuple[Point, ...], ...]
+    width: float
+    height: float
+
+
+def layout(
+    sizes: Mapping[str, tuple[float, float]],
+    wires: Sequence[tuple[str, str]],
+    label_widths: Sequence[float] = (),
+) -> Layout:
+    """Return a layout of boxes that depends on nothing but the order they are given in.
+
+    Parameters
+    ----------
+    sizes : mapping
+        Width and height of each box, by name.
+    wires : sequence of (start, end)
+        Two boxes may be joined by several wires; there is no cycle.
+    label_widths : sequence of float, optional
+        Room each wire's label needs just before its end.
+
+    Raises
+    ------
+    networkx.NetworkXUnfeasible
+        If the wires form a cycle.
+    """
+    layer = _layers(list(sizes), wires)
+    columns, links = _columns(sizes, wires, layer)
+    columns = _uncrossed(columns, links)
+    heights = {k: sizes[k][1] if isinstance(k, str) else 0.0 for c in columns for k in c}
+    middles = _middles(columns, links, heights)
+    lefts, widths = _column_places(sizes, wires, label_widths, columns, layer)
+    boxes: dict[str, Place] = {}
+    for name, (width, height) in sizes.items():
+        at = layer[name]
+        x = lefts[at] + (widths[at] - width) / 2
+        boxes[name] = Place(x, middles[name] - height / 2, width, height)
+    routes = _routes(boxes, wires, layer, middles, lefts, widths)
+    bottom = max([p.y + p.height for p in boxes.values()] + [p.y for r in routes for p in r])
+    return Layout(boxes, routes, lefts[-1] + widths[-1], bottom)
+
+
+def _layers(names: list[str], wires: Sequence[tuple[str, str]]) -> dict[str, int]:
+    """Return each box's column: one right of the rightmost box it reads."""
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    graph.add_nodes_from(names)
+    graph.add_edges_from(wires)
+    layer = {n: i for i, group in enumerate(nx.topological_generations(graph)) for n in group}
+    for name in reversed(names[1:]):
+        if graph.in_degree(name) == 0 and graph.out_degree(name) > 0:
+            # What reads nothing stands beside what reads it, not at the far left.
+            layer[name] = min(layer[n] for n in graph.successors(name)) - 1
+    return layer
+
+
+class _Links:
+    """Which places of the columns beside a place it is joined to."""
+
+    def __init__(self) -> None:
+        self.left: dict[Key, list[Key]] = {}
+        self.right: dict[Key, list[Key]] = {}
+
+    def join(self, a: Key, b: Key) -> None:
+        self.right.setdefault(a, []).append(b)
+        self.left.setdefault(b, []).append(a)
+
+
+def _columns(
+    sizes: Mapping[str, tuple[float, float]],
+    wires: Sequence[tuple[str, str]],
+    layer: dict[str, int],
+) -> tuple[list[list[Key]], _Links]:
+    columns: list[list[Key]] = [[] for _ in range(max(layer.values()) + 1)]
+    for name in sizes:
+        columns[layer[name]].append(name)
+    links = _Links()
+    for number, (start, end) in enumerate(wires):
+        before: Key = start
+        for column in range(layer[start] + 1, layer[end]):
+            columns[column].append((number, column))
+            links.join(before, (number, column))
+            before = (number, column)
+        links.join(before, end)
+    return columns, links
+
+
+def _uncrossed(columns: list[list[Key]], links: _Links) -> list[list[Key]]:
+    """Return the columns in the order with the fewest crossings of all the sweeps."""
+    best, fewest = columns, _crossings(columns, links)
+    order = [list(c) for c in columns]
+    for sweep in range(_SWEEPS):
+        if fewest == 0:
+            break
+        if sweep % 2 == 0:
+            for before, column in zip(order, order[1:], strict=False):
+                _sort(column, before, links.left)
+        else:
+            for before, column in zip(order[:0:-1], order[-2::-1], strict=True):
+                _sort(column, before, links.right)
+        crossings = _crossings(order, links)
+        if crossings < fewest:
+            best, fewest = [list(c) for c in order], crossings
+    return best
+
+
+def _sort(column: list[Key], before: list[Key], joined: dict[Key, list[Key]]) -> None:
+    rank = {key: float(i) for i, key in enumerate(before)}
+    own = {key: float(i) for i, key in enumerate(column)}
+    column.sort(key=lambda k: fmean([rank[j] for j in joined[k]]) if k in joined else own[k])
+
+
+def _crossings(columns: list[list[Key]], links: _Links) -> int:
+    total = 0
+    for column, after in zip(columns, columns[1:], strict=False):
+        rank = {key: i for i, key in enumerate(after)}
+        seen: list[int] = []
+        for key in column:
+            ends = sorted(rank[j] for j in links.right.get(key, []))
+            total += sum(len(seen) - bisect_right(seen, e) for e in ends)
+            for e in ends:
+                insort(seen, e)
+    return total
+
+
+def _middles(
+    columns: list[list[Key]], links: _Links, heights: dict[Key, float]
+) -> dict[Key, float]:
+    """Return the height of each place's centre; the topmost edge lies at 0."""
+    middles: dict[Key, float] = {}
+    for column in columns:
+        offsets = _offsets(column, heights)
+        middles.update({k: o - offsets[-1] / 2 for k, o in zip(column, offsets, strict=True)})
+    last = len(columns) - 1
+    for sweep in range(_SWEEPS + 1):
+        order = range(last + 1) if sweep % 2 == 0 else range(last, -1, -1)
+        for at in order:
+            _settle(columns[at], links, heights, middles, both=sweep > 2)
+    top = min(m - heights[k] / 2 for k, m in middles.items())
+    return {k: m - top for k, m in middles.items()}
+
+
+def _offsets(column: list[Key], heights: dict[Key, float]) -> list[float]:
+    """Return how far below the first each place of a column must stand at least."""
+    offsets = [0.0]
+    for above, below in zip(column, column[1:], strict=False):
+        gap = ROW_GAP if isinstance(above, str) and isinstance(below, str) else WIRE_GAP
+        offsets.append(offsets[-1] + (heights[above] + heights[below]) / 2 + gap)
+    return offsets
+
+
+def _settle(
+    column: list[Key],
+    links: _Links,
+    heights: dict[Key, float],
+    middles: dict[Key, float],
+    both: bool,
+) -> None:
+    """Move a column's places to their neighbours' heights, as near as order and room allow."""
+    wanted, weights = [], []
+    for key in column:
+        joined = links.left.get(key, [])
+        if both or not joined:
+            joined = joined + links.right.get(key, [])
+        pulls = [_pull(key, j) for j in joined]
+        total = sum(pulls)
+        wanted.append(
+            sum(p * middles[j] for p, j in zip(pulls, joined, strict=True)) / total
+            if total
+            else middles[key]
+        )
+        weights.append(total or 1.0)
+    offsets = _offsets(column, heights)
+    targets = [w - o for w, o in zip(wanted, offsets, strict=True)]
+    for key, low, offset in zip(column, _isotonic(targets, weights), offsets, strict=True):
+        middles[key] = low + offset
+
+
+def _pull(a: Key, b: Key) -> float:
+    """Return how much a joint wants to be level: long wires most, so that they run straight."""
+    return (1.0, 3.0, 9.0)[isinstance(a, tuple) + isinstance(b, tuple)]
+
+
+def _isotonic(targets: list[float], weights: list[float]) -> list[float]:
+    """Return the nearest non-decreasing sequence in weighted least squares (pool adjacent)."""
+    pools: list[tuple[float, float, int]] = []
+    for target, weight in zip(targets, weights, strict=True):
+        mean, total, count = target, weight, 1
+        while pools and pools[-1][0] > mean:
+            m, w, n = pools.pop()
+            mean = (m * w + mean * total) / (w + total)
+            total, count = total + w, count + n
+        pools.append((mean, total, count))
+    return [mean for mean, _, count in pools for _ in range(count)]
+
+
+def _column_places(
+    sizes: Mapping[str, tuple[float, float]],
+    wires: Sequence[tuple[str, str]],
+    label_widths: Sequence[float],
+    columns: list[list[Key]],
+    layer: dict[str, int],
+) -> tuple[list[float], list[float]]:
+    widths = [max([sizes[k][0] for k in c if isinstance(k, str)] + [0.0]) for c in columns]
+    gaps = [0.0] + [COLUMN_GAP] * (len(columns) - 1)
+    for (_, end), room in zip(wires, label_widths, strict=False):
+        gaps[layer[end]] = max(gaps[layer[end]], COLUMN_GAP + room if room else COLUMN_GAP)
+    lefts = [0.0]
+    for width, gap in zip(widths, gaps[1:], strict=False):
+        lefts.append(lefts[-1] + width + gap)
+    return lefts, widths
+
+
+def _routes(
+    boxes: dict[str, Place],
+    wires: Sequence[tuple[str, str]],
+    layer: dict[str, int],
+    middles: dict[Key, float],
+    lefts: list[float],
+    widths: list[float],
+) -> tuple[tuple[Point, ...], ...]:
+    ends = _port_heights(boxes, wires, layer, middles)
+    routes = []
+    for number, (start, end) in enumerate(wires):
+        a, b = boxes[start], boxes[end]
+        points = [Point(a.x + a.width, a.middle)]
+        right = Point(lefts[layer[start]] + widths[layer[start]], a.middle)
+        points += [right, right] if right.x > points[0].x else []
+        for column in range(layer[start] + 1, layer[end]):
+            y = middles[number, column]
+            points += [Point(lefts[column], y), Point(lefts[column] + widths[column], y)]
+        points.append(Point(b.x, ends[number]))
+        routes.append(tuple(points))
+    return tuple(routes)
+
+
+def _port_heights(
+    boxes: dict[str, Place],
+    wires: Sequence[tuple[str, str]],
+    layer: dict[str, int],
+    middles: dict[Key, float],
+) -> dict[int, float]:
+    """Return where on its box's left side each wire ends: those that come from above, above."""
+    arriving: dict[str, list[tuple[float, int]]] = {}
+    for number, (start, end) in enumerate(wires):
+        last = layer[end] - 1
+        key: Key = start if layer[start] == last else (number, last)
+        arriving.setdefault(end, []).append((middles[key], number))
+    heights = {}
+    for end, items in arriving.items():
+        gap = min(PORT_GAP, boxes[end].height / (len(items) + 1))
+        for i, (_, number) in enumerate(sorted(items)):
+            heights[number] = boxes[end].middle + (i - (len(items) - 1) / 2) * gap
+    return heights

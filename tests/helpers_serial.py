@@ -1,0 +1,186 @@
+"""What the kits send, written down independently of the decoders; and pads to send."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pad = NDArray[np.int64]
+
+
+def _crc_ccitt_false(data: bytes) -> int:
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = (crc << 1) ^ 0x1021 if crc & 0x8000 else crc << 1
+            crc &= 0xFFFF
+    return crc
+
+
+def _zero_runs(pad: Pad) -> bytes:
+    out, zeros = bytearray(), 0
+    for value in [*pad.ravel().tolist(), -1]:
+        if value == 0:
+            zeros += 1
+            if zeros == 254:
+                out += bytes([0, 254])
+                zeros = 0
+            continue
+        if zeros:
+            out += bytes([0, zeros])
+            zeros = 0
+        if value > 0:
+            out.append(value)
+    return bytes(out) + b"\xff"
+
+
+def _fabric(pad: Pad, i: int) -> bytes:
+    body = b"\x01" + struct.pack(">H", 512) + struct.pack(">256H", *pad.ravel()) + bytes([i % 256])
+    return b"\xaa" + body + struct.pack(">H", _crc_ccitt_false(body)) + b"\xcc"
+
+
+def _bare(pad: Pad, i: int) -> bytes:
+    return b"".join(struct.pack(">16H", *((row << 12) | pad[row])) for row in range(16))
+
+
+def _wiresens(pad: Pad, i: int) -> bytes:
+    flat = pad.ravel().tolist()
+    return b"".join(
+        struct.pack("<bH64HI", 1, start, *flat[start : start + 64], 4 * i + start // 64) + b"wr"
+        for start in range(0, 256, 64)
+    )
+
+
+def _glove(pad: Pad, i: int) -> bytes:
+    return b"".join(
+        bytes([0x3C + k, 0x01]) + struct.pack(">H", (k % 16 << 12) | (4095 - v)) + b"\x00"
+        for k, v in enumerate(pad.ravel().tolist())
+    )
+
+
+def _lines(pad: Pad, i: int) -> bytes:
+    return b"".join(b"".join(b"%d," % v for v in row) + b"\r\n" for row in pad.tolist())
+
+
+def _csv(pad: Pad) -> bytes:
+    return ",".join(map(str, pad.ravel().tolist())).encode()
+
+
+@dataclass
+class Kit:
+    """A kit: its preset, pad size, the values it can send, its encoder."""
+
+    preset: str
+    shape: tuple[int, int]
+    high: int
+    encode: Callable[[Pad, int], bytes]
+    low: int = 0
+    by_silence: bool = False
+    pieces: int = 1
+    can_tell: bool = True
+    device_time: Callable[[int], float] | None = None
+    lead_in: bytes = b""
+    needs_follower: bool = True
+    junk: bytes = field(default=b"rst:0x1 (POWERON_RESET)\r\nready\r\n")
+
+    def pad(self, rng: np.random.Generator) -> Pad:
+        """Return a pad as a user sees it: mostly empty, one blob, some noise."""
+        rows, columns = self.shape
+        y, x = np.mgrid[:rows, :columns]
+        cy, cx = rng.uniform(0, rows), rng.uniform(0, columns)
+        blob = self.high * np.exp(-((y - cy) ** 2 + (x - cx) ** 2) / 8.0)
+        noise = rng.integers(0, 3, self.shape)
+        return np.clip(blob.astype(np.int64) + noise, self.low, self.high)
+
+    def random_pad(self, rng: np.random.Generator) -> Pad:
+        """Return a pad of any values at all that the kit can send."""
+        return rng.integers(self.low, self.high + 1, self.shape)
+
+
+def _flexitac(rows: int) -> Kit:
+    return Kit(
+        f"flexitac-{rows}x32",
+        (rows, 32),
+        255,
+        lambda pad, i: b"\xaa\x55" + pad.astype(np.uint8).tobytes(),
+    )
+
+
+KITS = [
+    _flexitac(12),
+    _flexitac(16),
+    _flexitac(32),
+    Kit(
+        "fsrray",
+        (16, 16),
+        4095,
+        lambda pad, i: struct.pack("<II", 1000 * i, 1000 * i + 700) + pad.astype("<u2").tobytes(),
+        by_silence=True,
+        device_time=lambda i: 1e-3 * i,
+        needs_follower=False,
+    ),
+    Kit(
+        "m1616",
+        (16, 16),
+        4095,
+        lambda pad, i: b"\xaa\xab\xac" + pad.astype(">u2").tobytes() + struct.pack(">I", i),
+    ),
+    Kit("fabric-16x16", (16, 16), 4095, _fabric, needs_follower=False),
+    Kit("fabric-16x16-bare", (16, 16), 4095, _bare),
+    Kit(
+        "itas",
+        (16, 16),
+        255,
+        lambda pad, i: pad.astype(np.uint8).tobytes(),
+        low=1,
+        by_silence=True,
+        needs_follower=False,
+    ),
+    Kit("zero-runs-16x16", (16, 16), 254, lambda pad, i: _zero_runs(pad), can_tell=False,
+        lead_in=b"\xff", needs_follower=False),
+    Kit(
+        "pressure-mat-28x56",
+        (28, 56),
+        255,
+        lambda pad, i: pad.astype(np.uint8).tobytes() + b"\xff\xfe\xfe\xff",
+        lead_in=b"\xff\xfe\xfe\xff",
+        needs_follower=False,
+    ),
+    Kit("velostat-43x14", (43, 14), 1023, lambda pad, i: b"F," + _csv(pad) + b"\n",
+        can_tell=False, needs_follower=False),
+    Kit(
+        "fsr-8x8",
+        (8, 8),
+        4095,
+        lambda pad, i: (b"CFG,8,8\r\n" if i == 0 else b"")
+        + b"F,%d," % (2000 * i)
+        + _csv(pad)
+        + b"\r\n",
+        can_tell=False,
+        device_time=lambda i: 2e-3 * i,
+        needs_follower=False,
+    ),
+    Kit("bnl-16x16", (16, 16), 1023, _lines, by_silence=True, can_tell=False,
+        needs_follower=False),
+    Kit("wiresens-16x16", (16, 16), 4095, _wiresens, pieces=4, lead_in=b"wr",
+        needs_follower=False),
+    Kit("tactile-glove", (8, 8), 4095, _glove, pieces=64, lead_in=b"\x00", needs_follower=True),
+    Kit(
+        "fulai-glove",
+        (16, 16),
+        4095,
+        lambda pad, i: pad.astype("<f4").tobytes() + b"\x00\x00\x80\x7f",
+        lead_in=b"\x00\x00\x80\x7f",
+        needs_follower=False,
+    ),
+]  # fmt: skip
+
+
+def chunks(data: bytes, size: int) -> Iterable[bytes]:
+    """Cut a stream as a port might deliver it."""
+    return (data[i : i + size] for i in range(0, len(data), size))
