@@ -92,7 +92,7 @@ def cycled(call: Callable[[object], object], inputs: list[object]) -> Callable[[
 
 
 def by_hand() -> Callable[[Frame], object]:
-    """The same step functions called one after the other, without the engine."""
+    """The same step functions and conditions as a person would write them, without the engine."""
     pipeline = load("circle-3")
     steps = {n: node.bound() for n, node in pipeline.nodes.items()}
     threshold, subdivide, erode, dilate = (
@@ -101,7 +101,13 @@ def by_hand() -> Callable[[Frame], object]:
     boundary, hull, fit = (steps[n] for n in ("boundary", "hull", "circle"))
 
     def call(frame: Frame) -> object:
-        return fit(hull(boundary(dilate(erode(subdivide(threshold(frame.image))))).points))
+        footprint = threshold(frame.image)
+        if not (footprint.count > 0 and footprint.fraction < 1):
+            return None
+        eroded = erode(subdivide(footprint))
+        if not eroded.count > 0:
+            return None
+        return fit(hull(boundary(dilate(eroded))).points)
 
     return call
 
@@ -121,11 +127,15 @@ def one_frame() -> None:
         "tactile-graph, circle-3": cycled(runner, list(both)),  # type: ignore[arg-type]
         "the same steps by hand": cycled(by_hand(), list(both)),  # type: ignore[arg-type]
         "tactile-graph, an empty pad": cycled(
-            load("circle-3").runner(), list(empty_frames())  # type: ignore[arg-type]
+            load("circle-3").runner(),
+            list(empty_frames()),  # type: ignore[arg-type]
         ),
         "tactile-graph, the same frame again": lambda: runner(both[0]),
     }
-    peers = {"OpenCV script": ("cv2", opencv_script), "scikit-image script": ("skimage", skimage_script)}
+    peers = {
+        "OpenCV script": ("cv2", opencv_script),
+        "scikit-image script": ("skimage", skimage_script),
+    }
     for name, (module, make) in peers.items():
         if find_spec(module):
             ours[name] = cycled(make(), images)  # type: ignore[arg-type]

@@ -61,8 +61,6 @@ class Kernel(Generic[P, R]):
         The same in loops numba can compile; positional arguments only.
     """
 
-    __slots__ = ("__doc__", "__name__", "_call", "_calls_left", "_jitted", "loops", "reference")
-
     def __init__(self, reference: Callable[P, R], loops: Callable[..., R]) -> None:
         self.reference = reference
         self.loops = loops

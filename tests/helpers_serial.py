@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import select
 import struct
+import tty
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -184,3 +188,40 @@ KITS = [
 def chunks(data: bytes, size: int) -> Iterable[bytes]:
     """Cut a stream as a port might deliver it."""
     return (data[i : i + size] for i in range(0, len(data), size))
+
+
+class FakePad:
+    """A pad on a pseudo terminal behind a link, to be unplugged and plugged in again."""
+
+    def __init__(self, link: Path) -> None:
+        self.link = link
+        self.plug_in()
+
+    def plug_in(self) -> None:
+        """Appear: the link leads to a new terminal."""
+        self.host_end, self._far_end = os.openpty()
+        tty.setraw(self._far_end)
+        beside = self.link.with_suffix(".new")
+        beside.symlink_to(os.ttyname(self._far_end))
+        beside.replace(self.link)
+
+    def unplug(self) -> None:
+        """Go away; what the host has not read is lost."""
+        self.link.unlink()
+        os.close(self.host_end)
+        os.close(self._far_end)
+
+    def send(self, data: bytes) -> None:
+        """Send all of ``data``."""
+        while data:
+            data = data[os.write(self.host_end, data) :]
+
+    def asked(self, n: int = 1, timeout_s: float = 10.0) -> bytes:
+        """Return ``n`` bytes the host sent; empty if they do not come in time."""
+        got = b""
+        while len(got) < n:
+            ready, _, _ = select.select([self.host_end], [], [], timeout_s)
+            if not ready:
+                return b""
+            got += os.read(self.host_end, n - len(got))
+        return got

@@ -1,4 +1,4 @@
-"""The fitters family."""
+"""Fits of shapes to points."""
 
 from collections.abc import Mapping
 
@@ -7,5 +7,12 @@ from tactile_graph import hookimpl
 
 @hookimpl
 def tactile_graph_steps() -> Mapping[str, str]:
-    """Offer the fitters."""
-    return {}
+    """Offer the circle fits."""
+    names = (
+        "fit_circle",
+        "fit_circle_hyper",
+        "fit_circle_kasa",
+        "fit_circle_taubin",
+        "fit_circle_thesis",
+    )
+    return {name: f"tactile_graph_fitters.{name}:{name}" for name in names}

@@ -19,9 +19,7 @@ Corners: TypeAlias = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
 EPS = 2.0**-52
 
 
-def hull_polygon(
-    xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: float
-) -> Polygon:
+def hull_polygon(xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: float) -> Polygon:
     """Return the hull that ``corners`` finds.
 
     Parameters
@@ -71,7 +69,7 @@ def in_range(xy: NDArray[np.float64]) -> bool:
             size = abs(xy[i, k])
             if size != 0.0 and not SMALLEST <= size <= LARGEST:
                 return False
-    return xy.shape[0] > 0
+    return bool(xy.shape[0] > 0)
 
 
 @compiled_as_is
@@ -104,23 +102,10 @@ def _farthest(corners: NDArray[np.float64], start: int) -> int:
     """Return the corner farthest from ``start``."""
     best, largest = start, -1.0
     for i in range(corners.shape[0]):
-        distance = math.hypot(
-            corners[i, 0] - corners[start, 0], corners[i, 1] - corners[start, 1]
-        )
-        if distance > largest:
-            best, largest = i, distance
+        dx, dy = corners[i, 0] - corners[start, 0], corners[i, 1] - corners[start, 1]
+        if dx * dx + dy * dy > largest:
+            best, largest = i, dx * dx + dy * dy
     return best
-
-
-@compiled_as_is
-def _beside(corners: NDArray[np.float64], i: int, a: int, b: int) -> float:
-    """Return the distance of corner i from the line through corners a and b."""
-    dx, dy = corners[b, 0] - corners[a, 0], corners[b, 1] - corners[a, 1]
-    length = math.hypot(dx, dy)
-    along, across = dx / length, dy / length
-    return abs(
-        along * (corners[i, 1] - corners[a, 1]) - across * (corners[i, 0] - corners[a, 0])
-    )
 
 
 @compiled_as_is
@@ -129,22 +114,24 @@ def _thin(
 ) -> None:
     """Mark the corners to keep from ``start`` (kept) to ``end`` (left to the other chain)."""
     n = corners.shape[0]
-    count = (end - start) % n
-    last, widest = 0, 1  # offsets from start; on a convex chain the widest only moves on
+    last, widest = start, (start + 1) % n  # on a convex chain the widest only moves on
     kept[start] = True
-    for offset in range(2, count + 1):
-        a, b = (start + last) % n, (start + offset) % n
-        distance = _beside(corners, (start + widest) % n, a, b)
-        while widest + 1 < offset:
-            further = _beside(corners, (start + widest + 1) % n, a, b)
+    before, k = widest, (widest + 1) % n
+    while before != end:
+        x, y = corners[last, 0], corners[last, 1]
+        dx, dy = corners[k, 0] - x, corners[k, 1] - y
+        # Distance from the line last -> k, times the length of that line.
+        distance = abs(dx * (corners[widest, 1] - y) - dy * (corners[widest, 0] - x))
+        while widest != before:
+            following = (widest + 1) % n
+            further = abs(dx * (corners[following, 1] - y) - dy * (corners[following, 0] - x))
             if further < distance:
                 break
-            widest += 1
-            distance = further
-        if distance > limit:
-            last = offset - 1
-            widest = offset
-            kept[(start + last) % n] = True
+            widest, distance = following, further
+        if distance > limit * math.sqrt(dx * dx + dy * dy):
+            last, widest = before, k
+            kept[before] = True
+        before, k = k, (k + 1) % n
 
 
 @compiled_as_is

@@ -14,9 +14,7 @@ from tactile_graph_hull.nested import compiled_as_is
 from tactile_graph_hull.orientation import turn
 
 
-def hull_beneath_beyond(
-    points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0
-) -> Polygon:
+def hull_beneath_beyond(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Polygon:
     """Return the smallest convex polygon around the points, grown by one point at a time.
 
     Parameters

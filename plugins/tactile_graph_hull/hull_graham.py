@@ -48,11 +48,11 @@ def _graham_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]
     """Return the hull's corners, shape (K, 2); none if `turn` would not be exact."""
     if not in_range.reference(xy):
         return xy[:0]
-    points = [tuple(p) for p in (xy + 0.0).tolist()]
+    points: list[tuple[float, float]] = [(x, y) for x, y in (xy + 0.0).tolist()]
     pivot = min(points)
 
     def before(a: tuple[float, float], b: tuple[float, float]) -> int:
-        return -turn.reference(*pivot, *a, *b) or (1 if a > b else -1)
+        return -turn.reference(pivot[0], pivot[1], a[0], a[1], b[0], b[1]) or (1 if a > b else -1)
 
     others = [p for p in points if p != pivot]
     kept = [pivot]
@@ -96,7 +96,7 @@ def _turn_of(xy: NDArray[np.float64], a: int, b: int, c: int) -> int:
 @compiled_as_is
 def _lower(xy: NDArray[np.float64], i: int, k: int) -> bool:
     """Return whether point i has the lower x, or at the same x the lower y."""
-    return xy[i, 0] < xy[k, 0] or (xy[i, 0] == xy[k, 0] and xy[i, 1] < xy[k, 1])
+    return bool(xy[i, 0] < xy[k, 0] or (xy[i, 0] == xy[k, 0] and xy[i, 1] < xy[k, 1]))
 
 
 @compiled_as_is
@@ -113,9 +113,7 @@ def _sorted_around(xy: NDArray[np.float64], pivot: int) -> NDArray[np.int64]:
                 take_first = j >= high
                 if i < middle and j < high:
                     sense = _turn_of(xy, pivot, order[i], order[j])
-                    take_first = sense > 0 or (
-                        sense == 0 and not _lower(xy, order[j], order[i])
-                    )
+                    take_first = sense > 0 or (sense == 0 and not _lower(xy, order[j], order[i]))
                 if take_first:
                     merged[k] = order[i]
                     i += 1

@@ -79,7 +79,7 @@ def _not_inside(
     end = int(np.lexsort((ring[:, 1], ring[:, 0]))[-1])
     lower = ring[: end + 1]
     upper = np.vstack([ring[end:], ring[:1]])[::-1]
-    x, y = xy[:, 0], xy[:, 1]
+    x = xy[:, 0]
     outside = (x <= lower[0, 0] + near) | (x >= lower[-1, 0] - near)
     for chain, sign in ((lower, 1.0), (upper, -1.0)):
         k = np.clip(np.searchsorted(chain[:, 0], x) - 1, 0, len(chain) - 2)

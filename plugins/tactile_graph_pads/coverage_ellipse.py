@@ -2,7 +2,7 @@
 
 The area of the ellipse below a horizontal line, within a vertical strip, has an elementary
 primitive. Each row of elements has two lines and each column one strip, so a whole grid needs
-only six arc sines a row or column; an element's area is the difference of its two lines.
+only six arc tangents a row or column; an element's area is the difference of its two lines.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _reference(
 
     def primitive(x: Area) -> Area:
         root = np.sqrt(np.maximum((A - x) * (A + x), 0.0))
-        return np.asarray(0.5 * (x * root + A**2 * np.arcsin(x / A)))
+        return np.asarray(0.5 * (x * root + A**2 * np.arctan2(x, root)))
 
     top = np.arange(rows) * pitch_cm - y_cm
     lines = np.stack([top, top + element_cm])[:, :, None]
@@ -112,8 +112,10 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
             continue
         first, last = min(first, c), c + 1
         x0[c], x1[c] = max(left, -A), min(left + element_cm, A)
-        P0[c] = 0.5 * (x0[c] * math.sqrt((A - x0[c]) * (A + x0[c])) + A**2 * math.asin(x0[c] / A))
-        P1[c] = 0.5 * (x1[c] * math.sqrt((A - x1[c]) * (A + x1[c])) + A**2 * math.asin(x1[c] / A))
+        root = math.sqrt((A - x0[c]) * (A + x0[c]))
+        P0[c] = 0.5 * (x0[c] * root + A**2 * math.atan2(x0[c], root))
+        root = math.sqrt((A - x1[c]) * (A + x1[c]))
+        P1[c] = 0.5 * (x1[c] * root + A**2 * math.atan2(x1[c], root))
     for r in range(rows):
         top = r * pitch_cm - y_cm
         if top + element_cm <= -B or top >= B:
@@ -130,8 +132,10 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
             half = k * math.sqrt((B - h) * (B + h))
             s = min(max((m * h - half) * stretch, -A), A)
             e = min(max((m * h + half) * stretch, -A), A)
-            Ps = 0.5 * (s * math.sqrt((A - s) * (A + s)) + A**2 * math.asin(s / A))
-            Pe = 0.5 * (e * math.sqrt((A - e) * (A + e)) + A**2 * math.asin(e / A))
+            root = math.sqrt((A - s) * (A + s))
+            Ps = 0.5 * (s * root + A**2 * math.atan2(s, root))
+            root = math.sqrt((A - e) * (A + e))
+            Pe = 0.5 * (e * root + A**2 * math.atan2(e, root))
             left_below = h > -m * A
             right_below = h > m * A
             for c in range(first, last):

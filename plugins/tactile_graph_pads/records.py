@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
@@ -47,7 +47,7 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
     try:
         record = TypeAdapter(kind).validate_python(document.data)
     except ValidationError as error:
-        for e in error.errors(include_url=False):
+        for e in _one_a_place(document.data, error.errors(include_url=False)):
             _note(document, e, kind)
         raise RecordError(document.problems) from None
     _refuse_yes_for_numbers(document, document.data, record, ())
@@ -79,6 +79,19 @@ class _Inline(Document):
     def problem(self, message: str, *path: str | int, key: bool = False) -> None:
         place = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in path)
         self.problems.append(Problem(None, f"{self.file}{place}: {message}"))
+
+
+def _one_a_place(data: Any, errors: Sequence[Any]) -> list[Any]:
+    """Join what the arms of a union say about one value, which is wrong only once."""
+    joined: dict[Any, Any] = {}
+    for e in errors:
+        path, rest = _walk(data, e["loc"])
+        # what is unknown or missing below a value is a trouble of its own
+        key = (path, rest[-1:] if e["type"] in ("missing", "unexpected_keyword_argument") else ())
+        if key in joined:
+            e = {**joined[key], "msg": f"{joined[key]['msg']} or {e['msg'].removeprefix('Input ')}"}
+        joined[key] = e
+    return list(joined.values())
 
 
 def _note(document: Document, e: Any, kind: Any) -> None:
@@ -116,14 +129,18 @@ def _walk(data: Any, loc: Path) -> tuple[Path, Path]:
     path: list[str | int] = []
     rest: list[str | int] = []
     for part in loc:
-        if (isinstance(data, Mapping) and part in data) or (
-            isinstance(data, list | tuple) and isinstance(part, int) and part < len(data)
-        ):
-            data, rest = data[part], []
-            path.append(part)
-        else:
+        if not _holds(data, part):
             rest.append(part)
+            continue
+        data, rest = data[part], []
+        path.append(part)
     return tuple(path), tuple(rest)
+
+
+def _holds(data: Any, part: str | int) -> bool:
+    if isinstance(data, Mapping):
+        return part in data
+    return isinstance(data, list | tuple) and isinstance(part, int) and part < len(data)
 
 
 def _unknown_key(name: str, parents: Path, kind: Any) -> str:

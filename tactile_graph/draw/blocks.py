@@ -145,7 +145,7 @@ def _field(pipeline: Pipeline, ref: Ref) -> str:
     """Return the field a wire takes, but for a view that the engine takes by itself."""
     path = list(ref.path)
     views = {v for arm in arms(pipeline.types[ref.node]) for v in _views(arm)}
-    if path and (path[-1] in views and len(path) == 1 or ref.over_items):
+    if path and (ref.over_items or (len(path) == 1 and path[0] in views)):
         path.pop()
     return ".".join(path)
 

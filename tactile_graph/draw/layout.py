@@ -7,9 +7,11 @@ regression: each column's boxes come as near to their neighbours as their order 
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right, insort
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from statistics import fmean
 from typing import NamedTuple
 
@@ -32,6 +34,15 @@ class Point(NamedTuple):
     y: float
 
 
+class Joint(NamedTuple):
+    """A wire to lay: its ends, room for a label before its end, how much it wants to be level."""
+
+    start: str
+    end: str
+    room: float = 0.0
+    pull: float = 1.0
+
+
 @dataclass(frozen=True)
 class Place:
     """Where a box stands: its top left corner and its size."""
@@ -49,10 +60,10 @@ class Place:
 
 @dataclass(frozen=True)
 class Layout:
-    """Places of the boxes, and for each wire the points it goes through, in pairs.
+    """Places of the boxes, and for each wire the points it goes through.
 
-    From an even point to the next a wire bends in the gap between two columns; from an odd one
-    to the next it runs straight through a column.
+    By turns a wire bends in the gap between two columns and runs straight through a column; it
+    begins with a bend.
     """
 
     boxes: dict[str, Place]
@@ -61,21 +72,15 @@ class Layout:
     height: float
 
 
-def layout(
-    sizes: Mapping[str, tuple[float, float]],
-    wires: Sequence[tuple[str, str]],
-    label_widths: Sequence[float] = (),
-) -> Layout:
+def layout(sizes: Mapping[str, tuple[float, float]], wires: Sequence[Joint]) -> Layout:
     """Return a layout of boxes that depends on nothing but the order they are given in.
 
     Parameters
     ----------
     sizes : mapping
         Width and height of each box, by name.
-    wires : sequence of (start, end)
+    wires : sequence of Joint
         Two boxes may be joined by several wires; there is no cycle.
-    label_widths : sequence of float, optional
-        Room each wire's label needs just before its end.
 
     Raises
     ------
@@ -87,7 +92,7 @@ def layout(
     columns = _uncrossed(columns, links)
     heights = {k: sizes[k][1] if isinstance(k, str) else 0.0 for c in columns for k in c}
     middles = _middles(columns, links, heights)
-    lefts, widths = _column_places(sizes, wires, label_widths, columns, layer)
+    lefts, widths = _column_places(sizes, wires, columns, layer)
     boxes: dict[str, Place] = {}
     for name, (width, height) in sizes.items():
         at = layer[name]
@@ -98,11 +103,11 @@ def layout(
     return Layout(boxes, routes, lefts[-1] + widths[-1], bottom)
 
 
-def _layers(names: list[str], wires: Sequence[tuple[str, str]]) -> dict[str, int]:
+def _layers(names: list[str], wires: Sequence[Joint]) -> dict[str, int]:
     """Return each box's column: one right of the rightmost box it reads."""
     graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_nodes_from(names)
-    graph.add_edges_from(wires)
+    graph.add_edges_from((w.start, w.end) for w in wires)
     layer = {n: i for i, group in enumerate(nx.topological_generations(graph)) for n in group}
     for name in reversed(names[1:]):
         if graph.in_degree(name) == 0 and graph.out_degree(name) > 0:
@@ -117,28 +122,32 @@ class _Links:
     def __init__(self) -> None:
         self.left: dict[Key, list[Key]] = {}
         self.right: dict[Key, list[Key]] = {}
+        self.pulls: dict[tuple[Key, Key], float] = {}
 
-    def join(self, a: Key, b: Key) -> None:
+    def join(self, a: Key, b: Key, pull: float) -> None:
         self.right.setdefault(a, []).append(b)
         self.left.setdefault(b, []).append(a)
+        # Long wires pull most, so that they run straight.
+        pull *= (1.0, 3.0, 9.0)[isinstance(a, tuple) + isinstance(b, tuple)]
+        self.pulls[a, b] = self.pulls[b, a] = max(pull, self.pulls.get((a, b), 0.0))
 
 
 def _columns(
     sizes: Mapping[str, tuple[float, float]],
-    wires: Sequence[tuple[str, str]],
+    wires: Sequence[Joint],
     layer: dict[str, int],
 ) -> tuple[list[list[Key]], _Links]:
     columns: list[list[Key]] = [[] for _ in range(max(layer.values()) + 1)]
     for name in sizes:
         columns[layer[name]].append(name)
     links = _Links()
-    for number, (start, end) in enumerate(wires):
+    for number, (start, end, _, pull) in enumerate(wires):
         before: Key = start
         for column in range(layer[start] + 1, layer[end]):
             columns[column].append((number, column))
-            links.join(before, (number, column))
+            links.join(before, (number, column), pull)
             before = (number, column)
-        links.join(before, end)
+        links.join(before, end, pull)
     return columns, links
 
 
@@ -150,7 +159,7 @@ def _uncrossed(columns: list[list[Key]], links: _Links) -> list[list[Key]]:
         if fewest == 0:
             break
         if sweep % 2 == 0:
-            for before, column in zip(order, order[1:], strict=False):
+            for before, column in pairwise(order):
                 _sort(column, before, links.left)
         else:
             for before, column in zip(order[:0:-1], order[-2::-1], strict=True):
@@ -169,7 +178,7 @@ def _sort(column: list[Key], before: list[Key], joined: dict[Key, list[Key]]) ->
 
 def _crossings(columns: list[list[Key]], links: _Links) -> int:
     total = 0
-    for column, after in zip(columns, columns[1:], strict=False):
+    for column, after in pairwise(columns):
         rank = {key: i for i, key in enumerate(after)}
         seen: list[int] = []
         for key in column:
@@ -193,6 +202,7 @@ def _middles(
         order = range(last + 1) if sweep % 2 == 0 else range(last, -1, -1)
         for at in order:
             _settle(columns[at], links, heights, middles, both=sweep > 2)
+    _straighten(columns, heights, middles)
     top = min(m - heights[k] / 2 for k, m in middles.items())
     return {k: m - top for k, m in middles.items()}
 
@@ -200,10 +210,42 @@ def _middles(
 def _offsets(column: list[Key], heights: dict[Key, float]) -> list[float]:
     """Return how far below the first each place of a column must stand at least."""
     offsets = [0.0]
-    for above, below in zip(column, column[1:], strict=False):
-        gap = ROW_GAP if isinstance(above, str) and isinstance(below, str) else WIRE_GAP
-        offsets.append(offsets[-1] + (heights[above] + heights[below]) / 2 + gap)
+    for above, below in pairwise(column):
+        offsets.append(offsets[-1] + _apart(above, below, heights))
     return offsets
+
+
+def _apart(above: Key, below: Key, heights: dict[Key, float]) -> float:
+    gap = ROW_GAP if isinstance(above, str) and isinstance(below, str) else WIRE_GAP
+    return (heights[above] + heights[below]) / 2 + gap
+
+
+def _straighten(
+    columns: list[list[Key]], heights: dict[Key, float], middles: dict[Key, float]
+) -> None:
+    """Level each long wire over as many columns at a time as there is room for."""
+    wires: dict[int, list[tuple[Key | None, Key, Key | None]]] = {}
+    for column in columns:
+        for above, key, below in zip([None, *column], column, [*column[1:], None], strict=False):
+            if isinstance(key, tuple):
+                wires.setdefault(key[0], []).append((above, key, below))
+    for number in sorted(wires):
+        run: list[Key] = []
+        low, high = -math.inf, math.inf
+        for above, key, below in wires[number]:
+            top = -math.inf if above is None else middles[above] + _apart(above, key, heights)
+            bottom = math.inf if below is None else middles[below] - _apart(key, below, heights)
+            if max(low, top) > min(high, bottom):
+                _level(run, low, high, middles)
+                run, low, high = [], -math.inf, math.inf
+            run.append(key)
+            low, high = max(low, top), min(high, bottom)
+        _level(run, low, high, middles)
+
+
+def _level(run: list[Key], low: float, high: float, middles: dict[Key, float]) -> None:
+    wanted = fmean(middles[key] for key in run)
+    middles.update(dict.fromkeys(run, min(max(wanted, low), high)))
 
 
 def _settle(
@@ -219,7 +261,7 @@ def _settle(
         joined = links.left.get(key, [])
         if both or not joined:
             joined = joined + links.right.get(key, [])
-        pulls = [_pull(key, j) for j in joined]
+        pulls = [links.pulls[key, j] for j in joined]
         total = sum(pulls)
         wanted.append(
             sum(p * middles[j] for p, j in zip(pulls, joined, strict=True)) / total
@@ -231,11 +273,6 @@ def _settle(
     targets = [w - o for w, o in zip(wanted, offsets, strict=True)]
     for key, low, offset in zip(column, _isotonic(targets, weights), offsets, strict=True):
         middles[key] = low + offset
-
-
-def _pull(a: Key, b: Key) -> float:
-    """Return how much a joint wants to be level: long wires most, so that they run straight."""
-    return (1.0, 3.0, 9.0)[isinstance(a, tuple) + isinstance(b, tuple)]
 
 
 def _isotonic(targets: list[float], weights: list[float]) -> list[float]:
@@ -253,14 +290,13 @@ def _isotonic(targets: list[float], weights: list[float]) -> list[float]:
 
 def _column_places(
     sizes: Mapping[str, tuple[float, float]],
-    wires: Sequence[tuple[str, str]],
-    label_widths: Sequence[float],
+    wires: Sequence[Joint],
     columns: list[list[Key]],
     layer: dict[str, int],
 ) -> tuple[list[float], list[float]]:
     widths = [max([sizes[k][0] for k in c if isinstance(k, str)] + [0.0]) for c in columns]
     gaps = [0.0] + [COLUMN_GAP] * (len(columns) - 1)
-    for (_, end), room in zip(wires, label_widths, strict=False):
+    for _, end, room, _ in wires:
         gaps[layer[end]] = max(gaps[layer[end]], COLUMN_GAP + room if room else COLUMN_GAP)
     lefts = [0.0]
     for width, gap in zip(widths, gaps[1:], strict=False):
@@ -270,7 +306,7 @@ def _column_places(
 
 def _routes(
     boxes: dict[str, Place],
-    wires: Sequence[tuple[str, str]],
+    wires: Sequence[Joint],
     layer: dict[str, int],
     middles: dict[Key, float],
     lefts: list[float],
@@ -278,7 +314,7 @@ def _routes(
 ) -> tuple[tuple[Point, ...], ...]:
     ends = _port_heights(boxes, wires, layer, middles)
     routes = []
-    for number, (start, end) in enumerate(wires):
+    for number, (start, end, _, _) in enumerate(wires):
         a, b = boxes[start], boxes[end]
         points = [Point(a.x + a.width, a.middle)]
         right = Point(lefts[layer[start]] + widths[layer[start]], a.middle)
@@ -286,20 +322,21 @@ def _routes(
         for column in range(layer[start] + 1, layer[end]):
             y = middles[number, column]
             points += [Point(lefts[column], y), Point(lefts[column] + widths[column], y)]
-        points.append(Point(b.x, ends[number]))
+        left = Point(lefts[layer[end]], ends[number])
+        points += [left] if left.x == b.x else [left, Point(b.x, left.y)]
         routes.append(tuple(points))
     return tuple(routes)
 
 
 def _port_heights(
     boxes: dict[str, Place],
-    wires: Sequence[tuple[str, str]],
+    wires: Sequence[Joint],
     layer: dict[str, int],
     middles: dict[Key, float],
 ) -> dict[int, float]:
     """Return where on its box's left side each wire ends: those that come from above, above."""
     arriving: dict[str, list[tuple[float, int]]] = {}
-    for number, (start, end) in enumerate(wires):
+    for number, (start, end, _, _) in enumerate(wires):
         last = layer[end] - 1
         key: Key = start if layer[start] == last else (number, last)
         arriving.setdefault(end, []).append((middles[key], number))

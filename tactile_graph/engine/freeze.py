@@ -3,39 +3,67 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.points import Points
-from tactile_graph.wires.shapes import Circle, Ellipse, Rectangle
+from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
 
-FROZEN: frozenset[type] = frozenset(
-    {bool, int, float, complex, str, bytes, Image, Mask, Points, Circle, Ellipse, Rectangle}
-)
-"""Types that are frozen by construction and need no second look."""
+FROZEN: set[type] = {
+    *(bool, int, float, complex, str, bytes),
+    *(Image, Mask, Points, Circle, Ellipse, Rectangle, Polygon),
+}
+"""Types that need no second look: frozen by construction, or records of numbers met before."""
 
 
 def freeze(value: Any) -> Any:
     """Return the value with every array in it read-only and every list a tuple."""
-    kind = type(value)
+    kind = value.__class__
     if kind in FROZEN or value is None:
         return value
+    names = _FIELDS.get(kind)
+    if names is None:
+        names = _FIELDS[kind] = _fields(kind)
+        if _only_numbers(kind):
+            FROZEN.add(kind)
+            return value
+    for name in names:
+        field = getattr(value, name)
+        if field.__class__ not in FROZEN:
+            freeze(field)
+    return value if names else _freeze_container(value)
+
+
+_FIELDS: dict[type, tuple[str, ...]] = {}
+"""The fields of each record type met so far."""
+
+
+def _fields(kind: type) -> tuple[str, ...]:
+    if dataclasses.is_dataclass(kind):
+        return tuple(f.name for f in dataclasses.fields(kind))
+    return ()
+
+
+def _only_numbers(kind: type) -> bool:
+    """Return whether a frozen dataclass declares nothing but numbers, texts and yes/no."""
+    if not dataclasses.is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+        return False
+    hints = get_type_hints(kind)
+    return all(hints[f.name] in (bool, int, float, str) for f in dataclasses.fields(kind))
+
+
+def _freeze_container(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         value.setflags(write=False)
-        return value
-    if isinstance(value, tuple):
+    elif isinstance(value, tuple):
         items = [freeze(v) for v in value]
-        if all(a is b for a, b in zip(items, value, strict=True)):
-            return value
-        return kind(*items) if hasattr(kind, "_fields") else tuple(items)
-    if isinstance(value, list):
+        if any(a is not b for a, b in zip(items, value, strict=True)):
+            return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
+    elif isinstance(value, list):
         return tuple(freeze(v) for v in value)
-    if isinstance(value, dict):
+    elif isinstance(value, dict):
         for item in value.values():
             freeze(item)
-    elif dataclasses.is_dataclass(value):
-        for f in dataclasses.fields(value):
-            freeze(getattr(value, f.name))
     return value

@@ -25,6 +25,8 @@ from tactile_graph.pipeline.node import Node, NodeKind
 
 State = list[Any]
 Operation = Callable[[State], None]
+Block = tuple[tuple[int, Operation], ...]
+"""What runs only when an item needs it: slots and the operations that settle them."""
 Call = Callable[..., Any]
 
 
@@ -60,7 +62,7 @@ def _operation(
         return _view(item)
     node = item.node
     assert node is not None
-    blocks = [tuple(operations[s] for s in port.lazy) for port in item.inputs]
+    blocks = [tuple((s, operations[s]) for s in port.lazy) for port in item.inputs]
     time = plan.n_slots + item.slot
     if node.kind is NodeKind.FIRST_OF:
         body = _first_of(item, blocks)
@@ -72,7 +74,7 @@ def _operation(
         body = _guarded(item, node.guard, body)
     if item.constant:
         return _once(item.slot, time, body, blank)
-    return body if item.slot in set(plan.main) else _unless_settled(item.slot, body)
+    return body
 
 
 def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
@@ -82,14 +84,6 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
         if state[slot] is None:
             body(state)
             blank[slot] = state[slot]
-
-    return operation
-
-
-def _unless_settled(slot: int, body: Operation) -> Operation:
-    def operation(state: State) -> None:
-        if state[slot] is None:
-            body(state)
 
     return operation
 
@@ -154,15 +148,16 @@ def _guarded(item: Item, guard: Guard, body: Operation) -> Operation:
     return operation
 
 
-def _first_of(item: Item, blocks: list[tuple[Operation, ...]]) -> Operation:
+def _first_of(item: Item, blocks: list[Block]) -> Operation:
     slot = item.slot
     choices = [(port.slots[0], block) for port, block in zip(item.inputs, blocks, strict=True)]
 
     def operation(state: State) -> None:
         failed = value = None
         for source, block in choices:
-            for settle in block:
-                settle(state)
+            for lazy, settle in block:
+                if state[lazy] is None:
+                    settle(state)
             value = state[source]
             if value.__class__ not in NO_VALUE:
                 state[slot] = value
@@ -174,27 +169,39 @@ def _first_of(item: Item, blocks: list[tuple[Operation, ...]]) -> Operation:
     return operation
 
 
-def _pass(item: Item, blocks: list[tuple[Operation, ...]]) -> Operation:
+def _pass(item: Item, blocks: list[Block]) -> Operation:
     slot, source, block = item.slot, item.inputs[0].slots[0], blocks[0]
 
     def operation(state: State) -> None:
-        for settle in block:
-            settle(state)
+        for lazy, settle in block:
+            if state[lazy] is None:
+                settle(state)
         state[slot] = state[source]
 
     return operation
 
 
-def _call(
-    item: Item, node: Node, call: Call, time: int, blocks: list[tuple[Operation, ...]]
-) -> Operation:
-    plain = not node.each and not node.is_sink and not any(blocks)
+def _call(item: Item, node: Node, call: Call, time: int, blocks: list[Block]) -> Operation:
+    plain = not node.each and not node.is_sink
     if plain and all(p.required and not p.collects for p in item.inputs):
         if len(item.inputs) == 1:
-            return _call_of_one(item, node, call, time)
-        if len(item.inputs) == 2:
+            return _after(blocks[0], _call_of_one(item, node, call, time))
+        if len(item.inputs) == 2 and not any(blocks):
             return _call_of_two(item, node, call, time)
     return _call_of_any(item, node, call, time, blocks)
+
+
+def _after(block: Block, body: Operation) -> Operation:
+    if not block:
+        return body
+
+    def operation(state: State) -> None:
+        for lazy, settle in block:
+            if state[lazy] is None:
+                settle(state)
+        body(state)
+
+    return operation
 
 
 def _call_of_one(item: Item, node: Node, call: Call, time: int) -> Operation:
@@ -256,9 +263,7 @@ def _call_of_two(item: Item, node: Node, call: Call, time: int) -> Operation:
     return operation
 
 
-def _call_of_any(
-    item: Item, node: Node, call: Call, time: int, blocks: list[tuple[Operation, ...]]
-) -> Operation:
+def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Block]) -> Operation:
     """Any number of ports, optional ones, lists, sinks, and lazy inputs settled in turn."""
     slot, name, what = item.slot, item.name, step_label(node)
     ports = list(zip(item.inputs, blocks, strict=True))
@@ -267,8 +272,9 @@ def _call_of_any(
     def operation(state: State) -> None:
         arguments: dict[str, Any] = {}
         for port, block in ports:
-            for settle in block:
-                settle(state)
+            for lazy, settle in block:
+                if state[lazy] is None:
+                    settle(state)
             value = _collected(state, port, name) if port.collects else state[port.slots[0]]
             if value.__class__ in NO_VALUE:
                 if port.required or value.__class__ is Failed:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped
 from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
@@ -48,30 +48,30 @@ class Result(Mapping[str, Any]):
     ``result["circle"]`` is the output's value; `NoResult` says why where there is none.
     """
 
-    __slots__ = ("_inner", "_state", "frame", "plan", "reused")
+    __slots__ = ("_state", "plan")
+    reused: ClassVar[bool] = False
+    """Whether the frame was equal to the one before, so that nothing had to run."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        state: list[Any],
-        frame: Frame,
-        inner: dict[str, list[Result]] | None = None,
-        reused: bool = False,
-    ) -> None:
+    def __init__(self, plan: Plan, state: list[Any]) -> None:
         self.plan = plan
         self._state = state
-        self.frame = frame
-        self.reused = reused
-        self._inner = inner
 
     def again(self, frame: Frame) -> Result:
         """Return the same outcomes for an equal frame; they took no time."""
-        return Result(self.plan, self._state, frame, self._inner, reused=True)
+        state = self._state.copy()
+        state[0] = frame
+        return _Reused(self.plan, state)
+
+    @property
+    def frame(self) -> Frame:
+        """The frame this is the result of."""
+        frame: Frame = self._state[0]
+        return frame
 
     @property
     def inner(self) -> dict[str, list[Result]]:
         """For each node that ran a pipeline over a list, the results of its items."""
-        return self._inner or {}
+        return self._state[-1] or {}
 
     # -- outputs -----------------------------------------------------------------------------
 
@@ -195,3 +195,10 @@ class Result(Mapping[str, Any]):
             outcome = self.outcome(name)
             parts.append(f"{name}={outcome!r}")
         return f"<Result frame {self.frame.index}: {', '.join(parts)}>"
+
+
+class _Reused(Result):
+    """The result of a frame equal to the one before."""
+
+    __slots__ = ()
+    reused = True

@@ -38,7 +38,8 @@ class Runner:
         self.frame: Frame
         self.inner_results: dict[str, list[Result]] = {}
         n = self.plan.n_slots
-        self._blank: list[Any] = [None] * n + [0] * n
+        # Outcomes, times, and the results of embedded pipelines behind them.
+        self._blank: list[Any] = [None] * n + [0] * n + [None]
         self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
         self._repeatable = self.plan.repeatable
         self._last: Result | None = None
@@ -47,7 +48,6 @@ class Runner:
         self._quantity = ""
         # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
         self._rules = any(r.quantity is None for r in self.plan.rules)
-        self._maps = any(i.node.inner is not None for i in self.plan.nodes if i.node is not None)
         _make_room(self.plan.depth)
 
     @property
@@ -79,11 +79,10 @@ class Runner:
         state[0] = frame
         for settle in self._operations:
             settle(state)
-        if self._maps:
-            result = Result(self.plan, state, frame, self.inner_results)
+        if self.inner_results:
+            state[-1] = self.inner_results
             self.inner_results = {}
-        else:
-            result = Result(self.plan, state, frame)
+        result = Result(self.plan, state)
         self._last = result
         return result
 

@@ -136,6 +136,15 @@ class Layout:
         good: NDArray[np.bool_] = ((heads[:, at] & self.mask[at]) == self.want[at]).all(axis=1)
         return good
 
+    def beginnings(self, array: NDArray[np.uint8], start: int, stop: int) -> NDArray[np.int64]:
+        """Return the places from ``start`` to ``stop`` of a stream that look like beginnings."""
+        places = np.arange(start, stop)
+        for at in self.at_ahead:
+            places = places[(array[places + at] & self.mask[at]) == self.want[at]]
+            if len(places) == 0:
+                break
+        return places
+
     def checksum_ok(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Return which units carry the right checksum; all where there is none."""
         if self.crc is None:

@@ -148,7 +148,13 @@ class PacketFramer:
         self._locked = True
         self.counts.resyncs += self._ever
         self._ever = True
-        return found
+        if layout.anchor:
+            return found
+        # Row tags cannot tell the last byte of a frame from a lost first byte of the next one,
+        # so the first frame of a lock, whose beginning nothing vouches for, is not taken.
+        self._broken = True
+        self.counts.discarded_bytes += layout.size
+        return found + layout.size
 
     def _candidate(self, array: NDArray[np.uint8], at: int) -> int:
         """Return the next place from ``at`` on that may start a unit, or where to go on later."""
@@ -156,22 +162,17 @@ class PacketFramer:
         if layout.anchor:
             found = self._buffer.find(layout.anchor, at)
             return found if found >= 0 else max(at, len(array) - len(layout.anchor) + 1)
-        last = len(array) - layout.size - layout.ahead
-        stop = min(last, at + layout.size) + 1
-        windows = np.lib.stride_tricks.sliding_window_view(
-            array[at : stop + layout.ahead - 1], layout.ahead
-        )
-        hits = np.flatnonzero(layout.ahead_ok(windows[: stop - at]))
-        return at + int(hits[0]) if len(hits) else stop
+        stop = len(array) - layout.size - layout.ahead + 1
+        hits = layout.beginnings(array, at, stop)
+        return int(hits[0]) if len(hits) else stop
 
     def _alone(self, array: NDArray[np.uint8], found: int) -> bool:
         """Return whether no other place inside the unit looks like the beginning of one."""
         layout = self.layout
-        inside = array[found + 1 : found + layout.size + layout.ahead - 1]
+        end = found + layout.size
         if layout.anchor and layout.ahead == len(layout.anchor):
-            return inside.tobytes().find(layout.anchor) < 0
-        windows = np.lib.stride_tricks.sliding_window_view(inside, layout.ahead)
-        return not layout.ahead_ok(windows).any()
+            return self._buffer.find(layout.anchor, found + 1, end + layout.ahead - 1) < 0
+        return len(layout.beginnings(array, found + 1, end)) == 0
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found."""

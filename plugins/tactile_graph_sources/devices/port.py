@@ -22,7 +22,10 @@ except ImportError:  # not on Windows
 _TERMIOS_ERRORS: tuple[type[Exception], ...] = () if termios is None else (termios.error,)
 PORT_ERRORS: tuple[type[Exception], ...] = (OSError, TypeError, *_TERMIOS_ERRORS)
 
-PORT_OR_VALUE = (*PORT_ERRORS, ValueError)  # a URL or baud rate that makes no sense
+PORT_OR_VALUE: tuple[type[Exception], ...] = (
+    *PORT_ERRORS,
+    ValueError,
+)  # a URL or baud rate that makes no sense
 LARGEST_READ = 65536
 
 

@@ -56,6 +56,8 @@ class TextFramer:
                 continue
             if not rows:
                 self._claim()
+                self.counts.resyncs += self._run[0] and self._ever
+                self._ever = True
             rows.append(numbers)
             ends.append(self._place)
         self._close(rows, ends, out)
@@ -110,9 +112,6 @@ class TextFramer:
     def _units(self, rows: list[list[int]], ends: list[int]) -> Units:
         """Return a run of lines, with what went before it."""
         broken, opens = self._run
-        if broken and self._ever and rows:
-            self.counts.resyncs += 1
-        self._ever = self._ever or bool(rows)
         numbers = np.array(rows, dtype=np.int64).reshape(len(rows), self.n_numbers)
         time = numbers[:, 0] if self.timed else None
         cells = numbers[:, 1:] if self.timed else numbers

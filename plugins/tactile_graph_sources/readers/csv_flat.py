@@ -34,16 +34,16 @@ def read(reading: Reading) -> Iterator[Frame]:
     lead = max(layout.columns.values(), default=-1) + 1
     rows, columns = reading.told.shape_of(str(reading.path), layout.width - lead)
     reading.report.expect(reading.count_bytes(b"\n"))
-    started = not layout.columns
+    header = layout.header
     for number, line in reading.text():
         if is_blank(line) or is_comment(line):
             continue
         try:
             row = layout.dialect.row(line, layout.width)
         except ValueError as error:
-            if started or any(c.isdigit() for c in line):
+            if not header:
                 reading.damaged(number, str(error))
-            started = True  # the header, which is no damage
+            header = False
             continue
         frame = _frame(reading, layout, number, row, (rows, columns), lead)
         if frame is not None:

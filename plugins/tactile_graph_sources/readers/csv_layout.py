@@ -32,6 +32,7 @@ LONG_NAMES = {
 }
 FRAME_LINE = re.compile(r"\W*frame\W*(\d{1,9})\b.{0,80}", re.IGNORECASE | re.DOTALL)
 _BLANK = re.compile(r"[\s,;]*")
+ENDLESS = 1 << 30  # as a run of blank lines: none ends a matrix, only its last row does
 SMALLEST_SURE_SQUARE = 64
 MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 
@@ -45,6 +46,7 @@ class Layout:
     width: int = 0
     rows: int = 0
     blank_run: int = 1
+    header: bool = False
     columns: dict[str, int] = field(default_factory=dict)
     time_factor: float = 1.0
     trouble: str = ""
@@ -88,27 +90,47 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
         Whether there are no more lines.
     """
     content = [line for line in lines if not is_blank(line) and not is_comment(line)]
+    if content and not is_numeric(content[0]):  # a long table is long: its start must do
+        named, factor = name_columns(content[0])
+        if {"row", "column", "value"} <= named.keys():
+            content = content[:1000]
     numeric = [line for line in content if is_numeric(line)]
     if not numeric or 2 * len(numeric) < len(content):
         return None
     dialect = Dialect.of(numeric[:200])
     named, factor = ({}, 1.0) if is_numeric(content[0]) else name_columns(content[0])
+    header = bool(named) or _is_header(dialect, content[0], numeric)
     if {"row", "column", "value"} <= named.keys():
-        return Layout("long", dialect, len(named), columns=named, time_factor=factor)
-    width, extra = _width(dialect, numeric)
+        least = 1 + max(named.values())  # a header of more names than there are numbers is damage
+        width = max(_width(dialect, numeric), least)
+        return Layout("long", dialect, width, columns=named, time_factor=factor)
+    width = _width(dialect, numeric)
     lead = {k: v for k, v in named.items() if k in ("frame", "time") and v < 2}
     groups, run = _groups(lines, dialect)
     if width == 0:
         return None
     kind, rows = _decide(width, groups, told, bool(lead), whole)
     if kind != "flat":
-        return Layout(kind, dialect, width, rows, run, trouble=rows_trouble(kind, width, groups))
+        run = run if len(groups) > 1 else ENDLESS
+        trouble = _question(kind, width, groups)
+        return Layout(kind, dialect, width, rows, run, header, trouble=trouble)
     if not lead:
-        lead = _lead(dialect, numeric, width + extra, told)
-    return Layout("flat", dialect, width, columns=lead, time_factor=factor)
+        lead = _lead(dialect, numeric, width, told)
+    return Layout("flat", dialect, width, header=header, columns=lead, time_factor=factor)
 
 
-def rows_trouble(kind: str, width: int, groups: Sequence[int]) -> str:
+def _is_header(dialect: Dialect, line: str, numeric: Sequence[str]) -> bool:
+    """Return whether a first line that is no row of numbers has as many names as a row numbers."""
+    if is_numeric(line) or FRAME_LINE.fullmatch(line):
+        return False
+    return (
+        abs(len(line.split(dialect.separator)) - len(dialect.fields(numeric[-1])))
+        <= 1
+        < len(dialect.fields(numeric[-1]))
+    )
+
+
+def _question(kind: str, width: int, groups: Sequence[int]) -> str:
     """Return the question to ask where the layout cannot be told, else an empty text."""
     if kind != "unclear":
         return ""
@@ -118,15 +140,15 @@ def rows_trouble(kind: str, width: int, groups: Sequence[int]) -> str:
     )
 
 
-def _width(dialect: Dialect, numeric: Sequence[str]) -> tuple[int, int]:
-    """Return the usual number of values of a line, and the separators all lines end with."""
+def _width(dialect: Dialect, numeric: Sequence[str]) -> int:
+    """Return the usual number of values of a line, without separators that all lines end with."""
     fields = [dialect.fields(line) for line in numeric[:2000]]
     usual = Counter(len(f) for f in fields).most_common(1)[0][0]
     fields = [f for f in fields if len(f) == usual]
     extra = 0
     while extra < usual and not any(f[usual - 1 - extra].strip() for f in fields):
         extra += 1
-    return usual - extra, extra
+    return usual - extra
 
 
 def _groups(lines: Sequence[str], dialect: Dialect) -> tuple[list[int], int]:
@@ -148,7 +170,7 @@ def _groups(lines: Sequence[str], dialect: Dialect) -> tuple[list[int], int]:
         groups = [g for g in [*groups, size] if g]
         if not groups or Counter(groups).most_common(1)[0][0] > 1:
             return groups, run
-    return [sum(groups)], 1 << 30  # a blank line after every row, or one row: they say nothing
+    return [sum(groups)], ENDLESS
 
 
 def _decide(
@@ -162,7 +184,10 @@ def _decide(
         clear = told.rows or len(groups) > 1 or whole
         return ("stacked", told.rows or usual) if clear else ("unclear", 0)
     if told.rows is not None:
-        return ("stacked", told.rows) if usual == told.rows > 1 else ("flat", 0)
+        if usual == told.rows > 1:
+            return "stacked", usual
+        if width % told.rows == 0 or len(groups) < 2:
+            return "flat", 0
     if len(groups) > 1 and usual > 1:
         return "stacked", usual
     n = sum(groups)

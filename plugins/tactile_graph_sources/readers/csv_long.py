@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.csv_layout import Layout, is_blank, is_comment
-from tactile_graph_sources.readers.dialect import refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 
 NAME = "table, one cell a line (frame, row, col, value)"
+Cells = NDArray[np.float64]
 _LARGEST = 1e6
+_BATCH = 4096
 
 
 def recognises(head: Head) -> bool:
@@ -26,7 +27,7 @@ def recognises(head: Head) -> bool:
 def read(reading: Reading) -> Iterator[Frame]:
     """Yield a frame for each frame number, in the order in which the numbers first appear.
 
-    The cells may come in any order, so all are gathered first, as 44 bytes each. A cell the
+    The cells may come in any order, so all are gathered first, as 48 bytes each. A cell the
     file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1.
     """
     cells, lines = _gather(reading, reading.head.layout or Layout("long"))
@@ -59,7 +60,7 @@ def _first_of_each(
     name: str,
     place: NDArray[np.intp],
     inside: NDArray[np.bool_],
-    lines: NDArray[np.int32],
+    lines: NDArray[np.intp],
 ) -> NDArray[np.intp]:
     """Return which cells of a frame are kept: those on the pad, and the first of each place."""
     if not inside.all():
@@ -78,33 +79,75 @@ def _first_of_each(
     return candidates[first]
 
 
-def _gather(reading: Reading, layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def _gather(reading: Reading, layout: Layout) -> tuple[Cells, NDArray[np.intp]]:
     """Return frame, time (s), row, column and value of each cell, shape (N, 5), and its line."""
-    dialect, where = layout.dialect, layout.columns
-    frame, time = where.get("frame", where.get("time")), where.get("time")
-    row, column, value = where["row"], where["column"], where["value"]
-    cells, lines = array("d"), array("i")
-    started = False
-    for number, line in reading.text():
-        if is_blank(line) or is_comment(line):
-            continue
-        fields = dialect.fields(line)
+    text = reading.text()
+    next(_content(text), None)  # the header
+    cells, numbers = [np.empty((0, 5))], [np.empty(0, dtype=np.intp)]
+    while batch := list(islice(text, _BATCH)):
+        found = _at_once(layout, [line for _, line in batch])
+        if found is None:
+            found, kept = _one_by_one(reading, layout, batch)
+        else:
+            kept = [number for number, _ in batch]
+        cells.append(found)
+        numbers.append(np.array(kept, dtype=np.intp))
+    return np.concatenate(cells), np.concatenate(numbers)
+
+
+def _content(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
+    return ((n, line) for n, line in lines if not is_blank(line) and not is_comment(line))
+
+
+def _chosen(layout: Layout, table: Cells) -> Cells | None:
+    """Return a table's columns in our order; None where a row or column is no place on a pad."""
+    where = layout.columns
+    frame = where.get("frame", where.get("time"))
+    chosen = np.empty((len(table), 5))
+    chosen[:, 0] = 0.0 if frame is None else table[:, frame]
+    chosen[:, 1] = table[:, where["time"]] * layout.time_factor if "time" in where else np.nan
+    chosen[:, 2:] = table[:, [where["row"], where["column"], where["value"]]]
+    places = chosen[:, 2:4]
+    sound = np.isfinite(chosen[:, 0]).all() and np.isfinite(places).all()
+    if not sound or not ((places >= 0) & (places < _LARGEST) & (places % 1 == 0)).all():
+        return None
+    return chosen
+
+
+def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
+    """Return the cells of lines that are all in order, several times faster than one by one."""
+    separator = layout.dialect.separator
+    text = "" if separator is None else separator.join(lines)
+    if (
+        separator is None
+        or "_" in text
+        or any(line.count(separator) != layout.width - 1 for line in lines)
+    ):
+        return None
+    if layout.dialect.decimal_comma:
+        text = text.replace(",", ".")
+    try:
+        numbers = np.array(list(map(float, text.split(separator))))
+    except ValueError:
+        return None
+    return _chosen(layout, numbers.reshape(len(lines), layout.width))
+
+
+def _one_by_one(
+    reading: Reading, layout: Layout, batch: list[tuple[int, str]]
+) -> tuple[Cells, list[int]]:
+    """Return the cells of the lines that are in order, and report the others."""
+    cells, numbers = [np.empty((0, 5))], []
+    for number, line in _content(batch):
         try:
-            refuse_underscore(line)
-            index = 0.0 if frame is None else float(fields[frame])
-            time_s = np.nan if time is None else float(fields[time]) * layout.time_factor
-            r, c = float(fields[row]), float(fields[column])
-            v = float(fields[value] or "nan")
-            if not (
-                0 <= r < _LARGEST and 0 <= c < _LARGEST and r % 1 == c % 1 == 0 == index - index
-            ):
-                raise ValueError(f"row {r:g} and column {c:g} are no place on a pad")
-        except (ValueError, IndexError) as error:
-            if started:
-                reading.damaged(number, f"no cell: {str(error)[:80]}")
-            started = True  # the header
+            row = layout.dialect.row(line, layout.width)
+        except ValueError as error:
+            reading.damaged(number, f"no cell: {str(error)[:80]}")
             continue
-        cells.extend((index, time_s, r, c, v))
-        lines.append(number)
-    table = np.frombuffer(cells, dtype=np.float64) if cells else np.empty(0)
-    return table.reshape(-1, 5), np.frombuffer(lines, dtype=np.intc) if lines else np.empty(0, "i")
+        cell = _chosen(layout, np.array([row]))
+        if cell is None:
+            reading.damaged(number, f"no cell: {line.strip()[:60]!r} names no place on a pad")
+        else:
+            cells.append(cell)
+            numbers.append(number)
+    return np.concatenate(cells), numbers

@@ -8,7 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.csv_layout import FRAME_LINE, Layout, is_blank, is_comment
+from tactile_graph_sources.readers.csv_layout import (
+    ENDLESS,
+    FRAME_LINE,
+    Layout,
+    is_blank,
+    is_comment,
+)
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 
@@ -35,7 +41,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     """Yield a frame for each matrix that has all its rows."""
     layout = reading.head.layout or Layout("stacked")
     reading.told.agree(str(reading.path), layout.rows, layout.width)
-    endless = layout.blank_run > 2  # no blank line ends a matrix, only its last row does
+    endless, header = layout.blank_run == ENDLESS, layout.header
     matrix, blanks = _Matrix(), 0
     for number, line in reading.text():
         if is_blank(line):
@@ -46,8 +52,9 @@ def read(reading: Reading) -> Iterator[Frame]:
             yield from _close(reading, layout, matrix)
             matrix = _Matrix(index=int(label[1]) if label else None)
         blanks = 0
-        if not label and not is_comment(line):
+        if not label and not is_comment(line) and not header:
             _take(layout, matrix, number, line)
+        header = header and is_comment(line)
     yield from _close(reading, layout, matrix)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -79,15 +79,15 @@ class Reading:
         """Return a place in the file for messages."""
         return f"{self.path}:{line}"
 
-    def damaged(self, line: int | str, what: str, sensor: str = "") -> None:
-        """Note a record that is left out; the next frame of the sensor is marked as after a gap.
+    def damaged(self, line: int | str, what: str, sensors: Iterable[str] = ()) -> None:
+        """Note a record that is left out; the next frame is marked as after a gap.
 
-        Without a sensor's name the next frame of every sensor is.
+        Where sensors are named, the next frame of each of them is.
         """
         self.report.count("damaged records skipped")
         self.report.trouble(self.at(line), what)
         self.first_damage = self.first_damage or f"line {line}: {what}"
-        self._gaps |= {sensor} if sensor else {"", *self.sensors}
+        self._gaps |= set(sensors) or {""}
 
     def is_repeat(self, line: int | str, number: float, name: str, sensor: str = "") -> bool:
         """Return whether a frame of that number was given before; if so, note that it is dropped.
@@ -144,8 +144,8 @@ class Reading:
             self._quantity(quantity),
             mask,
         )
-        gap = gap or sensor in self._gaps
-        self._gaps.discard(sensor)
+        gap = gap or not self._gaps.isdisjoint(("", sensor))
+        self._gaps -= {"", sensor}
         label = " ".join(filter(None, (self.label, sensor)))
         frame = Frame(image, self.index, time_s, truth, device_time_s, gap, label)
         self.index += 1

@@ -89,7 +89,8 @@ def _keyed(reading: Reading, state: _State, number: int, key: str, value: str) -
         state.frame = int(value) if value.isdecimal() and len(value) < 10 else None
         state.time_s = None
         if state.frame is None:
-            reading.damaged(number, f"FRAME is followed by {value[:40]!r}, not by a number")
+            what = f"FRAME is followed by {value[:40]!r}, not by a number"
+            reading.damaged(number, what, reading.sensors)
     elif key == "SENSOR":
         state.sensor = _Sensor(number, value) if state.frame is not None else None
     elif key == "Time" and state.sensor is None:
@@ -124,12 +125,12 @@ def _close(reading: Reading, dialect: Dialect, state: _State) -> Iterator[Frame]
         return
     name = f"frame {state.frame} of sensor {sensor.name!r}"
     if not was_in_cells:
-        reading.damaged(sensor.line, f"{name} has no SENSELS", sensor.name)
+        reading.damaged(sensor.line, f"{name} has no SENSELS", [sensor.name])
         return
     try:
         values = _values(reading, dialect, sensor)
     except ValueError as error:
-        reading.damaged(sensor.line, f"{name}: {error}", sensor.name)
+        reading.damaged(sensor.line, f"{name}: {error}", [sensor.name])
         return
     if reading.is_repeat(sensor.line, state.frame or 0, name, sensor.name):
         return

@@ -1,0 +1,121 @@
+"""``boundary_scan``: the outermost cells of a footprint, seen from four sides."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.wires import Mask, Points
+from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
+
+BLOCK = 16  # cells looked at together
+
+
+def boundary_scan(mask: Mask) -> Points:
+    """Return the centres of the first on-cells met from the left, right, top and bottom.
+
+    Parameters
+    ----------
+    mask : Mask
+        The footprint.
+
+    Returns
+    -------
+    Points
+        Each boundary cell once, by rising x and, where x is the same, by rising y; none for an
+        empty mask. Holes and bays that no side looks into have no boundary here.
+
+    Notes
+    -----
+    The points are centres of cells, so a circle fitted to them is smaller than the footprint's
+    outline by about half a cell. `boundary_mask` gives the same cells as a mask. Source: thesis
+    3.1.2 and 4.2.3, figures 3.2 and 4.12.
+    """
+    values = mask.values
+    if not values.flags.c_contiguous:
+        values = np.ascontiguousarray(values)
+    return Points(scanned_centres(values, *mask.pitch_cm, *mask.origin_cm))
+
+
+def seen_cells(mask: NDArray[np.bool_], scans: tuple[str, ...]) -> NDArray[np.bool_]:
+    """Return the cells that any of the scans meets first, shape (rows, columns)."""
+    rows, columns = mask.shape
+    seen = np.zeros(mask.shape, dtype=np.bool_)
+    if mask.size:
+        r, c = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+        if "left" in scans:
+            seen[r, mask.argmax(axis=1)[r]] = True
+        if "right" in scans:
+            seen[r, columns - 1 - mask[:, ::-1].argmax(axis=1)[r]] = True
+        if "top" in scans:
+            seen[mask.argmax(axis=0)[c], c] = True
+        if "bottom" in scans:
+            seen[rows - 1 - mask[::-1].argmax(axis=0)[c], c] = True
+    return seen
+
+
+def _scanned_centres(
+    mask: NDArray[np.bool_], pitch_x: float, pitch_y: float, x0: float, y0: float
+) -> NDArray[np.float64]:
+    """Return the centres of the cells all four scans meet first, shape (N, 2), column by column."""
+    columns, rows = np.nonzero(seen_cells(mask, ("left", "right", "top", "bottom")).T)
+    return np.column_stack([x0 + (columns + 0.5) * pitch_x, y0 + (rows + 0.5) * pitch_y])
+
+
+@nested_twin_of(_scanned_centres)
+def scanned_centres(
+    mask: NDArray[np.bool_], pitch_x: float, pitch_y: float, x0: float, y0: float
+) -> NDArray[np.float64]:
+    """Do the same in loops: one pass over the rows, then the columns' cells in order."""
+    rows, columns = mask.shape
+    # Narrow counters, so that eight columns are updated by one instruction.
+    top, bottom = np.full(columns, rows, dtype=np.int32), np.full(columns, -1, dtype=np.int32)
+    # Rows whose left (right) end is in a column, as lists: first row there, next row of the same.
+    left_first, right_first = np.full(columns, rows), np.full(columns, rows)
+    left_next, right_next = np.full(rows + 1, rows), np.full(rows + 1, rows)
+    for r in range(rows - 1, -1, -1):
+        left, right = _first_on(mask[r]), columns - 1
+        if left == columns:
+            continue
+        while not mask[r, right]:
+            right -= 1
+        left_next[r], left_first[left] = left_first[left], r
+        right_next[r], right_first[right] = right_first[right], r
+        for c in range(left, right + 1):
+            on = mask[r, c]
+            top[c] = r if on else top[c]
+            bottom[c] = max(bottom[c], r if on else -1)
+    centres = np.empty((2 * (rows + columns), 2))
+    n = 0
+    for c in range(columns):
+        if bottom[c] < 0:
+            continue
+        x = x0 + (c + 0.5) * pitch_x
+        r, last = int(top[c]), int(bottom[c])
+        left, right = left_first[c], right_first[c]
+        while r < rows:
+            centres[n, 0], centres[n, 1] = x, y0 + (r + 0.5) * pitch_y
+            n += 1
+            if left <= r:
+                left = left_next[left]
+            if right <= r:
+                right = right_next[right]
+            following = min(left, right)
+            r = last if r < last < following else following
+    return centres[:n]
+
+
+@compiled_as_is
+def _first_on(row: NDArray[np.bool_]) -> int:
+    """Return where the first on-cell is, the row's length if there is none."""
+    start = 0
+    while start + BLOCK <= row.shape[0]:
+        any_on = False
+        for c in range(start, start + BLOCK):  # without a way out: one or two instructions
+            any_on |= row[c]
+        if any_on:
+            break
+        start += BLOCK
+    while start < row.shape[0] and not row[start]:
+        start += 1
+    return start

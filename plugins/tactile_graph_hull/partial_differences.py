@@ -1,0 +1,61 @@
+"""``partial_differences``: the change of an image from cell to cell, along x and along y."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.wires import Image, Mask
+
+
+class Differences(NamedTuple):
+    """Change along x (right) and along y (down), per cell, in units of the image."""
+
+    dx: Image
+    dy: Image
+
+
+def partial_differences(image: Image | Mask) -> Differences:
+    """Return each cell's difference from its left and from its upper neighbour.
+
+    Parameters
+    ----------
+    image : Image or Mask
+        The cells of a mask count as 0 and 1, its differences as quantity ``binary``.
+
+    Returns
+    -------
+    Differences
+        ``dx`` and ``dy``, per cell (not per cm). 0 where the cell or the neighbour does not exist
+        or is invalid.
+
+    Notes
+    -----
+    Source: thesis equations 3.1 and 3.2, after Dougherty and Giardina 1987.
+    """
+    dx, dy = differences(image)
+    return Differences(gradient_image(image, dx), gradient_image(image, dy))
+
+
+def differences(image: Image | Mask) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return [DX(f)] and [DY(f)] of equations 3.1 and 3.2, shape (rows, columns) each."""
+    values = np.asarray(image.values, dtype=np.float64)
+    dx, dy = np.zeros_like(values), np.zeros_like(values)
+    np.subtract(values[:, 1:], values[:, :-1], out=dx[:, 1:])
+    np.subtract(values[1:], values[:-1], out=dy[1:])
+    valid = getattr(image, "valid", None)
+    if valid is not None:
+        dx[:, 1:] *= valid[:, 1:] & valid[:, :-1]
+        dy[1:] *= valid[1:] & valid[:-1]
+    return dx, dy
+
+
+def gradient_image(image: Image | Mask, values: NDArray[np.float64]) -> Image:
+    """Return values on the image's grid, with its quantity and its missing cells."""
+    if isinstance(image, Image):
+        if image.valid is not None:
+            values[~image.valid] = 0.0
+        return image.with_values(values)
+    return Image(values, image.pitch_cm, image.origin_cm, "binary")

@@ -1,0 +1,44 @@
+"""The command itself: its name, version, exit codes, and the list of its own commands."""
+
+from __future__ import annotations
+
+import click
+
+from tactile_graph.cli.group import Group
+
+EXIT_CODES = """\b
+Exit codes:
+  0    done; every frame gave all its outputs, or skipped them for a reason
+  1    done, but some frame failed
+  2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
+  130  interrupted by Ctrl-C; what was done is kept
+  141  whoever read the output went away (| head)
+"""
+
+COMMANDS = {
+    "run": "Run a pipeline over recordings or another source.",
+    "check": "Report all that is wrong with pipeline files.",
+    "explain": "Say for one frame what each node did, and why.",
+    "graph": "Draw a pipeline's graph: SVG, mermaid or dot.",
+    "pipelines": "List the pipelines, and which evolved from which.",
+    "steps": "List the steps, or describe one of them.",
+    "plugins": "List the plugins, what they offer and what is wrong with them.",
+    "schema": "Write a JSON Schema of pipeline files, for editors.",
+}
+"""Name -> what ``--help`` says; the command ``x`` is ``tactile_graph.cli.x:x``."""
+
+
+@click.group(
+    cls=Group,
+    built_in=COMMANDS,
+    epilog=EXIT_CODES,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+@click.version_option(package_name="tactile-graph", prog_name="tactile-graph")
+def cli() -> None:
+    """Tactile images through graphs of plugin steps that YAML files declare."""
+
+
+def main() -> None:
+    """Run the command line and exit."""
+    cli.main()

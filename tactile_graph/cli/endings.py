@@ -1,0 +1,87 @@
+"""How a command ends: its exit code, and errors told to people without a traceback."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from tactile_graph.errors import PipelineError, TactileGraphError
+
+SOME_FAILED = 1
+NOT_DONE = 2
+INTERRUPTED = 130
+PIPE_CLOSED = 141
+
+
+def ending(run: Callable[[], Any], debug: bool) -> int:
+    """Run a command line and return its exit code; errors are shown on stderr.
+
+    Parameters
+    ----------
+    run : callable
+        Runs it; a returned number is an exit code.
+    debug : bool
+        Show tracebacks.
+    """
+    try:
+        code = run()
+        sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
+    except BrokenPipeError:
+        stop_writing()
+        return PIPE_CLOSED
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("interrupted", err=True)
+        return INTERRUPTED
+    except Exception as error:  # whatever a plugin raises: people get a line, not a traceback
+        show(error, debug)
+        return error.exit_code if isinstance(error, click.ClickException) else NOT_DONE
+    return code if isinstance(code, int) else 0
+
+
+def stop_writing() -> None:
+    """Send what is still to be written to stdout nowhere: whoever read it is gone."""
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+    except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
+        return
+
+
+def show(error: BaseException, debug: bool = False) -> None:
+    """Write an error to stderr."""
+    if debug:
+        traceback.print_exception(error, file=sys.stderr)
+    if isinstance(error, PipelineError):
+        from tactile_graph.cli.problems import show_problems
+        from tactile_graph.cli.terminal import console
+
+        show_problems(console(stderr=True), error)
+    elif isinstance(error, click.UsageError):
+        _line(error.format_message())
+        if error.ctx is not None:
+            click.echo(f"try: {error.ctx.command_path} --help", err=True)
+    else:
+        _line(words(error))
+        if not (debug or isinstance(error, TactileGraphError | click.ClickException | OSError)):
+            click.echo("(--debug shows where)", err=True)
+
+
+def words(error: BaseException) -> str:
+    """Return an error in words: its text, with its type unless that is one of ours."""
+    if isinstance(error, click.ClickException):
+        return error.format_message()
+    if isinstance(error, TactileGraphError):
+        return str(error)
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror or error}"
+    return f"{type(error).__name__}: {error}"
+
+
+def _line(text: str) -> None:
+    click.echo(f"{click.style('error:', fg='red', bold=True)} {text}", err=True)

@@ -1,0 +1,114 @@
+"""A click group whose commands, its own and the plugins', are imported only when they are called."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NoReturn
+
+import click
+
+from tactile_graph.cli import endings, shared
+from tactile_graph.errors import PluginError, did_you_mean, one_of
+from tactile_graph.plugins import registry
+
+
+class Group(click.Group):
+    """Commands by name; ``--help`` imports none of them.
+
+    Parameters
+    ----------
+    built_in : mapping
+        Name -> what ``--help`` says of it.
+    """
+
+    def __init__(self, *args: Any, built_in: Mapping[str, str], **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.built_in = dict(built_in)
+        shared.add_options(self)
+
+    # -- finding -----------------------------------------------------------------------------
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the project's own commands, then the plugins'."""
+        return [*self.built_in, *self._offered()]
+
+    def _offered(self) -> list[str]:
+        return [n for n in registry.installed().names("commands") if n not in self.built_in]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return the command, imported; None if there is none of that name.
+
+        Raises
+        ------
+        PluginError
+            If a plugin's command cannot be imported or is none.
+        """
+        if cmd_name in self.built_in:
+            from importlib import import_module
+
+            command = getattr(import_module(f"tactile_graph.cli.{cmd_name}"), cmd_name)
+        elif registry.installed().has("commands", cmd_name):
+            command = registry.installed().load("commands", cmd_name)
+        else:
+            return None
+        if not isinstance(command, click.Command):
+            label = registry.installed().offer("commands", cmd_name).plugin.label
+            raise PluginError(f"command {cmd_name!r} of {label} is no click command: {command!r}")
+        shared.add_options(command)
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command the first argument names, or say what is near it."""
+        name = args[0]
+        if self.get_command(ctx, name) is None and not name.startswith("-"):
+            names = self.list_commands(ctx)
+            hint = did_you_mean(name, names) or f"; there are: {one_of(names, 30)}"
+            ctx.fail(f"no command named {name!r}{hint}")
+        return super().resolve_command(ctx, args)
+
+    # -- help --------------------------------------------------------------------------------
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the two lists of commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.built_in.items()))
+        offered = [(name, self._summary(name)) for name in self._offered()]
+        if offered:
+            with formatter.section("Commands of plugins"):
+                formatter.write_dl(offered)
+
+    def _summary(self, name: str) -> str:
+        from tactile_graph.plugins.outline import summary_of
+
+        offer = registry.installed().offer("commands", name)
+        return summary_of(offer.target) or f"(of {offer.plugin.label})"
+
+    # -- running -----------------------------------------------------------------------------
+
+    def invoke(self, ctx: click.Context) -> None:
+        """Run the command asked for; what it returns is no exit code."""
+        try:
+            super().invoke(ctx)
+        except BrokenPipeError:
+            endings.stop_writing()
+            ctx.exit(endings.PIPE_CLOSED)
+
+    def main(  # type: ignore[override]
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> NoReturn | Any:
+        """Run a command line; unless told otherwise, show what went wrong and exit."""
+        given = list(sys.argv[1:] if args is None else args)
+        inner: Callable[..., Any] = super().main
+
+        def run() -> Any:
+            return inner(given, prog_name or "tactile-graph", complete_var, False, **extra)
+
+        return sys.exit(endings.ending(run, "--debug" in given)) if standalone_mode else run()

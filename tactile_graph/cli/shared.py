@@ -1,0 +1,49 @@
+"""The options every command takes, a plugin's too: which plugins may load, and ``--debug``."""
+
+from __future__ import annotations
+
+import click
+
+from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.plugins import registry
+
+
+def add_options(command: click.Command) -> None:
+    """Give a command the shared options unless it has its own of that name."""
+    taken = {name for p in command.params for name in p.opts}
+    for option in (_plugins(), _debug()):
+        if not taken & set(option.opts):
+            command.params.append(option)
+
+
+def _plugins() -> click.Option:
+    return click.Option(
+        ["--plugins"],
+        metavar="SELECTION",
+        is_eager=True,
+        expose_value=False,
+        callback=_restrict,
+        help="Load only these plugins (hull,filters) or all but these (-mrf); goes before the "
+        f"environment variable {registry.ENVIRONMENT}.",
+    )
+
+
+def _debug() -> click.Option:
+    return click.Option(
+        ["--debug"],
+        is_flag=True,
+        expose_value=False,
+        help="Show the traceback of an error.",
+    )
+
+
+def _restrict(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
+    if value is None:
+        return
+    registry.restrict(value)
+    wanted = registry.Selection.parse(value)
+    names = [p.name for p in registry.installed().plugins]
+    for name in sorted(wanted.only | wanted.blocked):
+        if name not in names:
+            hint = did_you_mean(name, names) or f"; there are: {one_of(names)}"
+            raise UsageError(f"--plugins: no plugin named {name!r}{hint}")

@@ -1,0 +1,24 @@
+"""The rich consoles that commands write to."""
+
+from __future__ import annotations
+
+import os
+from typing import NoReturn
+
+from rich.console import Console
+
+WIDE = 200
+
+
+class _Console(Console):
+    def on_broken_pipe(self) -> NoReturn:
+        """Let the command line end it: rich's own way exits with 1."""
+        raise BrokenPipeError
+
+
+def console(stderr: bool = False) -> Console:
+    """Return a console on stdout or stderr; away from a terminal its lines may be long."""
+    made = _Console(stderr=stderr, highlight=False, markup=False, emoji=False)
+    if not made.is_terminal and "COLUMNS" not in os.environ:
+        made.width = WIDE  # a table cut to 80 columns is of no use to grep
+    return made

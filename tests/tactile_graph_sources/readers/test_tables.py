@@ -1,0 +1,259 @@
+"""Plain tables: the three layouts, however they spell numbers, and what is wrong with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from helpers_recordings import blobs, flat_text, frames_of, long_text, stacked_text, write
+
+from tactile_graph.errors import DataError
+
+VALUES = blobs(5, 8, 8)
+WIDE = blobs(4, 6, 10, seed=2)
+
+
+def check(path: Path, expected: np.ndarray, **settings: object) -> None:
+    frames, report = frames_of(path, **settings)
+    assert not report.troubles
+    np.testing.assert_array_equal([f.image.values for f in frames], expected)
+
+
+SPELLINGS = {
+    "plain": lambda text: text,
+    "byte-order mark": lambda text: "\ufeff" + text,
+    "CRLF": lambda text: text.replace("\n", "\r\n"),
+    "old Mac line ends": lambda text: text.replace("\n", "\r"),
+    "UTF-16": lambda text: text.encode("utf-16"),
+    "semicolons": lambda text: text.replace(",", ";"),
+    "tabs": lambda text: text.replace(",", "\t"),
+    "blanks": lambda text: text.replace(",", "  "),
+    "blank after the comma": lambda text: text.replace(",", ", "),
+    "decimal commas, semicolons": lambda text: text.replace(",", ";").replace(".", ","),
+    "decimal commas, tabs": lambda text: text.replace(",", "\t").replace(".", ","),
+    "decimal commas, blanks": lambda text: text.replace(",", " ").replace(".", ","),
+    "trailing separator": lambda text: "\n".join(r + "," if r else r for r in text.split("\n")),
+    "quoted": lambda text: text.replace("0.00", '"0.00"'),
+    "comments": lambda text: "# made by hand\n" + text,
+}
+
+
+@pytest.mark.parametrize("spelling", SPELLINGS)
+@pytest.mark.parametrize("layout", [flat_text, stacked_text])
+def test_a_table_reads_the_same_however_it_is_spelled(
+    layout: object, spelling: str, tmp_path: Path
+) -> None:
+    check(write(tmp_path, SPELLINGS[spelling](layout(VALUES))), VALUES)
+
+
+@pytest.mark.parametrize("spelling", ["plain", "byte-order mark", "CRLF", "semicolons", "tabs"])
+def test_a_long_table_reads_the_same_however_it_is_spelled(spelling: str, tmp_path: Path) -> None:
+    check(write(tmp_path, SPELLINGS[spelling](long_text(WIDE))), WIDE)
+
+
+def test_decimal_commas_in_a_long_table(tmp_path: Path) -> None:
+    text = long_text(WIDE).replace(",", ";").replace(".", ",")
+    check(write(tmp_path, text), WIDE)
+
+
+@pytest.mark.parametrize("settings", [{"rows": 6, "columns": 10}, {"rows": 6}, {"columns": 10}])
+def test_told_shape_reads_frames_that_are_no_squares(
+    settings: dict[str, int], tmp_path: Path
+) -> None:
+    check(write(tmp_path, flat_text(WIDE)), WIDE, **settings)
+
+
+def test_told_shape_cuts_matrices_without_blank_lines_between_them(tmp_path: Path) -> None:
+    text = stacked_text(WIDE).replace("\n\n", "\n")
+    check(write(tmp_path, text), WIDE, rows=6, columns=10)
+
+
+def test_blank_lines_after_every_row_say_nothing(tmp_path: Path) -> None:
+    text = stacked_text(WIDE).replace("\n\n", "\n").replace("\n", "\n\n")
+    check(write(tmp_path, text), WIDE, rows=6, columns=10)
+
+
+def test_two_blank_lines_end_a_matrix_where_one_stands_after_every_row(tmp_path: Path) -> None:
+    text = stacked_text(WIDE).replace("\n\n", "\n\r").replace("\n", "\n\n").replace("\r", "\n\n")
+    check(write(tmp_path, text), WIDE)
+
+
+def test_one_matrix_alone_is_one_frame(tmp_path: Path) -> None:
+    check(write(tmp_path, stacked_text(WIDE[:1])), WIDE[:1])
+    check(write(tmp_path, stacked_text(blobs(1, 16, 16))), blobs(1, 16, 16))
+
+
+def test_frame_lines_divide_matrices(tmp_path: Path) -> None:
+    blocks = stacked_text(WIDE).split("\n\n")
+    text = "".join(f"Frame {k}:\n{block}\n" for k, block in enumerate(blocks))
+    check(write(tmp_path, text), WIDE)
+
+
+@pytest.mark.parametrize(
+    ("header", "first", "factor"),
+    [("time_s", 0.5, 1.0), ("t_ms", 500.0, 1e-3), ("timestamp", 0.5, 1.0), (None, 0.5, 1.0)],
+)
+def test_a_leading_time_column_gives_the_times(
+    header: str | None, first: float, factor: float, tmp_path: Path
+) -> None:
+    rows = flat_text(VALUES).splitlines()
+    names = ",".join(f"v{k}" for k in range(64))
+    text = f"{header},{names}\n" if header else ""
+    text += "".join(f"{first * k},{row}\n" for k, row in enumerate(rows))
+    frames, report = frames_of(write(tmp_path, text))
+    assert not report.troubles
+    assert [f.time_s for f in frames] == pytest.approx([first * factor * k for k in range(5)])
+    np.testing.assert_array_equal(frames[3].image.values, VALUES[3])
+
+
+def test_of_frames_with_the_same_number_the_first_is_kept(tmp_path: Path) -> None:
+    rows = flat_text(VALUES).splitlines()
+    names = ",".join(f"v{k}" for k in range(64))
+    numbered = [f"{k},{row}" for k, row in zip([0, 1, 1, 2, 3], rows, strict=True)]
+    path = write(tmp_path, "\n".join([f"frame,{names}", *numbered]))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], VALUES[[0, 1, 3, 4]])
+    assert report.troubles == [(f"{path}:4", "frame 1 comes again; the first one is kept")]
+    assert report.counts["repeated frames dropped"] == 1
+
+
+def test_long_columns_come_in_any_order_and_cells_in_any(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    cells = [(v, k, j, i) for (k, i, j), v in np.ndenumerate(WIDE)]
+    first, rest = cells[0], [cells[n] for n in rng.permutation(np.arange(1, len(cells)))]
+    rest.sort(key=lambda cell: cell[1] if cell[1] < 2 else 2)
+    lines = [f"{v},{k},{j + 1},{i + 1}" for v, k, j, i in [first, *rest]]
+    frames, report = frames_of(write(tmp_path, "\n".join(["Value,Frame,Col,Row", *lines])))
+    assert not report.troubles
+    assert {f.image.values.tobytes() for f in frames} == {v.tobytes() for v in WIDE}
+    assert all(f.image.valid is None for f in frames)
+
+
+def test_long_cells_left_out_are_invalid_and_repeated_ones_dropped(tmp_path: Path) -> None:
+    lines = long_text(WIDE).splitlines()
+    del lines[5]
+    lines.insert(20, "0,1,8,999")
+    path = write(tmp_path, "\n".join(lines))
+    frames, report = frames_of(path)
+    valid = frames[0].image.valid
+    assert valid is not None
+    assert np.argwhere(~valid).tolist() == [[0, 4]]
+    assert frames[0].image.values[1, 8] in (WIDE[0, 1, 8], 999.0)
+    assert report.counts["repeated cells dropped"] == 1
+    assert "1 cells come again; the first ones are kept" in report.troubles[0][1]
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("0,1,x,5", "no cell: 'x' is no number"),
+        ("0,1,2", "no cell: 3 values, not 4"),
+        ("0,-1,2,5", "no cell: '0,-1,2,5' names no place on a pad"),
+        ("0,0.5,2,5", "names no place on a pad"),
+        ("nan,0,2,5", "names no place on a pad"),
+        ("0,1_0,2,5", "'_' is no part of a number"),
+    ],
+)
+def test_a_damaged_line_of_a_long_table_is_named(line: str, what: str, tmp_path: Path) -> None:
+    lines = long_text(WIDE).splitlines()
+    lines.insert(7, line)
+    path = write(tmp_path, "\n".join(lines))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], WIDE)
+    assert report.troubles[0][0] == f"{path}:8"
+    assert what in report.troubles[0][1]
+
+
+def test_long_cells_outside_the_told_shape_are_reported(tmp_path: Path) -> None:
+    text = long_text(WIDE) + "3,6,0,5.0\n"
+    frames, report = frames_of(write(tmp_path, text), rows=6, columns=10)
+    assert len(frames) == 4
+    assert report.troubles[0][1] == "frame 3: 1 cells outside the told shape"
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("1,2,3", "3 values, not 64"),
+        (",".join(["1"] * 63 + ["--2"]), "'--2' is no number"),
+        (",".join(["1"] * 63 + ["1_0"]), "'_' is no part"),
+        (",".join(["1"] * 65), "65 values, not 64"),
+        (",".join(["1"] * 63 + ["2]"]), "'2]' is no number"),
+        ("boot v1.2 ok", "1 values, not 64"),
+    ],
+)
+def test_a_damaged_line_is_skipped_counted_and_named(line: str, what: str, tmp_path: Path) -> None:
+    rows = flat_text(VALUES).splitlines()
+    rows.insert(2, line)
+    path = write(tmp_path, "\n".join(rows))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], VALUES)
+    assert report.counts["damaged records skipped"] == 1
+    assert [place for place, _ in report.troubles] == [f"{path}:3"]
+    assert what in report.troubles[0][1]
+    assert [f.gap for f in frames] == [False, False, True, False, False]
+
+
+def test_start_up_garbage_before_the_frames_is_reported_not_read(tmp_path: Path) -> None:
+    path = write(tmp_path, "17,23\nready 1.0\n" + flat_text(VALUES))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], VALUES)
+    assert [place for place, _ in report.troubles] == [f"{path}:1", f"{path}:2"]
+
+
+def test_a_matrix_of_the_wrong_height_is_skipped(tmp_path: Path) -> None:
+    rows = stacked_text(WIDE).splitlines()
+    del rows[9]
+    path = write(tmp_path, "\n".join(rows))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], WIDE[[0, 2, 3]])
+    assert report.troubles == [(f"{path}:8", "a matrix of 5 rows, not 6")]
+    assert frames[1].gap
+
+
+def test_a_bad_row_costs_its_matrix_only(tmp_path: Path) -> None:
+    rows = stacked_text(WIDE).replace("\n\n", "\n").splitlines()
+    rows[8] = rows[8].replace(",", ",x", 1)
+    path = write(tmp_path, "\n".join(rows))
+    frames, report = frames_of(path, rows=6, columns=10)
+    np.testing.assert_array_equal([f.image.values for f in frames], WIDE[[0, 2, 3]])
+    assert "line 9: 'x" in report.troubles[0][1]
+
+
+def test_empty_nan_and_infinite_cells_are_invalid(tmp_path: Path) -> None:
+    rows = [row.split(",") for row in flat_text(VALUES).splitlines()]
+    rows[1][3], rows[1][4], rows[1][5] = "", "nan", "1e999"
+    frames, report = frames_of(write(tmp_path, "\n".join(map(",".join, rows))))
+    assert not report.troubles
+    valid = frames[1].image.valid
+    assert valid is not None
+    assert np.flatnonzero(~valid).tolist() == [3, 4, 5]
+    assert frames[1].image.values.ravel()[3:6].tolist() == [0.0, 0.0, 0.0]
+    assert frames[0].image.valid is None
+
+
+@pytest.mark.parametrize(
+    ("shape", "settings", "what"),
+    [
+        ((9, 6, 12), {}, "9 lines of 72 values could be one matrix or a frame a line"),
+        ((4, 6, 10), {"rows": 7}, "a frame is 60 values in a row, and the settings say rows=7"),
+        ((4, 6, 10), {"rows": 6, "columns": 9}, "rows=6, columns=9 of its shape"),
+    ],
+)
+def test_what_cannot_be_told_is_asked_for(
+    shape: tuple[int, int, int], settings: dict[str, int], what: str, tmp_path: Path
+) -> None:
+    path = write(tmp_path, flat_text(blobs(*shape)))
+    with pytest.raises(DataError, match=what):
+        frames_of(path, **settings)
+
+
+def test_a_square_number_of_values_is_a_square_frame(tmp_path: Path) -> None:
+    frames, _ = frames_of(write(tmp_path, flat_text(blobs(30, 5, 20))))
+    assert frames[0].image.shape == (10, 10)
+
+
+def test_a_lying_shape_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(DataError, match="6 rows and 10 columns, the settings say rows=7"):
+        frames_of(write(tmp_path, stacked_text(WIDE)), rows=7)
