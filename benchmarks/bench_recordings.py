@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from tactile_graph_sources.recording import recording
-from tactile_graph_sources.write_npz import write_npz
 
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
+from tactile_graph_sources.recording import recording
+from tactile_graph_sources.write_npz import write_npz
 
 ROUNDS = 5
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -23,12 +24,12 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
-from tactile_graph import Frame, load
+from tactile_graph import Frame, Pipeline, load, loads
 from tactile_graph.compiled import have_compiler, warm_up
 
 LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
 DISC5 = np.array(
-    [[0, 1, 1, 1, 0], [1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [0, 1, 1, 1, 0]], np.uint8
+    [[0, 0, 1, 0, 0], [0, 1, 1, 1, 0], [1, 1, 1, 1, 1], [0, 1, 1, 1, 0], [0, 0, 1, 0, 0]], np.uint8
 )
 Values = NDArray[np.float64]
 Circle = tuple[float, float, float]
@@ -91,7 +92,13 @@ def cycled(call: Callable[[object], object], inputs: list[object]) -> Callable[[
     return lambda: call(next(source))
 
 
-def by_hand() -> Callable[[Frame], object]:
+def unguarded() -> Pipeline:
+    """circle-3 without its three conditions."""
+    text = re.sub(r", when: [^}]*", "", load("circle-3").text)
+    return loads(text)
+
+
+def by_hand(guards: bool) -> Callable[[Frame], object]:
     """The same step functions and conditions as a person would write them, without the engine."""
     pipeline = load("circle-3")
     steps = {n: node.bound() for n, node in pipeline.nodes.items()}
@@ -102,10 +109,10 @@ def by_hand() -> Callable[[Frame], object]:
 
     def call(frame: Frame) -> object:
         footprint = threshold(frame.image)
-        if not (footprint.count > 0 and footprint.fraction < 1):
+        if guards and not (footprint.count > 0 and footprint.fraction < 1):
             return None
         eroded = erode(subdivide(footprint))
-        if not eroded.count > 0:
+        if guards and not eroded.count > 0:
             return None
         return fit(hull(boundary(dilate(eroded))).points)
 
@@ -125,7 +132,12 @@ def one_frame() -> None:
     images: list[object] = [f.image.values for f in both]
     ours = {
         "tactile-graph, circle-3": cycled(runner, list(both)),  # type: ignore[arg-type]
-        "the same steps by hand": cycled(by_hand(), list(both)),  # type: ignore[arg-type]
+        "the same steps by hand": cycled(by_hand(True), list(both)),  # type: ignore[arg-type]
+        "circle-3 without conditions": cycled(
+            unguarded().runner(),
+            list(both),  # type: ignore[arg-type]
+        ),
+        "the same by hand": cycled(by_hand(False), list(both)),  # type: ignore[arg-type]
         "tactile-graph, an empty pad": cycled(
             load("circle-3").runner(),
             list(empty_frames()),  # type: ignore[arg-type]
@@ -148,13 +160,19 @@ def one_frame() -> None:
             print(f"  {name.split()[0]:14} {x:.3f} {y:.3f} {r:.3f}")
     times = time_side_by_side(ours)
     print_table(times, "OpenCV script" if "OpenCV script" in times else "scikit-image script")
-    full, hand = times["tactile-graph, circle-3"], times["the same steps by hand"]
-    extra = [a - b for a, b in zip(full.rounds_us, hand.rounds_us, strict=True)]
-    print(f"engine cost per node: {statistics.median(extra) / 7:.3f} us (7 nodes, target 1 us)")
+    full = times["tactile-graph, circle-3"]
+    for what, with_it, without in (
+        ("with its three conditions", "tactile-graph, circle-3", "the same steps by hand"),
+        ("without conditions", "circle-3 without conditions", "the same by hand"),
+    ):
+        pairs = zip(times[with_it].rounds_us, times[without].rounds_us, strict=True)
+        extra = statistics.median(a - b for a, b in pairs) / 7
+        print(f"engine cost per node, {what}: {extra:.2f} us (7 nodes, target 1 us)")
     share = times["tactile-graph, an empty pad"].ratio_to(full)[0]
     print(f"an empty pad takes {100 * share:.1f} % of a full frame (target 10 %)")
-    result = runner(both[1])
-    print("per node, us: " + ", ".join(f"{n} {t:.2f}" for n, t in result.times_us.items()) + "\n")
+    spent = [runner(both[i % 2]).times_us for i in range(400)]
+    medians = {n: statistics.median(t[n] for t in spent) for n in spent[0]}
+    print("per node, us: " + ", ".join(f"{n} {t:.2f}" for n, t in medians.items()) + "\n")
 
 
 def start_up(rounds: int = 15) -> None:

@@ -12,11 +12,11 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+
+from tactile_graph.steps import Report
 from tactile_graph_sources.sample import FOLDER
 from tactile_graph_sources.simulate import simulate
 from tactile_graph_sources.write_npz import write_npz
-
-from tactile_graph.steps import Report
 
 
 def make_discs(path: Path, seed: int) -> int:

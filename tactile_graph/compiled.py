@@ -59,6 +59,12 @@ class Kernel(Generic[P, R]):
         Plain and readable; what the twin is tested against.
     loops : callable
         The same in loops numba can compile; positional arguments only.
+
+    Attributes
+    ----------
+    call : callable
+        Whichever of the two serves now. A step in a hurry calls ``kernel.call(…)``, which spares
+        the way through the object; fetch it anew for each call.
     """
 
     def __init__(self, reference: Callable[P, R], loops: Callable[..., R]) -> None:
@@ -72,28 +78,42 @@ class Kernel(Generic[P, R]):
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Run whichever of the two serves now; positional arguments only."""
-        return self._call(*args)
+        if kwargs:
+            raise TypeError(f"{self.__name__}() takes positional arguments only, got {[*kwargs]}")
+        return self.call(*args)
 
     def reset(self) -> None:
         """Go back to the start: reference first, unless the mode or `warm_up` says otherwise."""
         wanted = mode()
-        self._calls_left = SWITCH_AFTER
+        self.calls_left = SWITCH_AFTER
         if wanted == "plain" or not have_compiler():
-            self._call: Callable[..., R] = self.reference
+            self.call: Callable[..., R] = self.reference
         elif wanted == "compiled" or _warm:
-            self._call = self._first_compiled
+            self.call = self._first_compiled
         else:
-            self._call = self._counted
+            self.call = self._counted
 
     def _counted(self, *args: Any) -> R:
-        self._calls_left -= 1
-        if self._calls_left < 0:
+        self.calls_left -= 1
+        if self.calls_left < 0:
             return self._first_compiled(*args)
         return self.reference(*args)  # type: ignore[call-arg]
 
     def _first_compiled(self, *args: Any) -> R:
-        self._call = self.compiled
-        return self._call(*args)
+        try:
+            self.call = self.compiled
+        except ImportError:  # installed but broken
+            if mode() == "compiled":
+                raise
+            self.call = self.reference
+        return self.call(*args)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What lets compiled loops call this kernel as they call a function of their own."""
+        from numba.core.types import Dispatcher
+
+        return Dispatcher(self.compiled)
 
     @property
     def compiled(self) -> Callable[..., R]:
@@ -112,6 +132,11 @@ def compiled_twin_of(reference: Callable[P, R]) -> Callable[[Callable[..., R]], 
         return Kernel(reference, loops)
 
     return pair
+
+
+def compiled_as_is(loops: Callable[P, R]) -> Kernel[P, R]:
+    """Decorate loops that are their own reference: plain Python, compiled from the same text."""
+    return Kernel(loops, loops)
 
 
 def warm_up() -> None:

@@ -93,6 +93,15 @@ def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
+def shown(value: object) -> str:
+    """Return a value as errors show it: cut where it is long."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "a very long number"
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
 def one_of(allowed: Iterable[str], most: int = 12) -> str:
     """Return the allowed names as a readable list, cut after ``most``."""
     names = sorted(str(a) for a in allowed)

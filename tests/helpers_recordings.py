@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tactile_graph_sources.recording import recording
 
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
+from tactile_graph_sources.recording import recording
 
 Array = NDArray[np.float64]
 SHARED = Path(__file__).parents[1].parent / "shared/data"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import select
 import struct
+import threading
 import tty
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -216,12 +217,11 @@ class FakePad:
         while data:
             data = data[os.write(self.host_end, data) :]
 
-    def asked(self, n: int = 1, timeout_s: float = 10.0) -> bytes:
-        """Return ``n`` bytes the host sent; empty if they do not come in time."""
+    def asked(self, n: int, unless: threading.Event) -> bytes:
+        """Return ``n`` bytes the host sent; empty once ``unless`` is set."""
         got = b""
-        while len(got) < n:
-            ready, _, _ = select.select([self.host_end], [], [], timeout_s)
-            if not ready:
-                return b""
-            got += os.read(self.host_end, n - len(got))
+        while len(got) < n and not unless.is_set():
+            ready, _, _ = select.select([self.host_end], [], [], 0.05)
+            if ready:
+                got += os.read(self.host_end, n - len(got))
         return got

@@ -24,7 +24,7 @@ class Close:
 
     Notes
     -----
-    Thesis sections 3.1.3 and 4.3.9 (filling voids). The erosion takes the element turned by half
+    Thesis sections 3.1.3 and 4.3.9 (filling voids). The dilation takes the element turned by half
     a turn, so that closing never turns a cell off and closing twice is closing once, whatever
     the element. Done as on an endless plane: the dilation may run over the edge of the pad, or a
     footprint at the edge would be eaten there.
@@ -34,10 +34,10 @@ class Close:
 
     def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
         parsed = parse_element(element)
-        self._plan = make_plan(parsed, parsed.reflected, dilate=True, border=border)
+        self._plan = make_plan(parsed.reflected, parsed, dilate=True, border=border)
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the closed mask."""
         out = np.empty(mask.values.shape, np.bool_)
-        sweep(mask.values, self._plan, out)
-        return Mask(out, mask.pitch_cm, mask.origin_cm)
+        count = sweep.call(mask.values, self._plan, out)
+        return Mask(out, mask.pitch_cm, mask.origin_cm, count)

@@ -39,6 +39,9 @@ class Contact:
         Mean of its cell centres.
     box : tuple of int
         First row, row after the last, first column, column after the last, margin included.
+    _whole : Image
+    _labels : ndarray of int32, shape (rows, columns)
+        What its own image and mask are cut from when they are asked for.
     """
 
     number: int

@@ -26,7 +26,7 @@ class Dilate:
     -----
     Thesis section 3.1.3, equation 3.4 (Jain 1989): the cells x for which the element, put with
     its centre on x, has a cell in common with the mask. The element is not turned round, which
-    only matters for one that is not symmetric; `open` and `close` turn it for their second half.
+    only matters for one that is not symmetric; `open` and `close` turn it for theirs.
     """
 
     stateless = True
@@ -37,5 +37,5 @@ class Dilate:
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the dilated mask."""
         out = np.empty(mask.values.shape, np.bool_)
-        sweep(mask.values, self._plan, out)
-        return Mask(out, mask.pitch_cm, mask.origin_cm)
+        count = sweep.call(mask.values, self._plan, out)
+        return Mask(out, mask.pitch_cm, mask.origin_cm, count)

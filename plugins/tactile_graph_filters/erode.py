@@ -38,5 +38,5 @@ class Erode:
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the eroded mask."""
         out = np.empty(mask.values.shape, np.bool_)
-        sweep(mask.values, self._plan, out)
-        return Mask(out, mask.pitch_cm, mask.origin_cm)
+        count = sweep.call(mask.values, self._plan, out)
+        return Mask(out, mask.pitch_cm, mask.origin_cm, count)

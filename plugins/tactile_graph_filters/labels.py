@@ -57,25 +57,23 @@ def _sums(values: NDArray[np.float64], part: NDArray[np.bool_]) -> list[Any]:
 def label(values, on, eight, labels):  # type: ignore[no-untyped-def]
     """Write component numbers into ``labels``; return a row of sums for each."""
     rows, columns = on.shape
-    stack = np.empty(on.size, np.int64)
-    table = np.empty((8, N_SUMS), np.float64)
+    for i in range(rows):
+        for j in range(columns):
+            labels[i, j] = 0
+    stack = np.empty(rows * columns, np.int64)
+    table = np.empty((rows * columns + 1) // 2 * N_SUMS, np.float64)
     count = 0
-    labels[:, :] = 0
-    for start in range(on.size):
-        row, column = start // columns, start % columns
-        if not on[row, column] or labels[row, column] != 0:
+    for start in range(rows * columns):
+        top, left = start // columns, start % columns
+        if not on[top, left] or labels[top, left] != 0:
             continue
-        if count == table.shape[0]:
-            longer = np.empty((2 * count, N_SUMS), np.float64)
-            longer[:count] = table
-            table = longer
-        sums = table[count]
+        peak = -np.inf
+        n = load = sum_x = sum_y = pressed = moment_x = moment_y = 0.0
+        bottom, right = top, left
+        at = count * N_SUMS
+        first_row = top
         count += 1
-        sums[:] = 0.0
-        sums[2] = -np.inf
-        sums[8] = sums[9] = row
-        sums[10] = sums[11] = column
-        labels[row, column] = count
+        labels[top, left] = count
         stack[0] = start
         waiting = 1
         while waiting > 0:
@@ -83,23 +81,27 @@ def label(values, on, eight, labels):  # type: ignore[no-untyped-def]
             i, j = stack[waiting] // columns, stack[waiting] % columns
             value = values[i, j]
             positive = value if value > 0 else 0.0
-            sums[0] += 1.0
-            sums[1] += value
-            sums[2] = max(sums[2], value)
-            sums[3] += j
-            sums[4] += i
-            sums[5] += positive
-            sums[6] += j * positive
-            sums[7] += i * positive
-            sums[9] = max(sums[9], i)
-            sums[10] = min(sums[10], j)
-            sums[11] = max(sums[11], j)
+            peak = max(peak, value)
+            n += 1.0
+            load += value
+            sum_x += j
+            sum_y += i
+            pressed += positive
+            moment_x += j * positive
+            moment_y += i * positive
+            bottom, left, right = max(bottom, i), min(left, j), max(right, j)
             for k in range(max(0, i - 1), min(rows, i + 2)):
                 for m in range(max(0, j - 1), min(columns, j + 2)):
-                    if not eight and k != i and m != j:
-                        continue
-                    if on[k, m] and labels[k, m] == 0:
+                    if (eight or k == i or m == j) and on[k, m] and labels[k, m] == 0:
                         labels[k, m] = count
                         stack[waiting] = k * columns + m
                         waiting += 1
-    return table[:count].copy()
+        table[at], table[at + 1], table[at + 2] = n, load, peak
+        table[at + 3], table[at + 4], table[at + 5] = sum_x, sum_y, pressed
+        table[at + 6], table[at + 7] = moment_x, moment_y
+        table[at + 8], table[at + 9] = first_row, bottom
+        table[at + 10], table[at + 11] = left, right
+    sums = np.empty((count, N_SUMS), np.float64)
+    for at in range(count * N_SUMS):
+        sums[at // N_SUMS, at % N_SUMS] = table[at]
+    return sums

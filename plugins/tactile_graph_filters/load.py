@@ -40,7 +40,8 @@ def _measure_plain(
     load = values[on]
     y, x = np.nonzero(on)
     peak = float(load.max()) if load.size else 0.0
-    return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
+    with np.errstate(invalid="ignore"):  # infinity, to be found out by its sum too
+        return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
 
 
 @compiled_twin_of(_measure_plain)

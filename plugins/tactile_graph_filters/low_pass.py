@@ -12,7 +12,7 @@ from pydantic import AfterValidator
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
-from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.nan import all_finite, refuse_nan
 
 
 def _window_mean_plain(
@@ -120,7 +120,7 @@ class LowPass:
         values = np.ascontiguousarray(image.values, np.float64)
         out = np.empty(values.shape)
         window_mean(values, self._usable(image.shape, valid), self._weights, out)
-        if not np.isfinite(out).all() and isinstance(image, Image):
+        if not all_finite(out) and isinstance(image, Image):
             refuse_nan(image, infinite=True)
         if valid is not None:
             out[~valid] = 0.0

@@ -138,8 +138,11 @@ def _frozen(rows: Sequence[tuple[int, ...]]) -> Plan:
     return plan
 
 
-def _sweep_plain(values: NDArray[np.bool_], plan: Plan, out: NDArray[np.bool_]) -> None:
-    """Write into ``out`` what ``plan`` makes of ``values``, both of shape (rows, columns)."""
+def _sweep_plain(values: NDArray[np.bool_], plan: Plan, out: NDArray[np.bool_]) -> int:
+    """Write into ``out`` what ``plan`` makes of ``values``; return how many cells are on.
+
+    Both are of shape (rows, columns).
+    """
     n_planes, margin_rows, margin, border, flip_in, result, flip_out = plan[0].tolist()
     rows, columns = values.shape
     stride = columns + margin  # the margin right of a row is the one left of the next
@@ -158,11 +161,12 @@ def _sweep_plain(values: NDArray[np.bool_], plan: Plan, out: NDArray[np.bool_]) 
         planes[target, low:high] = both if new else planes[target, low:high] & both
     done = planes[result, inner].reshape(rows, stride)[:, :columns]
     np.not_equal(done, bool(flip_out), out=out)
+    return int(np.count_nonzero(out))
 
 
 @compiled_twin_of(_sweep_plain)
 def sweep(values, plan, out):  # type: ignore[no-untyped-def]
-    """Write into ``out`` what ``plan`` makes of ``values``."""
+    """Write into ``out`` what ``plan`` makes of ``values``; return how many cells are on."""
     rows, columns = values.shape
     margin = plan[0, 2]
     stride = columns + margin  # the margin right of a row is the one left of the next
@@ -194,8 +198,11 @@ def sweep(values, plan, out):  # type: ignore[no-untyped-def]
             for x in range(high - low):
                 goal[x] &= at_a[x] & at_b[x]
     done, flip = planes[plan[0, 5]], np.uint8(plan[0, 6])
+    count = 0
     for i in range(rows):
         row = done[start + i * stride : start + i * stride + columns]
         wanted = out[i]
         for j in range(columns):
             wanted[j] = (row[j] ^ flip) != 0
+            count += (row[j] ^ flip) != 0
+    return count

@@ -1,11 +1,31 @@
-"""Refuse an image whose valid cells hold NaN or infinity, naming the cell."""
+"""Find NaN and infinity in an image, and refuse it naming the cell."""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
+
+
+def _all_finite_plain(values: NDArray[Any]) -> bool:
+    """Return whether no value is NaN or infinite."""
+    return bool(np.isfinite(values).all())
+
+
+@compiled_twin_of(_all_finite_plain)
+def all_finite(values):  # type: ignore[no-untyped-def]
+    """Return whether no value is NaN or infinite."""
+    bad = 0
+    for i in range(values.shape[0]):
+        row = values[i]
+        for j in range(values.shape[1]):
+            bad += row[j] - row[j] != 0  # NaN for NaN and infinity
+    return bad == 0
 
 
 def refuse_nan(image: Image, *, infinite: bool = False) -> None:

@@ -33,5 +33,6 @@ def skeleton(
     """
     from skimage.morphology import skeletonize
 
-    thin = skeletonize(mask.values, method=method)  # type: ignore[no-untyped-call]
+    writable = mask.values.copy()  # the compiled thinning refuses read-only memory
+    thin = skeletonize(writable, method=method)  # type: ignore[no-untyped-call]
     return mask.with_values(np.asarray(thin, np.bool_))

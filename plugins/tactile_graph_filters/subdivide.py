@@ -63,6 +63,6 @@ def subdivide(
         return mask
     rows, columns = mask.values.shape
     out = np.empty((rows * factor, columns * factor), np.bool_)
-    expand(mask.values, factor, out)
+    expand.call(mask.values, factor, out)
     x, y = mask.pitch_cm
     return Mask(out, (x / factor, y / factor), mask.origin_cm)

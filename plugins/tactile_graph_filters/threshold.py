@@ -17,21 +17,22 @@ from tactile_graph_filters.nan import refuse_nan
 
 
 def _at_least_plain(values: NDArray[Any], level: float, out: NDArray[np.bool_]) -> int:
-    """Write into ``out`` where ``values`` reach ``level``; return how many cells are not NaN."""
+    """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
     np.greater_equal(values, level, out=out)
-    return int(np.count_nonzero(values == values))
+    return -1 if np.isnan(values).any() else int(np.count_nonzero(out))
 
 
 @compiled_twin_of(_at_least_plain)
 def at_least(values, level, out):  # type: ignore[no-untyped-def]
-    """Write into ``out`` where ``values`` reach ``level``; return how many cells are not NaN."""
-    good = 0
+    """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
+    count = numbers = 0
     for i in range(values.shape[0]):
         row, wanted = values[i], out[i]
         for j in range(values.shape[1]):
             wanted[j] = row[j] >= level
-            good += row[j] == row[j]
-    return good
+            count += row[j] >= level
+            numbers += row[j] == row[j]
+    return count if numbers == values.size else -1
 
 
 def footprint(image: Image, level: float) -> Mask:
@@ -56,14 +57,14 @@ def footprint(image: Image, level: float) -> Mask:
     """
     values, valid = image.values, image.valid
     out = np.empty(values.shape, np.bool_)
-    good = at_least(values, level, out)
+    count: int | None = at_least.call(values, level, out)
     if valid is not None:
         if not valid.any():
             raise Degenerate("no cell of the image is valid, so it has no footprint")
         np.logical_and(out, valid, out=out)
-    if good != values.size:
+    if count == -1:
         refuse_nan(image)
-    return Mask(out, image.pitch_cm, image.origin_cm)
+    return Mask(out, image.pitch_cm, image.origin_cm, count if valid is None else None)
 
 
 class Threshold:

@@ -8,6 +8,7 @@ import numpy as np
 from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.threshold import footprint
@@ -54,12 +55,8 @@ def threshold_valley(
     low, high = float(values.min()), float(values.max())
     edges = np.linspace(low, high, n_bins + 1)
     counts = np.histogram(values, edges)[0].astype(np.float64)
+    smooth_until_two_peaks(counts, smoothing)
     peaks = _peaks(counts)
-    for _ in range(smoothing):
-        if len(peaks) <= 2:
-            break
-        counts = _smoothed(counts)
-        peaks = _peaks(counts)
     if len(peaks) != 2:
         n = "one peak" if len(peaks) == 1 else f"{len(peaks)} peaks"
         raise Degenerate(
@@ -70,9 +67,36 @@ def threshold_valley(
     return Thresholded(footprint(image, level), level)
 
 
-def _smoothed(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    padded = np.pad(counts, 1, mode="edge")
-    return np.asarray((padded[:-2] + padded[1:-1] + padded[2:]) / 3.0)
+def _smooth_plain(counts: NDArray[np.float64], most: int) -> None:
+    """Smooth ``counts`` in place, at most so often, until at most two peaks are left."""
+    for _ in range(most):
+        if len(_peaks(counts)) <= 2:
+            break
+        padded = np.pad(counts, 1, mode="edge")
+        counts[:] = (padded[:-2] + padded[1:-1] + padded[2:]) / 3.0
+
+
+@compiled_twin_of(_smooth_plain)
+def smooth_until_two_peaks(counts, most):  # type: ignore[no-untyped-def]
+    """Smooth ``counts`` in place, at most so often, until at most two peaks are left."""
+    last = counts.size - 1
+    for _ in range(most):
+        peaks = 0
+        rising = True  # whether the last change was upwards
+        for i in range(last):
+            if counts[i + 1] < counts[i]:
+                peaks += rising
+                rising = False
+            elif counts[i + 1] > counts[i]:
+                rising = True
+        if peaks + rising <= 2:
+            break
+        before = counts[0]
+        for i in range(last + 1):
+            after = counts[min(i + 1, last)]
+            mean = (before + counts[i] + after) / 3.0
+            before = counts[i]
+            counts[i] = mean
 
 
 def _peaks(counts: NDArray[np.float64]) -> list[int]:

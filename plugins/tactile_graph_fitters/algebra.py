@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_fitters.nested import compiled_as_is, nested_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph_fitters.principal import OK, Frame, into_frame
 
 KASA, TAUBIN, HYPER = range(3)
@@ -29,7 +29,7 @@ def _moments(uv: NDArray[np.float64]) -> Moments:
     )
 
 
-@nested_twin_of(_moments)
+@compiled_twin_of(_moments)
 def moments(uv: NDArray[np.float64]) -> Moments:
     """Do the same in loops."""
     n = uv.shape[1]

@@ -40,4 +40,4 @@ def fit_circle(points: Points) -> FittedCircle:
     Points that are centres of boundary cells lie half a cell inside the outline: so does the
     circle.
     """
-    return circle_from(points.xy_cm, geometric_fit)
+    return circle_from(points.xy_cm, geometric_fit.call)

@@ -9,10 +9,10 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.wires import Points
 from tactile_graph_fitters.algebra import back, distance_from_circle
 from tactile_graph_fitters.fitted_circle import FittedCircle
-from tactile_graph_fitters.nested import compiled_as_is, nested_twin_of
 from tactile_graph_fitters.outcome import circle_from
 from tactile_graph_fitters.principal import NOT_SETTLED, OK, into_frame
 
@@ -78,7 +78,7 @@ def _iterated(
     return False, x, y, radius, max_iterations
 
 
-@nested_twin_of(_iterated)
+@compiled_twin_of(_iterated)
 def iterated(
     uv: NDArray[np.float64], max_iterations: int, tolerance: float
 ) -> tuple[bool, float, float, float, int]:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph_fitters.algebra import HYPER, algebraic_circle, back
-from tactile_graph_fitters.nested import compiled_as_is, nested_twin_of
 from tactile_graph_fitters.principal import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
 
 STEP = 1e-10  # of the radius: Newton squares it once more, to below rounding
@@ -57,7 +57,7 @@ def _slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     )
 
 
-@nested_twin_of(_slopes)
+@compiled_twin_of(_slopes)
 def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     """Do the same in loops; each mean is taken around a first value, which keeps its digits."""
     n = uv.shape[1]
@@ -138,11 +138,17 @@ def refined(
     line /= uv.shape[1]
     now = slopes(uv, a, b)
     damping = 0.0
-    kicked = False
+    kicked = undamped = False
     for rounds in range(1, ROUNDS + 1):
         radius = now[0]
         du, dv, promised, upward = step_of(now, damping)
-        floor = 1e-15 * now[1] + (4.0 * EPS * radius) ** 2
+        # What rounding of the distances does to F.
+        floor = EPS * (5.0 * now[1] + 8.0 * radius * math.sqrt(now[1]) + 16.0 * EPS * radius**2)
+        if promised <= floor and damping > 0.0:
+            if undamped:
+                return OK, a, b, radius, math.sqrt(now[1]), rounds
+            damping, undamped = 0.0, True
+            continue
         if promised <= floor and not upward and not kicked:
             # Level but no minimum, as in the middle of two equal rows: the way down is across.
             b, kicked = b + 0.5, True
@@ -154,7 +160,7 @@ def refined(
             continue
         # At the floor F is too coarse to judge by, but Newton's step is still the better centre.
         a, b, now, radius = a + du, b + dv, new, new[0]
-        damping = 0.1 * damping if damping > 1e-6 else 0.0
+        damping, undamped = 0.1 * damping if damping > 1e-6 else 0.0, False
         if radius > FLAT and now[1] > (1.0 - 1e-6) * line:
             return ONE_LINE, a, b, radius, 0.0, 0
         if promised <= floor or math.sqrt(du * du + dv * dv) <= STEP * radius:

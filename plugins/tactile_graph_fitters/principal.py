@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_fitters.nested import compiled_as_is, nested_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 
 OK, TOO_FEW, NOT_FINITE, OUT_OF_RANGE, ALL_EQUAL, ONE_LINE, NOT_SETTLED = range(7)
 """What can come of a fit; words for each are in `why`."""
@@ -38,7 +38,7 @@ def _bounds(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float]:
     return status, float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, half, largest
 
 
-@nested_twin_of(_bounds)
+@compiled_twin_of(_bounds)
 def bounds(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float]:
     """Do the same in loops."""
     n = xy.shape[0]
@@ -76,7 +76,7 @@ def _turned(
     return uv, float(mean[0]), float(mean[1]), cos, sin
 
 
-@nested_twin_of(_turned)
+@compiled_twin_of(_turned)
 def turned(
     xy: NDArray[np.float64], x: float, y: float, half: float
 ) -> tuple[NDArray[np.float64], float, float, float, float]:

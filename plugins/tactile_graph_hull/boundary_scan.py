@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.wires import Mask, Points
-from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
 
 BLOCK = 16  # cells looked at together
 
@@ -34,7 +34,7 @@ def boundary_scan(mask: Mask) -> Points:
     values = mask.values
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)
-    return Points(scanned_centres(values, *mask.pitch_cm, *mask.origin_cm))
+    return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
 
 
 def seen_cells(mask: NDArray[np.bool_], scans: tuple[str, ...]) -> NDArray[np.bool_]:
@@ -62,7 +62,7 @@ def _scanned_centres(
     return np.column_stack([x0 + (columns + 0.5) * pitch_x, y0 + (rows + 0.5) * pitch_y])
 
 
-@nested_twin_of(_scanned_centres)
+@compiled_twin_of(_scanned_centres)
 def scanned_centres(
     mask: NDArray[np.bool_], pitch_x: float, pitch_y: float, x0: float, y0: float
 ) -> NDArray[np.float64]:

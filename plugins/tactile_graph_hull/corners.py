@@ -9,9 +9,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
-from tactile_graph_hull.nested import compiled_as_is
 from tactile_graph_hull.orientation import LARGEST, SMALLEST
 
 Corners: TypeAlias = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
@@ -92,9 +92,7 @@ def finished(corners: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     kept = np.zeros(n, dtype=np.bool_)
     _thin(corners, first, second, limit, kept)
     _thin(corners, second, first, limit, kept)
-    if kept.all():
-        return corners
-    return _from_lowest(corners[kept])
+    return _from_lowest(corners, kept)
 
 
 @compiled_as_is
@@ -135,17 +133,26 @@ def _thin(
 
 
 @compiled_as_is
-def _from_lowest(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the corners turned so that the lowest x, then the lowest y, comes first."""
+def _from_lowest(corners: NDArray[np.float64], kept: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Return the kept corners, the one of the lowest x, then the lowest y, first."""
     n = corners.shape[0]
-    lowest = 0
-    for i in range(1, n):
-        if corners[i, 0] < corners[lowest, 0] or (
-            corners[i, 0] == corners[lowest, 0] and corners[i, 1] < corners[lowest, 1]
-        ):
-            lowest = i
-    turned = np.empty_like(corners)
+    lowest, count = -1, 0
     for i in range(n):
-        k = (lowest + i) % n
-        turned[i, 0], turned[i, 1] = corners[k, 0], corners[k, 1]
-    return turned
+        if kept[i]:
+            count += 1
+            if (
+                lowest < 0
+                or corners[i, 0] < corners[lowest, 0]
+                or (corners[i, 0] == corners[lowest, 0] and corners[i, 1] < corners[lowest, 1])
+            ):
+                lowest = i
+    if count == n:
+        return corners
+    chosen = np.empty((count, 2))
+    k = lowest
+    for i in range(count):
+        chosen[i, 0], chosen[i, 1] = corners[k, 0], corners[k, 1]
+        k = (k + 1) % n
+        while not kept[k]:
+            k = (k + 1) % n
+    return chosen

@@ -8,9 +8,9 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
-from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
 from tactile_graph_hull.orientation import turn
 
 
@@ -44,7 +44,7 @@ def hull(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Pol
     `boundary_scan` gives them, else O(N log N). Source: A. M. Andrew 1979,
     10.1016/0020-0190(79)90072-3; thesis 3.1.4.
     """
-    return hull_polygon(points.xy_cm, chain_corners, rounding_ulps)
+    return hull_polygon(points.xy_cm, chain_corners.call, rounding_ulps)
 
 
 def _chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
@@ -70,7 +70,7 @@ def _chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     return finished.reference(np.array(corners[start:] + corners[:start]), ulps)
 
 
-@nested_twin_of(_chain_corners)
+@compiled_twin_of(_chain_corners)
 def chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     """Do the same in loops, without sorting what is sorted."""
     if not in_range(xy):
@@ -96,13 +96,12 @@ def _columns(xy: NDArray[np.float64], ends: NDArray[np.float64]) -> int:
     n = xy.shape[0]
     ordered = True
     for i in range(1, n):
-        if xy[i, 0] < xy[i - 1, 0]:
-            ordered = False
-            break
-    order = np.arange(n) if ordered else np.argsort(xy[:, 0])
+        ordered &= xy[i, 0] >= xy[i - 1, 0]
+    order = np.empty(0, dtype=np.int64) if ordered else np.argsort(xy[:, 0])
     m = 0
     for i in range(n):
-        x, y = xy[order[i], 0] + 0.0, xy[order[i], 1] + 0.0  # + 0.0 turns -0.0 into 0.0
+        k = i if ordered else order[i]
+        x, y = xy[k, 0] + 0.0, xy[k, 1] + 0.0  # + 0.0 turns -0.0 into 0.0
         if m > 0 and ends[m - 1, 0] == x:
             ends[m - 1, 1] = min(ends[m - 1, 1], y)
             ends[m - 1, 2] = max(ends[m - 1, 2], y)

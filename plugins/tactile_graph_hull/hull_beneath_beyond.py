@@ -8,9 +8,9 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
-from tactile_graph_hull.nested import compiled_as_is
 from tactile_graph_hull.orientation import turn
 
 

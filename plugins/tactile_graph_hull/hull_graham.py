@@ -9,9 +9,9 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
-from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
 from tactile_graph_hull.orientation import turn
 
 
@@ -63,7 +63,7 @@ def _graham_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]
     return finished.reference(np.array(kept), ulps)
 
 
-@nested_twin_of(_graham_corners)
+@compiled_twin_of(_graham_corners)
 def graham_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     """Do the same in loops."""
     if not in_range(xy):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_hull.nested import compiled_as_is, nested_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 
 SPLITTER = 134217729.0  # 2**27 + 1 cuts a double into halves whose products are exact
 FILTER = 3.3306690738754716e-16  # (3 + 16 eps) eps with eps = 2**-53: Shewchuk's bound A
@@ -75,7 +75,7 @@ def sign_of_sum(terms: NDArray[np.float64]) -> int:
     return 1 if terms[m - 1] > 0.0 else -1
 
 
-@nested_twin_of(_turn)
+@compiled_twin_of(_turn)
 def turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """Do the same by J. R. Shewchuk's adaptive sums (1997, 10.1007/PL00009321, ``orient2d``).
 

@@ -17,3 +17,12 @@ def tactile_graph_pads() -> Mapping[str, Path]:
     """Offer the thesis' pad, and the same without anything uneven or random."""
     folder = Path(__file__).parent / "pads"
     return {"plain": folder / "plain.yaml", "thesis": folder / "thesis.yaml"}
+
+
+@hookimpl
+def tactile_graph_commands() -> Mapping[str, str]:
+    """Offer the commands that calibrate a pad and that study the thesis' one."""
+    return {
+        "calibrate": "tactile_graph_pads.commands.calibrate:calibrate",
+        "study": "tactile_graph_pads.commands.study:study",
+    }

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, NamedTuple
 
@@ -158,20 +158,24 @@ class Pad:
         the circuit calls its data impossible, where it is dead, or where it is saturated.
         """
         found = self.circuit.inverse(volts / self.circuit.supply_v, start_s)
-        built = self._nominal
-        alive = built.gain > 0.0
-        siemens = np.where(
-            alive, (found.siemens - built.leak_s) / np.where(alive, built.gain, 1), 0
-        )
+        if self.defects == _NO_DEFECTS:
+            siemens, valid = found.siemens, found.valid
+        else:
+            siemens, valid = _repaired(found.siemens, found.valid, self._nominal)
         load = self.law.load_of(siemens)
-        valid = found.valid & alive & np.isfinite(load)
+        if load.max() == np.inf:
+            valid = valid & np.isfinite(load)
+            load[~valid] = 0.0
         if self.defects.preload_g > 0.0:
-            load = np.maximum(load - built.preload_g, 0.0)
-        return Loads(np.where(valid, load, 0.0), valid, found.residual)
+            load = np.maximum(load - self._nominal.preload_g, 0.0)
+        return Loads(load, valid, found.residual)
 
-    @property
+    @cached_property
     def _nominal(self) -> Built:
-        return _nominal(self.defects, self.geometry)
+        built = self.defects.built(self.geometry)
+        for array in built:
+            array.setflags(write=False)
+        return built
 
     def image(self, values: Array, quantity: str = "volt") -> Image:
         """Return values of all elements as an image in pad coordinates."""
@@ -179,12 +183,16 @@ class Pad:
         return Image(values, (pitch, pitch), self.geometry.origin_cm, quantity)
 
 
-@cache
-def _nominal(defects: Defects, geometry: Geometry) -> Built:
-    built = defects.built(geometry)
-    for array in built:
-        array.setflags(write=False)
-    return built
+_NO_DEFECTS = Defects()
+
+
+def _repaired(
+    siemens: Array, valid: NDArray[np.bool_], built: Built
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return conductances with known leaks and gains taken off, and which can be trusted."""
+    valid = valid & (built.gain > 0.0)
+    gain = np.where(valid, built.gain, 1.0)
+    return np.where(valid, (siemens - built.leak_s) / gain, 0.0), valid
 
 
 def load_pad(pad: str | Path | Mapping[str, Any]) -> Pad:

@@ -49,8 +49,27 @@ class Converter:
         """Return what the converter reads, whole numbers within its range, same shape."""
         if self.bits is None:
             return np.array(volts, dtype=np.float64)
-        counts = np.rint(volts / self.step_v + self.zero_counts)
-        return np.asarray(np.clip(counts, 0.0, 2.0**self.bits - 1.0, out=counts))
+        return self._rounded(volts / self.step_v + self.zero_counts)
+
+    def _rounded(self, counts: Array) -> Array:
+        """Round and limit ``counts`` in place: a scan's samples are worth no second array."""
+        np.rint(counts, out=counts)
+        return np.clip(counts, 0.0, 2.0 ** (self.bits or 0) - 1.0, out=counts)
+
+    def mean_counts(self, noise: Array, volts: Array, scale_v: Array | float) -> Array:
+        """Return the mean count over samples of ``volts`` with noise, shape (rows, columns).
+
+        Parameters
+        ----------
+        noise : ndarray of float64, shape (samples, rows, columns)
+            Standard normal; used up.
+        volts : ndarray of float64, shape (rows, columns)
+        scale_v : float or ndarray
+            Standard deviation of the noise.
+        """
+        noise *= scale_v / self.step_v
+        noise += volts / self.step_v + self.zero_counts
+        return np.asarray((noise if self.bits is None else self._rounded(noise)).mean(axis=0))
 
     def volts(self, counts: Array) -> Array:
         """Return the volts that (averaged) counts stand for, same shape."""
@@ -106,7 +125,5 @@ class Scan:
         """
         if self.noise_v == 0.0:
             return converter.counts(volts)
-        readings = rng.standard_normal((self.samples, *volts.shape))
-        readings *= self.noise_v * noise_scale
-        readings += volts
-        return np.asarray(converter.counts(readings).mean(axis=0))
+        noise = rng.standard_normal((self.samples, *volts.shape))
+        return converter.mean_counts(noise, volts, self.noise_v * noise_scale)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from tactile_graph_pads.geometry import Geometry
 
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Shape
+from tactile_graph_pads.geometry import Geometry
 from tactile_graph_sources.scene import Thing
 
 MOST_TRIES = 2000

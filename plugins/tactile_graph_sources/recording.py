@@ -16,6 +16,7 @@ from tactile_graph_sources.readers.formats import known, reader_of
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.store import is_store, read_store
 
 Length = Annotated[float, Gt(0)]
 QuantityName = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
@@ -77,13 +78,19 @@ def recording(
     told = Told(rows, columns, pitch, origin_cm, quantity, sensor)
     index = 0
     for one in paths:
-        for frame in _frames(one, told, report, index, one.name if len(paths) > 1 else ""):
+        label = one.name if len(paths) > 1 else ""
+        frames = (
+            _stored(one, report, index)
+            if is_store(one)
+            else _frames(one, told, report, index, label)
+        )
+        for frame in frames:
             yield frame
             index = frame.index + 1
 
 
 def _check_file(path: Path) -> None:
-    if path.is_file():
+    if path.is_file() or is_store(path):
         return
     if path.is_dir():
         held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
@@ -91,6 +98,13 @@ def _check_file(path: Path) -> None:
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = did_you_mean(path.name, siblings)
     raise DataError(str(path), f"there is no such file{near}; formats that are read: {known()}")
+
+
+def _stored(path: Path, report: Report, index: int) -> Iterator[Frame]:
+    """Yield the frames of a Zarr store, numbered on from ``index``."""
+    for frame in read_store(path, report):
+        yield frame.with_index(index)
+        index += 1
 
 
 def _frames(path: Path, told: Told, report: Report, index: int, label: str) -> Iterator[Frame]:

@@ -13,12 +13,12 @@ import numpy as np
 from annotated_types import Ge, Gt, Len
 from numpy.typing import NDArray
 from pydantic import Field
-from tactile_graph_pads.contact import Grain
-from tactile_graph_pads.pad import read_file
-from tactile_graph_pads.records import inline, read_record
 
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
+from tactile_graph_pads.contact import Grain
+from tactile_graph_pads.pad import read_file
+from tactile_graph_pads.records import inline, read_record
 
 SCENES = Path(__file__).parent / "scenes"
 Place = Literal["random"] | tuple[float, float]
@@ -118,16 +118,9 @@ class Oval(Thing):
 
 @dataclass(frozen=True, kw_only=True)
 class Plate(Thing):
-    """A polygon: regular, by ``sides`` and ``radius_cm`` (to its corners), or by its corners.
+    """A polygon: regular, by ``sides`` and ``radius_cm`` to its corners, or by ``corners_cm``.
 
-    Parameters
-    ----------
-    corners_cm : tuple of (float, float)
-        x right and y down, in order; its centroid comes to lie at the place.
-    sides : int
-        Number of corners of a regular polygon.
-    radius_cm : float
-        From the regular polygon's centre to its corners.
+    Corners are (x right, y down) in order; their centroid comes to lie at the place.
     """
 
     shape: Literal["polygon"] = "polygon"

@@ -9,11 +9,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from annotated_types import Ge, Le
 from numpy.typing import NDArray
-from tactile_graph_pads.pad import Pad, load_pad
-from tactile_graph_pads.unevenness import Fields
 
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame, Shape, TrueObject
+from tactile_graph_pads.pad import Pad, load_pad
+from tactile_graph_pads.unevenness import Fields
 from tactile_graph_sources.placement import place
 from tactile_graph_sources.scene import Scene, Thing, load_scene
 

@@ -1,10 +1,10 @@
-"""A click group whose commands, its own and the plugins', are imported only when they are called."""
+"""A click group whose commands, plugins' too, are imported only when they are called."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NoReturn
+from typing import Any
 
 import click
 
@@ -16,10 +16,7 @@ from tactile_graph.plugins import registry
 class Group(click.Group):
     """Commands by name; ``--help`` imports none of them.
 
-    Parameters
-    ----------
-    built_in : mapping
-        Name -> what ``--help`` says of it.
+    ``built_in`` maps the name of each own command to what ``--help`` says of it.
     """
 
     def __init__(self, *args: Any, built_in: Mapping[str, str], **kwargs: Any) -> None:
@@ -96,14 +93,14 @@ class Group(click.Group):
             endings.stop_writing()
             ctx.exit(endings.PIPE_CLOSED)
 
-    def main(  # type: ignore[override]
+    def main(
         self,
         args: Sequence[str] | None = None,
         prog_name: str | None = None,
         complete_var: str | None = None,
         standalone_mode: bool = True,
         **extra: Any,
-    ) -> NoReturn | Any:
+    ) -> Any:
         """Run a command line; unless told otherwise, show what went wrong and exit."""
         given = list(sys.argv[1:] if args is None else args)
         inner: Callable[..., Any] = super().main

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -49,23 +49,26 @@ class Wire:
 def blocks(pipeline: Pipeline) -> list[Block]:
     """Return the source, the frame and the nodes in the order of the file."""
     found = []
+    unused, said = set(pipeline.unused), _said(pipeline)
     if pipeline.source is not None:
         source = pipeline.source
-        shown = _settings(source.settings, _defaults(source.signature))
+        shown = _settings(source.settings, _defaults(source.signature), said.get(SOURCE, set()))
         found.append(
             Block(SOURCE, "source", source.name, "source", shown, detail=source.signature.summary)
         )
     kept = _outputs_of(pipeline, FRAME)
     found.append(Block(FRAME, FRAME, "", "frame", outputs=kept, detail="what the source gives"))
-    unused = set(pipeline.unused)
-    found += [_block(pipeline, node, node.name in unused) for node in pipeline.nodes.values()]
+    found += [
+        _block(pipeline, node, node.name in unused, said.get(node.name, set()))
+        for node in pipeline.nodes.values()
+    ]
     return found
 
 
-def _block(pipeline: Pipeline, node: Node, unused: bool) -> Block:
+def _block(pipeline: Pipeline, node: Node, unused: bool, said: Set[str]) -> Block:
     choice = node.kind is NodeKind.FIRST_OF
     step = "first of" if choice else "hands on" if node.kind is NodeKind.PASS else node.what
-    shown = _settings(node.settings, _defaults(node.signature))
+    shown = _settings(node.settings, _defaults(node.signature), said)
     every = [f"{k} = {_value(v, 200)}" for k, v in node.settings.items()]
     summary = node.signature.summary if node.signature else ""
     return Block(
@@ -90,12 +93,33 @@ def _defaults(signature: Any) -> dict[str, Any]:
     return {s.name: s.default for s in signature.settings} if signature else {}
 
 
-def _settings(given: dict[str, Any], defaults: dict[str, Any]) -> tuple[str, ...]:
-    """Return the settings worth a line: those changed; all that are set where a step has few."""
-    changed = [k for k, v in given.items() if not _same(v, defaults.get(k, ...))]
-    others = [k for k, v in given.items() if v is not None and k not in changed]
-    few = len(changed) + len(others) <= 2
-    shown = [f"{k} = {_value(given[k])}" for k in (changed + others if few else changed)]
+def _said(pipeline: Pipeline) -> dict[str, set[str]]:
+    """Return the settings that the file, or who overrode it, spelled out for each node."""
+    import yaml
+
+    tree = yaml.safe_load(pipeline.text)
+    declared = {**tree["nodes"], SOURCE: tree.get("source")}
+    said = {str(n): _keys(d.get("with")) for n, d in declared.items() if isinstance(d, dict)}
+    if pipeline.source_override is not None:
+        said[SOURCE] = set(pipeline.source_override[1])
+    for name, settings in pipeline.overrides.items():
+        said[name] = said.get(name, set()) | set(settings)
+    return said
+
+
+def _keys(settings: Any) -> set[str]:
+    return {str(k) for k in settings} if isinstance(settings, dict) else set()
+
+
+def _settings(
+    given: dict[str, Any], defaults: dict[str, Any], said: Set[str] = frozenset()
+) -> tuple[str, ...]:
+    """Return the settings worth a line: those spelled out, and those that are not the default."""
+    shown = [
+        f"{k} = {_value(v)}"
+        for k, v in given.items()
+        if k in said or not _same(v, defaults.get(k, ...))
+    ]
     more = len(shown) - _MOST_SETTINGS
     if more <= 0:
         return tuple(shown)
@@ -145,7 +169,7 @@ def _field(pipeline: Pipeline, ref: Ref) -> str:
     """Return the field a wire takes, but for a view that the engine takes by itself."""
     path = list(ref.path)
     views = {v for arm in arms(pipeline.types[ref.node]) for v in _views(arm)}
-    if path and (ref.over_items or (len(path) == 1 and path[0] in views)):
+    if len(path) == 1 and path[0] in views:
         path.pop()
     return ".".join(path)
 

@@ -10,7 +10,8 @@ from textwrap import shorten, wrap
 from xml.sax.saxutils import escape, quoteattr
 
 from tactile_graph.draw.blocks import Block, Wire, blocks, wires
-from tactile_graph.draw.layout import Joint, Place, Point, layout
+from tactile_graph.draw.layers import Joint
+from tactile_graph.draw.layout import Place, Point, layout
 from tactile_graph.pipeline.pipeline import Pipeline
 
 MARGIN = 16.0
@@ -83,7 +84,7 @@ def graph_svg(pipeline: Pipeline, new: Set[str] = frozenset()) -> str:
 def _joint(wire: Wire) -> Joint:
     room = text_width(wire.label, SMALL_PX) + 14 if wire.label else 0.0
     # Conditions hardly pull: what the data goes through stays in line.
-    return Joint(wire.start, wire.end, room, 0.05 if wire.kind == "guard" else 1.0)
+    return Joint(wire.start, wire.end, room, 0.01 if wire.kind == "guard" else 1.0)
 
 
 def _opening(pipeline: Pipeline, width: float, height: float) -> list[str]:

@@ -25,7 +25,7 @@ def make_call(node: Node, runner: Runner) -> Call:
     assert node.signature is not None
     if node.signature.gap:
         call = _with_gap(call, node.signature.gap, runner)
-    return _for_each(node, call) if node.each else call
+    return _for_each(node, call, runner) if node.each else call
 
 
 def _seeded(node: Node, runner: Runner) -> Call:
@@ -34,16 +34,13 @@ def _seeded(node: Node, runner: Runner) -> Call:
     if not signature.rng:
         return node.bound()
     words = [runner.seed, int(node.key[:16], 16)]
-    if signature.stateful:
-        made: Call = signature.target(
-            **node.settings, **{signature.rng: np.random.default_rng(words)}
-        )
-        return made
+    if signature.rng_at_init:
+        return node.bound(**{signature.rng: np.random.default_rng(words)})
     step = node.bound()
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.
-        rng = np.random.default_rng([*words, runner.frame.index])
+        rng = np.random.default_rng([*words, runner.frame.index, *runner.item])
         return step(*args, **kwargs, **{signature.rng: rng})
 
     return call
@@ -62,7 +59,7 @@ def _with_gap(step: Call, name: str, runner: Runner) -> Call:
     return call
 
 
-def _for_each(node: Node, step: Call) -> Call:
+def _for_each(node: Node, step: Call, runner: Runner) -> Call:
     """Return the step run over the items of whichever ports hold lists it does not want whole."""
     assert node.signature is not None
     over = [b.port.name for b in node.inputs if b.iterates]
@@ -76,9 +73,15 @@ def _for_each(node: Node, step: Call) -> Call:
             raise ValueError(f"lists of different length at one node: {counts}")
         n = next(iter(counts.values()))
         outcomes = []
-        for i in range(n):
-            item = {**values, **{name: v[i] for name, v in lists.items()}}
-            outcomes.append(_try(step, item, node.name))
+        outer = runner.item
+        try:
+            for i in range(n):
+                item = {**values, **{name: v[i] for name, v in lists.items()}}
+                runner.item = (*outer, i)  # or every item would draw the same numbers
+                outcomes.append(_try(step, item, node.name))
+        finally:
+            runner.item = outer
+        runner.item_failures += [o for o in outcomes if o.__class__ is Failed]
         return gathered(outcomes, node.name)
 
     return call
@@ -115,8 +118,9 @@ def _mapped(node: Node, runner: Runner) -> Call:
 
     def call(frame: Any) -> Any:
         results = []
-        for image in frame:
+        for i, image in enumerate(frame):
             outer = runner.frame
+            inner.item = (*runner.item, i)
             results.append(inner(Frame(image, outer.index, outer.time_s, label=outer.label)))
         runner.inner_results[node.name] = results
         columns = [gathered([r.outcome(n) for r in results], node.name) for n in names]

@@ -30,7 +30,7 @@ def freeze(value: Any) -> Any:
             FROZEN.add(kind)
             return value
     for name in names:
-        field = getattr(value, name)
+        field = getattr(value, name, None)
         if field.__class__ not in FROZEN:
             freeze(field)
     return value if names else _freeze_container(value)
@@ -50,7 +50,10 @@ def _only_numbers(kind: type) -> bool:
     """Return whether a frozen dataclass declares nothing but numbers, texts and yes/no."""
     if not dataclasses.is_dataclass(kind) or not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
         return False
-    hints = get_type_hints(kind)
+    try:
+        hints = get_type_hints(kind)
+    except Exception:  # a plugin's own type may have hints that only its checker can read
+        return False
     return all(hints[f.name] in (bool, int, float, str) for f in dataclasses.fields(kind))
 
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind
 from tactile_graph.pipeline.pipeline import Pipeline
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.pipeline.wiring import Ref, arms
 
 
 @dataclass
@@ -150,10 +151,10 @@ class _Planner:
             views[name] = {}
         for name in names:
             for ref in self.pipeline.nodes[name].wires():
-                if ref.path:
+                if not ref.whole:
                     views[ref.node][ref] = None
         for ref in self.asked.values():
-            if ref.path:
+            if not ref.whole:
                 views[ref.node][ref] = None
         for name in [FRAME, *names]:
             self._add(Item(0, name, self.pipeline.nodes.get(name)), Ref(name))
@@ -191,14 +192,23 @@ class _Planner:
         read = [self.items[s] for s in item.reads]
         if node is None:
             item.constant = item.slot != 0 and all(r.constant for r in read)
-            item.skippable = any(r.skippable for r in read)
+            item.skippable = any(r.skippable for r in read) or self._may_be_unknown(item)
             return
-        item.constant = all(r.constant for r in read) and not node.stateful and not node.is_sink
+        item.constant = all(r.constant for r in read) and not (
+            node.stateful or node.is_sink or _varies(node)
+        )
         inputs = [any(self.items[s].skippable for s in i.slots) for i in item.inputs if i.required]
         through = all(inputs) if node.kind is NodeKind.FIRST_OF else any(inputs)
         item.skippable = node.guard is not None or (bool(inputs) and through)
         item.skippable |= any(self.items[s].skippable for s in item.guard)
         item.skippable |= node.each  # an empty list leaves nothing to run for
+
+    def _may_be_unknown(self, item: Item) -> bool:
+        """Return whether a field may hold None, which skips whoever needs it."""
+        if item.view is None or item.view.item_path:
+            return False
+        kinds = arms(self.pipeline.type_of(item.view))
+        return any(kind is Any or kind is object or kind is type(None) for kind in kinds)
 
     # -- what is needed at once, and what may wait ---------------------------------------------
 

@@ -105,6 +105,8 @@ def _view(item: Item) -> Operation:
             return
         if field is None:
             field = Skipped(item.name, f"{item.name} is not known")
+        elif field.__class__ not in FROZEN:
+            field = freeze(field)  # a property may make its array anew
         state[slot] = field
 
     return operation
@@ -271,17 +273,25 @@ def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Blo
 
     def operation(state: State) -> None:
         arguments: dict[str, Any] = {}
+        lacking: Any = None
         for port, block in ports:
             for lazy, settle in block:
                 if state[lazy] is None:
                     settle(state)
             value = _collected(state, port, name) if port.collects else state[port.slots[0]]
             if value.__class__ in NO_VALUE:
-                if port.required or value.__class__ is Failed:
-                    state[slot] = value
-                    return
+                if value.__class__ is Failed:
+                    # It stops its dependants only: what else is asked for still runs (and keeps
+                    # its state in step), whether it stands before this block or in it.
+                    lacking = lacking or value
+                elif port.required:
+                    lacking = lacking or value
+                    break
                 value = port.default
             arguments[port.name] = value
+        if lacking is not None:
+            state[slot] = lacking
+            return
         start = clock()
         try:
             result = call(**arguments)

@@ -135,13 +135,11 @@ class Result(Mapping[str, Any]):
 
     @property
     def failures(self) -> list[Failed]:
-        """The failures of this frame, each once, at the node it began."""
-        found: dict[int, Failed] = {}
-        for item in self.plan.nodes:
-            outcome = self._state[item.slot]
-            if outcome.__class__ is Failed:
-                found[id(outcome)] = outcome
-        return list(found.values())
+        """The failures of this frame, each once, those of single items of a list included."""
+        single = [f for results in self.inner.values() for r in results for f in r.failures]
+        outcomes = [self._state[item.slot] for item in self.plan.items]
+        found = [*outcomes, *self._state[-2], *single]
+        return list({id(f): f for f in found if f.__class__ is Failed}.values())
 
     @property
     def ok(self) -> bool:

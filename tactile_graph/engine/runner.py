@@ -6,11 +6,12 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.engine.calls import make_call
+from tactile_graph.engine.outcome import Failed
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
 from tactile_graph.engine.result import Result
 from tactile_graph.errors import RuleError
-from tactile_graph.pipeline.facts import quantity_text
+from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.node import FrameRule
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
@@ -36,14 +37,15 @@ class Runner:
         self.plan: Plan = make_plan(pipeline, asked)
         self.seed = seed
         self.frame: Frame
+        self.item: tuple[int, ...] = ()
         self.inner_results: dict[str, list[Result]] = {}
+        self.item_failures: list[Failed] = []
         n = self.plan.n_slots
-        # Outcomes, times, and the results of embedded pipelines behind them.
-        self._blank: list[Any] = [None] * n + [0] * n + [None]
+        # Outcomes and times; behind them the failures of single items and embedded results.
+        self._blank: list[Any] = [None] * n + [0] * n + [(), None]
         self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
         self._repeatable = self.plan.repeatable
-        self._last: Result | None = None
-        self._last_bytes = b""
+        self._last: tuple[bytes, Result] | None = None
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
         # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
@@ -71,9 +73,8 @@ class Runner:
         if self._repeatable:
             content = values.tobytes()
             last = self._last
-            if last is not None and content == self._last_bytes and _alike(image, last.frame.image):
-                return last.again(frame)
-            self._last_bytes = content
+            if last is not None and content == last[0] and _alike(image, last[1].frame.image):
+                return last[1].again(frame)
         self.frame = frame
         state = self._blank.copy()
         state[0] = frame
@@ -82,8 +83,12 @@ class Runner:
         if self.inner_results:
             state[-1] = self.inner_results
             self.inner_results = {}
+        if self.item_failures:
+            state[-2] = self.item_failures
+            self.item_failures = []
         result = Result(self.plan, state)
-        self._last = result
+        if self._repeatable:
+            self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
         return result
 
 
@@ -123,8 +128,9 @@ def check_frame(image: Image, plan: Plan) -> None:
 
 def _broken(rule: FrameRule, image: Image) -> str:
     quantity = rule.quantity
-    if quantity is not None and quantity.names and image.quantity not in quantity.names:
-        return quantity_text(rule.step, rule.port, quantity, f"a frame of {image.quantity}")
+    if quantity is not None:
+        got = image.quantity
+        return quantity_trouble(rule.step, rule.port, quantity, got, rule.setting, frame=True)
     rows, columns = image.shape
     if (rule.rows or rows) != rows or (rule.columns or columns) != columns:
         wanted = f"{rule.rows or 'any'} x {rule.columns or 'any'}"

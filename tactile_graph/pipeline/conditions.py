@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sized
 from dataclasses import dataclass
 from typing import Any, Literal, get_origin
 
@@ -15,6 +15,7 @@ from tactile_graph.steps.signature import list_item, type_name
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
 LONGEST = 2_000
+LONGEST_SPELLED = 20_000
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -27,10 +28,12 @@ _ALLOWED = (
 class ConditionError(Exception):
     """What is wrong with a condition, in words, and at which character of it."""
 
-    def __init__(self, message: str, offset: int = 0) -> None:
+    def __init__(self, message: str, offset: int = 0, named: str = "") -> None:
         super().__init__(message)
         self.message = message
         self.offset = offset
+        self.named = named
+        """The named condition it is in, if it is not in the text itself."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,9 @@ class Guard:
 
 
 def _short(value: Any) -> str:
-    return repr(value) if isinstance(value, bool | int | str) else f"{len(value)} items"
+    if isinstance(value, bool | int | str | np.generic):
+        return f"{value.item() if isinstance(value, np.generic) else value!r}"
+    return f"{len(value)} items" if isinstance(value, Sized) else f"a {type(value).__name__}"
 
 
 def names_in(text: str) -> set[str]:
@@ -60,8 +65,8 @@ def names_in(text: str) -> set[str]:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
-    names = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
-    return names - FUNCTIONS.keys()
+    called = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
+    return {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and id(n) not in called}
 
 
 def compile_condition(
@@ -84,14 +89,21 @@ def compile_condition(
         If it is no condition: bad syntax, something not allowed, an unknown node or field.
     """
     compiler = _Compiler(types, named or {})
-    tree = compiler.parse(text, ())
-    if not compiler.is_truth(tree):
-        raise ConditionError(compiler.not_truth(tree))
+    try:
+        tree = compiler.parse(text, ())
+        if not compiler.is_truth(tree):
+            raise ConditionError(compiler.not_truth(tree))
+        return Guard(" ".join(text.split()), tuple(compiler.refs), _function(compiler, tree))
+    except (RecursionError, MemoryError):
+        raise ConditionError("nested too deeply") from None
+
+
+def _function(compiler: _Compiler, tree: ast.expr) -> Callable[..., Any]:
     arguments = [ast.arg(f"v{i}") for i in range(len(compiler.refs))]
     body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), tree)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
-    function = eval(code, {"__builtins__": {}, **FUNCTIONS})  # whitelisted above
-    return Guard(" ".join(text.split()), tuple(compiler.refs), function)
+    function: Callable[..., Any] = eval(code, {"__builtins__": {}, **FUNCTIONS})  # whitelisted
+    return function
 
 
 class _Compiler:
@@ -100,15 +112,18 @@ class _Compiler:
         self.named = named
         self.refs: list[Ref] = []
         self.kinds: list[Any] = []
+        self.spelled = 0
 
     def parse(self, text: str, within: tuple[str, ...]) -> ast.expr:
-        if len(text) > LONGEST:
+        self.spelled += len(text)
+        if len(text) > LONGEST or self.spelled > LONGEST_SPELLED:
+            # Conditions that name each other twice over double with each name.
             raise ConditionError(f"longer than {LONGEST} characters")
         try:
             tree = ast.parse(text.strip(), mode="eval")
         except SyntaxError as error:
             raise ConditionError(f"{error.msg}", max(0, (error.offset or 1) - 1)) from None
-        except (ValueError, RecursionError, MemoryError) as error:
+        except ValueError as error:
             raise ConditionError(f"cannot be read: {error}") from None
         for node in ast.walk(tree):
             if not isinstance(node, _ALLOWED):
@@ -161,7 +176,10 @@ class _Compiler:
             if root in within:
                 loop = " -> ".join((*within[within.index(root) :], root))
                 raise ConditionError(f"condition {root!r} refers to itself: {loop}", offset)
-            return self.parse(self.named[root], (*within, root))
+            try:
+                return self.parse(self.named[root], (*within, root))
+            except ConditionError as error:
+                raise ConditionError(error.message, offset, error.named or root) from None
         ref, kind = resolve(chain, self.types, list(self.named), offset)
         if ref not in self.refs:
             self.refs.append(ref)

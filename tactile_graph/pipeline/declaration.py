@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from tactile_graph.errors import did_you_mean, one_of
+from tactile_graph.errors import did_you_mean, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
 TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
@@ -57,12 +57,9 @@ def kind_of(value: Any) -> str:
         type(None): "nothing",
     }
     kind = kinds.get(type(value))
-    return f"{kind}: {_cut(value)}" if kind and value not in (None, {}, []) else kind or _cut(value)
-
-
-def _cut(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    if kind is None:
+        return shown(value)
+    return kind if value in (None, {}, []) else f"{kind}: {shown(value)}"
 
 
 class _Declarer:
@@ -84,7 +81,7 @@ class _Declarer:
         if value is None or isinstance(value, str):
             return value or ""
         if isinstance(value, int | float) and not isinstance(value, bool):
-            return str(value)
+            return shown(value)
         self.problem(f"{what} must be a text, got {kind_of(value)}", *path, key)
         return ""
 
@@ -137,7 +134,7 @@ class _Declarer:
             path = ("conditions", name)
             self.name(name, path, "condition")
             if isinstance(text, bool | int | float):
-                text = str(text)
+                text = shown(text)
             if not isinstance(text, str):
                 self.problem(
                     f"condition {name!r} must be an expression, got {kind_of(text)}", *path
@@ -182,6 +179,9 @@ class _Declarer:
             )
         node.step = self.text(body, "step", *path, what=f"{what}, 'step'") or None
         node.use = self.text(body, "use", *path, what=f"{what}, 'use'") or None
+        for key in [k for k in ("step", "use", "when") if body.get(k, "x") in (None, "")]:
+            self.problem(f"{what}: {key!r} is empty", *path, key, key=True)
+        self.text(body, "about", *path, what=f"{what}, 'about'")
         if "first_of" in body:
             node.first_of = self.refs(body["first_of"], (*path, "first_of"), f"{what}, 'first_of'")
             for key in ("in", "with", "each"):
@@ -191,9 +191,9 @@ class _Declarer:
                     )
         node.inputs = self.inputs(body.get("in"), (*path, "in"), what)
         node.settings = self.mapping(body.get("with"), (*path, "with"), what)
-        node.when = self.text(body, "when", *path, what=f"{what}, 'when'") or None
-        if isinstance(body.get("when"), bool):
-            node.when = str(body["when"])
+        when = body.get("when")
+        given = {"when": str(when)} if isinstance(when, bool) else body
+        node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
         each = body.get("each", False)
         if not isinstance(each, bool):
             self.problem(

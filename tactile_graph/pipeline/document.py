@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from tactile_graph.errors import Mark, Problem
+from tactile_graph.errors import Mark, Problem, shown
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
@@ -18,6 +18,11 @@ MOST_CHARACTERS = 1_000_000
 _SCALARS = {
     "tag:yaml.org,2002:" + kind for kind in ("null", "bool", "int", "float", "str", "timestamp")
 }
+_KEYS = {*_SCALARS, "tag:yaml.org,2002:merge", "tag:yaml.org,2002:value"}
+
+
+def _refused(tag: str) -> str:
+    return f"the tag {tag!r} is refused: pipeline files hold plain values only"
 
 
 @dataclass
@@ -57,9 +62,9 @@ class Document:
             return ""
         line = lines[mark.line - 1]
         start = max(0, mark.column - 60)
-        shown = line[start : start + 100].replace("\t", " ")
+        part = line[start : start + 100].replace("\t", " ")
         label = f"  {mark.line} | "
-        return f"{label}{shown}\n{' ' * (len(label) + mark.column - 1 - start)}^"
+        return f"{label}{part}\n{' ' * (len(label) + mark.column - 1 - start)}^"
 
 
 def read_document(text: str, file: str) -> Document:
@@ -85,6 +90,9 @@ def read_document(text: str, file: str) -> Document:
         document.problem_at(place, f"this is not YAML: {error.problem or error.context}")
     except (yaml.YAMLError, _TooMuch) as error:
         document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
+    except RecursionError:
+        text = f"this is not YAML that can be read: deeper than {DEEPEST} levels"
+        document.problem_at(Mark(file, 1, 1), text)
     finally:
         loader.dispose()
     return document
@@ -152,10 +160,7 @@ class _Reader:
             return [self.read(child, (*path, i)) for i, child in enumerate(node.value)]
         if isinstance(node, yaml.ScalarNode) and node.tag in _SCALARS:
             return self._scalar(node)
-        self.document.problem_at(
-            self._mark(node),
-            f"the tag {node.tag!r} is refused: pipeline files hold plain values only",
-        )
+        self.document.problem_at(self._mark(node), _refused(node.tag))
         return None
 
     def _scalar(self, node: yaml.ScalarNode) -> Any:
@@ -163,8 +168,10 @@ class _Reader:
             return node.value
         try:
             return self.loader.construct_object(node, deep=True)
-        except (ValueError, yaml.YAMLError) as error:
-            self.document.problem_at(self._mark(node), f"{node.value!r} cannot be read: {error}")
+        except (ValueError, LookupError, yaml.YAMLError):
+            # A tag can call any word a number: PyYAML then stumbles in several ways.
+            kind = node.tag.rpartition(":")[2]
+            self.document.problem_at(self._mark(node), f"{shown(node.value)} is no {kind}")
             return None
 
     def _mapping(self, node: yaml.MappingNode, path: Path) -> dict[str, Any]:
@@ -175,6 +182,9 @@ class _Reader:
                 self.document.problem_at(mark, "a key must be a plain word")
                 continue
             key = str(key_node.value)
+            if key_node.tag not in _KEYS:
+                self.document.problem_at(mark, _refused(key_node.tag))
+                continue
             if key_node.tag == "tag:yaml.org,2002:merge":
                 self.document.problem_at(
                     mark, "merge keys ('<<') are refused: write the values out"

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.facts import embedded_facts, source_facts
 from tactile_graph.pipeline.node import FRAME, Binding, Facts, Node, NodeKind
 from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.pipeline.wiring import Ref, fit
@@ -17,11 +18,12 @@ from tactile_graph.wires.image import Image
 
 
 def inline_nodes(
-    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
-) -> tuple[list[Node], list[str]]:
+    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark,
+    outer: Facts,
+) -> tuple[list[Node], list[str]]:  # fmt: skip
     """Return the inner nodes under ``name/…`` and one passing node per output."""
     rename, troubles = _renamer(name, ref, kind)
-    nodes = [_moved(node, name, rename, ref) for node in inner.nodes.values()]
+    nodes = [_moved(node, name, rename, outer) for node in inner.nodes.values()]
     single = len(inner.outputs) == 1
     for output, source in inner.outputs.items():
         nodes.append(
@@ -33,9 +35,16 @@ def inline_nodes(
                 choices=(rename(source),),
                 guard=guard,
                 key=inner.key + output,
+                facts=embedded_facts(_facts_at(source, inner), outer),
             )
         )
     return nodes, troubles
+
+
+def _facts_at(ref: Ref, inner: Pipeline) -> Facts:
+    if ref.node == FRAME:
+        return source_facts(None) if ref.path in ((), ("image",)) else Facts()
+    return inner.nodes[ref.node].facts if ref.whole else Facts()
 
 
 def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list[str]]:
@@ -46,9 +55,9 @@ def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list
         if inner.node != FRAME:
             return replace(inner, node=f"{name}/{inner.node}")
         if kind is Frame:
-            return Ref(ref.node, (*ref.path, *inner.path))
+            return Ref(ref.node, (*ref.path, *inner.path), inner.item_path)
         if inner.path[:1] == ("image",) and image is not None:
-            return Ref(image.node, (*image.path, *inner.path[1:]))
+            return Ref(image.node, (*image.path, *inner.path[1:]), inner.item_path)
         text = f"the pipeline reads {inner}, but {ref} is a {type_name(kind)}"
         if text not in troubles:
             troubles.append(text)
@@ -57,7 +66,7 @@ def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list
     return rename, troubles
 
 
-def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], ref: Ref) -> Node:
+def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], outer: Facts) -> Node:
     guard = node.guard
     if guard is not None:
         guard = Guard(guard.text, tuple(rename(r) for r in guard.refs), guard.function)
@@ -67,7 +76,7 @@ def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], ref: Ref) -> Nod
         inputs=tuple(replace(b, refs=tuple(rename(r) for r in b.refs)) for b in node.inputs),
         choices=tuple(rename(c) for c in node.choices),
         guard=guard,
-        facts=node.facts if ref == Ref(FRAME) else Facts(),
+        facts=embedded_facts(node.facts, outer),
     )
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule
@@ -21,15 +22,15 @@ def source_facts(source: Source | None) -> Facts:
         if source and source.signature.output_quantity
         else ()
     )
-    return Facts(names[0] if len(names) == 1 else FRAME, GridFact(FRAME))
+    return Facts(names[0] if len(names) == 1 else FRAME, GridFact(FRAME), of_frame=True)
 
 
 def ref_facts(ref: Ref, facts: FactTable) -> Facts:
     """Return what is known of the image at a reference."""
     known = facts.get(ref.node, Facts())
-    if not ref.path:
+    if ref.whole:
         return known
-    return known if ref.node == FRAME and ref.path == ("image",) else Facts()
+    return known if ref == Ref(FRAME, ("image",)) else Facts()
 
 
 def output_facts(
@@ -37,18 +38,12 @@ def output_facts(
 ) -> Facts:
     """Return what is known of a step's output."""
     by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in inputs if b.refs}
-    return Facts(
-        _output_quantity(signature.output_quantity, by_port),
-        _output_grid(signature.output_grid, settings, by_port),
-    )
-
-
-def _output_quantity(rule: Quantity | None, by_port: Mapping[str, Facts]) -> str:
-    if rule is None:
-        return ""
-    if rule.port:
-        return by_port.get(rule.port, Facts()).quantity
-    return rule.names[0] if len(rule.names) == 1 else ""
+    like, quantity = Facts(), signature.output_quantity
+    if quantity is not None and quantity.port:
+        like = by_port.get(quantity.port, like)
+    elif quantity is not None and len(quantity.names) == 1:
+        like = Facts(quantity.names[0])
+    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port))
 
 
 def _output_grid(
@@ -85,11 +80,11 @@ def step_troubles(
         if s.quantity and s.quantity.port and given.get(s.name) is not None
     ]
     for port, quantity, setting in wanted:
-        got = by_port.get(port, Facts()).quantity
-        if got == FRAME:
-            rules.append(FrameRule(node, port, signature.name, quantity))
-        elif got and quantity.names and got not in quantity.names:
-            troubles.append((port, quantity_text(signature.name, port, quantity, got, setting)))
+        known = by_port.get(port, Facts())
+        if known.of_frame:
+            rules.append(FrameRule(node, port, signature.name, quantity, setting=setting))
+        text = quantity_trouble(signature.name, port, quantity, known.quantity, setting)
+        troubles += [(port, text)] if text else []
     for binding in inputs:
         if binding.port.grid is not None:
             trouble, rule = _grid_trouble(node, signature, binding, by_port)
@@ -98,10 +93,15 @@ def step_troubles(
     return troubles, rules
 
 
-def quantity_text(step: str, port: str, wanted: Quantity, got: str, setting: str = "") -> str:
-    """Return the words for a quantity that does not fit."""
+def quantity_trouble(
+    step: str, port: str, wanted: Quantity, got: str, setting: str = "", frame: bool = False
+) -> str:
+    """Return the words for a quantity that does not fit; none where it fits or is not known."""
+    if got in ("", FRAME) or not wanted.names or got in wanted.names:
+        return ""
+    source = "a frame of " if frame else ""
     who = f"setting {setting!r} of step {step!r}" if setting else f"step {step!r}"
-    return f"{who} takes {' or '.join(wanted.names)} at port {port!r}, got {got}"
+    return f"{who} takes {' or '.join(wanted.names)} at port {port!r}, got {source}{got}"
 
 
 def _grid_trouble(
@@ -119,16 +119,68 @@ def _grid_trouble(
             )
             return (port, text), None
         return None, None
-    if mine is None or mine.origin != FRAME:
-        return None, None
-    factor = int(mine.finer) if mine.finer.denominator == 1 else 1
-    return None, FrameRule(
-        node, port, signature.name, None,
-        _divided(rule.rows, factor), _divided(rule.columns, factor),
-        None if rule.pitch_cm is None else rule.pitch_cm * factor,
-        -(-rule.min_rows // factor), -(-rule.min_columns // factor),
-    )  # fmt: skip
+    try:
+        return None, coarser(
+            FrameRule(node, port, signature.name, None, rule.rows, rule.columns, rule.pitch_cm,
+                      rule.min_rows, rule.min_columns), mine)  # fmt: skip
+    except ValueError as error:
+        return (port, str(error)), None
 
 
-def _divided(count: int | None, factor: int) -> int | None:
-    return None if count is None else count // factor
+def coarser(rule: FrameRule, grid: GridFact | None) -> FrameRule | None:
+    """Return what a rule about an image of that grid demands of the frame; None if unknown.
+
+    Raises
+    ------
+    ValueError
+        If no frame can fulfil it.
+    """
+    if grid is None or grid.origin != FRAME:
+        return None
+    factor = int(grid.finer)
+    for count in (rule.rows or 0, rule.columns or 0):
+        if count % factor:
+            raise ValueError(
+                f"step {rule.step!r} takes {count} rows or columns at port {rule.port!r}, but "
+                f"there each cell was cut into {factor} a side"
+            )
+    return replace(
+        rule,
+        rows=None if rule.rows is None else rule.rows // factor,
+        columns=None if rule.columns is None else rule.columns // factor,
+        pitch_cm=None if rule.pitch_cm is None else rule.pitch_cm * factor,
+        min_rows=-(-rule.min_rows // factor),
+        min_columns=-(-rule.min_columns // factor),
+    )
+
+
+def embedded_facts(inner: Facts, outer: Facts) -> Facts:
+    """Return what is known of an embedded node's image, given what its pipeline's frame is."""
+    quantity = outer if inner.of_frame else inner
+    grid = None
+    if inner.grid is not None and outer.grid is not None:
+        grid = outer.grid.refined(int(inner.grid.finer))
+    return Facts(quantity.quantity, grid, quantity.of_frame)
+
+
+def embedded_rules(
+    name: str, rules: Iterable[FrameRule], outer: Facts
+) -> tuple[list[str], list[FrameRule]]:
+    """Return which rules an embedded pipeline's frame breaks, and those left for the frame."""
+    troubles: list[str] = []
+    left: list[FrameRule] = []
+    for inner in rules:
+        rule = replace(inner, node=f"{name}/{inner.node}")
+        if rule.quantity is not None:
+            trouble = quantity_trouble(
+                rule.step, rule.port, rule.quantity, outer.quantity, rule.setting
+            )
+            troubles += [f"{rule.node}: {trouble}"] if trouble else []
+            left += [rule] if outer.of_frame else []
+            continue
+        try:
+            found = coarser(rule, outer.grid)
+            left += [found] if found else []
+        except ValueError as error:
+            troubles.append(f"{rule.node}: {error}")
+    return troubles, left

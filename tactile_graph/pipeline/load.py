@@ -15,6 +15,8 @@ from tactile_graph.pipeline.resolve import Overrides, Resolver
 from tactile_graph.plugins.registry import Registry, installed
 
 Sourced = tuple[str, dict[str, Any]] | None
+Open = tuple[tuple[str, Path], ...]
+"""The pipelines that are being loaded because one uses the other: name and file."""
 
 
 def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
@@ -73,14 +75,27 @@ def find(name: str | Path, registry: Registry) -> Path:
     text = str(name)
     if isinstance(name, Path) or text.endswith((".yaml", ".yml")) or "/" in text:
         path = Path(name)
-        if path.is_file():
+        if _is_file(path):
             return path
-        siblings = path.parent.glob("*.y*ml") if path.parent.is_dir() else ()
-        hint = did_you_mean(path.name, [p.name for p in siblings])
+        hint = did_you_mean(path.name, _siblings(path))
         raise UsageError(f"no pipeline file {text!r}{hint}")
-    if not registry.has("pipelines", text) and Path(text).is_file():
+    if not registry.has("pipelines", text) and _is_file(Path(text)):
         raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
     return registry.path("pipelines", text)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that no file can have
+        return False
+
+
+def _siblings(path: Path) -> list[str]:
+    try:
+        return [p.name for p in path.parent.glob("*.y*ml")]
+    except OSError:
+        return []
 
 
 def _load(
@@ -88,7 +103,7 @@ def _load(
     registry: Registry,
     overrides: Overrides,
     source: Sourced,
-    within: tuple[str, ...],
+    within: Open,
 ) -> Pipeline:
     path = find(name, registry)
     try:
@@ -112,23 +127,28 @@ def _build(
     registry: Registry,
     overrides: Mapping[str, Mapping[str, Any]],
     source: Sourced,
-    within: tuple[str, ...],
+    within: Open,
 ) -> Pipeline:
     document = read_document(text, file)
     declaration = declare(document)
     if document.problems and not declaration.nodes:
         raise PipelineError(_ordered(document.problems))
-    here = (*within, declaration.name)
+    here = (*within, (declaration.name, Path(file).resolve()))
 
     def load_inner(name: str, inner_overrides: Overrides) -> Pipeline:
-        if name in here:
-            loop = " -> ".join((*here[here.index(name) :], name))
-            raise UsageError(f"pipelines use each other in a circle: {loop}")
         beside = Path(file).parent / name
-        found = beside if name.endswith((".yaml", ".yml")) and beside.is_file() else name
+        found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
+        names = [n for n, _ in here]
+        target = None if name in names else find(found, registry).resolve()
+        for i, (known, path) in enumerate(here):
+            if known == name or path == target:
+                loop = " -> ".join((*names[i:], known))
+                raise UsageError(f"pipelines use each other in a circle: {loop}")
         return _load(found, registry, inner_overrides, None, here)
 
-    pipeline = Resolver(declaration, registry, load_inner, overrides, source).resolve()
+    pipeline = Resolver(
+        declaration, registry, load_inner, overrides, source, embedded=bool(within)
+    ).resolve()
     _check_parent(declaration.evolves, document, registry)
     if document.problems:
         raise PipelineError(_ordered(document.problems))
@@ -138,7 +158,7 @@ def _build(
 def _check_parent(parent: str, document: Any, registry: Registry) -> None:
     if not parent or registry.has("pipelines", parent):
         return
-    if parent.endswith((".yaml", ".yml")) and (Path(document.file).parent / parent).is_file():
+    if parent.endswith((".yaml", ".yml")) and _is_file(Path(document.file).parent / parent):
         return
     names = registry.names("pipelines")
     hint = did_you_mean(parent, names) or f"; there are: {one_of(names)}"

@@ -49,11 +49,14 @@ class Binding:
 class Facts:
     """What the loader knows of a node's image before the first frame.
 
-    ``quantity`` is the name of a quantity, or `FRAME` for "that of the frame", or "".
+    ``quantity`` is the name of a quantity, or `FRAME` for "that of the frame", or "". With
+    ``of_frame`` it is the frame's, whether the source names it or not: who runs the pipeline on
+    other frames is told.
     """
 
     quantity: str = ""
     grid: GridFact | None = None
+    of_frame: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +104,7 @@ class Node:
         guard = list(self.guard.refs) if self.guard else []
         return guard + [r for b in self.inputs for r in b.refs] + list(self.choices)
 
-    def bound(self) -> Callable[..., Any]:
+    def bound(self, **injected: Any) -> Callable[..., Any]:
         """Return the callable of the ports, settings filled in; new state for a stateful step."""
         signature = self.signature
         assert signature is not None, f"{self.name} is no step"
@@ -109,7 +112,7 @@ class Node:
             return partial(signature.target, **self.settings) if self.settings else signature.target
         if self.callable is not None and not signature.stateful:
             return self.callable
-        made: Callable[..., Any] = signature.target(**self.settings)
+        made: Callable[..., Any] = signature.target(**self.settings, **injected)
         return made
 
 
@@ -131,3 +134,4 @@ class FrameRule:
     pitch_cm: float | None = None
     min_rows: int = 1
     min_columns: int = 1
+    setting: str = ""

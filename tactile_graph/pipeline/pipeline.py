@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError
@@ -108,9 +109,10 @@ class Pipeline:
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner:
         """Return a fresh runner, or the last one where no step keeps state."""
         kept: dict[Any, Runner] = self._kept
-        runner = kept.get((only, seed))
+        key = (only, seed, get_ident())  # a runner serves one thread
+        runner = kept.get(key)
         if runner is None or runner.stateful:
-            runner = kept[only, seed] = self.runner(only, seed)
+            runner = kept[key] = self.runner(only, seed)
             if len(kept) > 16:
                 kept.pop(next(iter(kept)))
         return runner
@@ -287,6 +289,8 @@ def plain(value: Any) -> Any:
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
         return [plain(v) for v in value]
+    if isinstance(value, set | frozenset):
+        return sorted((plain(v) for v in value), key=repr)  # the same under every hash seed
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if hasattr(value, "tolist"):

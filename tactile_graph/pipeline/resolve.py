@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
+from numpy.random import default_rng
+
 from tactile_graph.errors import (
     Mark,
     PluginError,
@@ -21,9 +23,15 @@ from tactile_graph.pipeline import conditions
 from tactile_graph.pipeline.bind import bind_inputs
 from tactile_graph.pipeline.conditions import ConditionError, Guard, compile_condition, names_in
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
-from tactile_graph.pipeline.facts import output_facts, source_facts, step_troubles
+from tactile_graph.pipeline.facts import (
+    embedded_rules,
+    output_facts,
+    ref_facts,
+    source_facts,
+    step_troubles,
+)
 from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule, Node, NodeKind, node_key
-from tactile_graph.pipeline.pipeline import Pipeline, Source
+from tactile_graph.pipeline.pipeline import Pipeline, Source, plain
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import Trouble, validate_settings
@@ -68,6 +76,8 @@ class Resolver:
         Node name -> settings from outside (``--set``, ``with_settings``, ``use … with``).
     source : tuple of (step name, settings), optional
         Replaces the file's source.
+    embedded : bool
+        Whether another pipeline uses it: its frames are then not those of its own source.
     """
 
     def __init__(
@@ -77,6 +87,7 @@ class Resolver:
         load: Loader,
         overrides: Overrides | None = None,
         source: tuple[str, dict[str, Any]] | None = None,
+        embedded: bool = False,
     ) -> None:
         self.declaration = declaration
         self.document = declaration.document
@@ -84,12 +95,14 @@ class Resolver:
         self.load = load
         self.overrides = {k: dict(v) for k, v in (overrides or {}).items()}
         self.replaced_source = source
+        self.embedded = embedded
         self.scope = Scope()
+        self.condition_errors: list[tuple[NodeDeclaration, ConditionError]] = []
 
     def resolve(self) -> Pipeline:
         """Return the pipeline; it is only fit to run if the document has no problems."""
         source = self._source()
-        self.scope.facts[FRAME] = source_facts(source)
+        self.scope.facts[FRAME] = source_facts(None if self.embedded else source)
         for name in self._order():
             declared = self.declaration.nodes[name]
             try:
@@ -145,25 +158,19 @@ class Resolver:
     def _order(self) -> list[str]:
         """Return the nodes, each after those it reads; a cycle is reported as a path."""
         graph = {name: sorted(self._reads(n)) for name, n in self.declaration.nodes.items()}
-        try:
-            return _in_file_order(graph)
-        except CycleError as error:
-            loop = list(reversed(error.args[1]))
-            self.document.problem(
-                f"the nodes form a cycle: {' -> '.join(loop)}", "nodes", loop[0], key=True
-            )
-            inside = set(loop)
-            for name in inside:
-                self.scope.types[name] = UNKNOWN
-            rest = {
-                n: [r for r in reads if r not in inside]
-                for n, reads in graph.items()
-                if n not in inside
-            }
+        while True:
             try:
-                return _in_file_order(rest)
-            except CycleError:
-                return []
+                return _in_file_order(graph)
+            except CycleError as error:
+                self._cut_cycle(graph, list(reversed(error.args[1])))
+
+    def _cut_cycle(self, graph: dict[str, list[str]], loop: list[str]) -> None:
+        """Report a cycle and cut it, so that its nodes are still checked in all else."""
+        text = f"the nodes form a cycle: {' -> '.join(loop)}"
+        self.document.problem(text, "nodes", loop[0], key=True)
+        for name in set(loop):
+            self.scope.types[name] = UNKNOWN
+            graph[name] = [r for r in graph[name] if r not in loop]
 
     def _reads(self, node: NodeDeclaration) -> set[str]:
         texts: list[str] = list(node.first_of or [])
@@ -172,14 +179,17 @@ class Resolver:
             texts += value if isinstance(value, list) else [value] if value else []
         names = {t.partition(".")[0] for t in texts}
         if node.when:
-            names |= self._names_in(node.when, set())
+            names |= self._names_in(node.when)
         return names & self.declaration.nodes.keys()
 
-    def _names_in(self, text: str, seen: set[str]) -> set[str]:
-        names = names_in(text)
-        for name in names & self.declaration.conditions.keys() - seen:
-            names |= self._names_in(self.declaration.conditions[name], seen | {name})
-        return names
+    def _names_in(self, text: str) -> set[str]:
+        found = set[str]()
+        waiting = [text]
+        while waiting:
+            names = names_in(waiting.pop()) - found
+            found |= names
+            waiting += [self.declaration.conditions.get(n, "") for n in sorted(names)]
+        return found
 
     # -- nodes -------------------------------------------------------------------------------
 
@@ -200,13 +210,15 @@ class Resolver:
         try:
             return compile_condition(declared.when, self.scope.types, self.declaration.conditions)
         except ConditionError as error:
-            mark = self.document.mark(*declared.path, "when")
-            column = mark.column + (error.offset if "\n" not in declared.when else 0)
-            self.document.problem_at(
-                Mark(mark.file, mark.line, column),
-                f"node {declared.name!r}, 'when': {error.message}",
-            )
+            self.condition_errors.append((declared, error))
             return None
+
+    def _condition_problem(
+        self, message: str, text: str, error: ConditionError, *path: str | int
+    ) -> None:
+        mark = self.document.mark(*path)
+        column = mark.column + (error.offset if "\n" not in text else 0)
+        self.document.problem_at(Mark(mark.file, mark.line, column), message)
 
     def _mark(self, declared: NodeDeclaration) -> Mark:
         return self.document.mark(*declared.path, key=True)
@@ -215,7 +227,7 @@ class Resolver:
         return None if guard is None else (guard.text, [self._ref_key(r) for r in guard.refs])
 
     def _ref_key(self, ref: Ref) -> tuple[object, ...]:
-        return (self.scope.keys.get(ref.node, ref.node), ref.path, ref.over_items)
+        return (self.scope.keys.get(ref.node, ref.node), ref.path, ref.item_path)
 
     def ref(self, declared: NodeDeclaration, text: str, *path: str | int) -> tuple[Ref, Any] | None:
         """Return reference and type for ``node.field``, or report what is wrong with it."""
@@ -281,7 +293,7 @@ class Resolver:
                 text = f": a stateful step ({declared.step}) cannot run for each item"
                 self._problem(declared, text, "each")
         key = node_key(
-            declared.step, sorted(settings.items(), key=lambda kv: kv[0]), declared.each,
+            declared.step, sorted(plain(settings).items()), declared.each,
             [(b.port.name, [self._ref_key(r) for r in b.refs]) for b in inputs],
             self._guard_key(guard),
         )  # fmt: skip
@@ -297,7 +309,8 @@ class Resolver:
     def _made(self, declared: NodeDeclaration, node: Node) -> Node:
         """Build a class step once, so that settings it refuses are an error of the file."""
         try:
-            return replace(node, callable=node.bound())
+            rng = node.signature.rng if node.signature and node.signature.rng_at_init else ""
+            return replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
         except Exception as error:  # a constructor may raise anything about its settings
             self._problem(declared, f": {error}", "with")
             return node
@@ -383,7 +396,12 @@ class Resolver:
         from tactile_graph.pipeline.embed import inline_nodes
 
         kind = conditions.resolve((ref.node, *ref.path), self.scope.types, [])[1]
-        nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, self._mark(declared))
+        outer = ref_facts(ref, self.scope.facts)
+        mark = self._mark(declared)
+        nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, mark, outer)
+        broken, rules = embedded_rules(declared.name, inner.frame_rules, outer)
+        self.scope.rules += rules
+        troubles += broken
         for trouble in troubles:
             self._problem(declared, f": {trouble}", "in")
         for node in nodes:
@@ -393,23 +411,40 @@ class Resolver:
     # -- the whole ---------------------------------------------------------------------------
 
     def _check_conditions(self) -> None:
-        """Report conditions that no node uses yet are wrong; used ones were met already."""
-        for name, text in self.declaration.conditions.items():
+        """Report conditions that are wrong, used or not; a named one only where it stands."""
+        named = self.declaration.conditions
+        errors: dict[str, ConditionError] = {}
+        for name, text in named.items():
             try:
-                compile_condition(text, self.scope.types, self.declaration.conditions)
+                compile_condition(text, self.scope.types, named)
             except ConditionError as error:
-                self.document.problem(f"condition {name!r}: {error.message}", "conditions", name)
+                errors[name] = error
+        broken = {n for n, e in errors.items() if e.named in ("", n)}
+        for name, wrong in errors.items():
+            if name in broken or wrong.named not in broken:
+                what = f"condition {name!r}: {wrong.message}"
+                self._condition_problem(what, named[name], wrong, "conditions", name)
+        for node, wrong in self.condition_errors:
+            if wrong.named not in broken:
+                what = f"node {node.name!r}, 'when': {wrong.message}"
+                self._condition_problem(what, node.when or "", wrong, *node.path, "when")
 
     def _check_overrides(self) -> None:
-        known = set(self.declaration.nodes) | set(self.scope.nodes)
-        for name in self.overrides:
-            head = name.partition("/")[0]
-            if name not in known and head not in self.declaration.nodes:
+        nodes = self.declaration.nodes
+        for name, settings in self.overrides.items():
+            head, slash, _ = name.partition("/")
+            if head in nodes and (nodes[head].use if slash else nodes[head].step):
+                continue  # checked with the node, or inside the embedded pipeline
+            where = f"setting {name}.{next(iter(settings), '')}: "
+            if name in nodes:
+                inside = f"; inside it they are named {name}/node.setting"
+                text = f"node {name!r} is no step and has no settings" + (
+                    inside if nodes[name].use else "")  # fmt: skip
+            else:
+                known = {*nodes, *(n for n in self.scope.nodes if "." not in n)}
                 hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
-                self.document.problems.append(
-                    Problem(None, f"setting {name}.{next(iter(self.overrides[name]), '')}: "
-                            f"no node named {name!r}{hint}")
-                )  # fmt: skip
+                text = f"no node named {name!r}{hint}"
+            self.document.problems.append(Problem(None, where + text))
 
     def _outputs(self) -> dict[str, Ref]:
         outputs: dict[str, Ref] = {}

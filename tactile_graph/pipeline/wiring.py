@@ -22,25 +22,31 @@ UNKNOWN = Any
 class Ref:
     """A value on a wire: a node's outcome, or what an attribute path makes of it.
 
-    With ``over_items`` the path is applied to each item of a list.
+    Where that is a list, ``item_path`` is applied to each of its items.
     """
 
     node: str
     path: tuple[str, ...] = ()
-    over_items: bool = False
+    item_path: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return ".".join((self.node, *self.path))
 
     @property
+    def whole(self) -> bool:
+        """Whether it is the node's value itself."""
+        return not self.path and not self.item_path
+
+    @property
     def getter(self) -> Callable[[Any], Any] | None:
         """What turns the node's value into this one; None where it is the value itself."""
-        if not self.path:
-            return None
-        get = attrgetter(".".join(self.path))
-        if not self.over_items:
-            return get
-        return lambda items: tuple(get(item) for item in items)
+        whole = attrgetter(".".join(self.path)) if self.path else None
+        if not self.item_path:
+            return whole
+        of_item = attrgetter(".".join(self.item_path))
+        if whole is None:
+            return lambda items: tuple([of_item(item) for item in items])
+        return lambda value: tuple([of_item(item) for item in whole(value)])
 
 
 def arms(kind: Any) -> tuple[Any, ...]:
@@ -87,12 +93,12 @@ def fit(ref: Ref, given: Any, wanted: Any) -> Ref | None:
         return ref
     view = view_of(given, wanted)
     if view is not None:
-        return Ref(ref.node, (*ref.path, view), ref.over_items)
+        return Ref(ref.node, (*ref.path, view))
     given_item, wanted_item = list_item(given), list_item(wanted)
-    if given_item is not None and wanted_item is not None and not ref.path:
+    if given_item is not None and wanted_item is not None:
         view = view_of(given_item, wanted_item)
         if view is not None:
-            return Ref(ref.node, (view,), over_items=True)
+            return Ref(ref.node, ref.path, (view,))
     return None
 
 

@@ -157,7 +157,7 @@ def _type(node: ast.expr | None) -> str:
 
 
 class _Bare(ast.NodeTransformer):
-    def visit_Subscript(self, node: ast.Subscript) -> ast.AST:  # noqa: N802 -- ast's name
+    def visit_Subscript(self, node: ast.Subscript) -> ast.AST:
         """Replace ``Annotated[X, …]`` by X."""
         name = ast.unparse(node.value).rpartition(".")[2]
         if name == "Annotated" and isinstance(node.slice, ast.Tuple):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
-from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, shown
 from tactile_graph.plugins import hookspecs
 
 if TYPE_CHECKING:
@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
 OFFERS = ("steps", "pipelines", "pads", "presets", "commands")
+_FILES = ("pipelines", "pads", "presets")
+_TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
+_WANTED = {
+    k: "a file's path is needed" if k in _FILES else 'an import string "module:name" is needed'
+    for k in OFFERS
+}
 
 
 @dataclass(frozen=True)
@@ -112,7 +118,7 @@ class Registry:
             self._manager.check_pending()
             for kind in OFFERS:
                 plugin.offers[kind] = self._ask(module, kind)
-        except Exception as error:  # a plugin may raise anything; the rest must go on working
+        except (Exception, SystemExit) as error:  # it may raise anything; the rest must go on
             plugin.error = f"{type(error).__name__}: {error}"
             plugin.offers.clear()
         plugin.import_ms = 1e3 * (time.perf_counter() - start)
@@ -125,8 +131,14 @@ class Registry:
         answers = [i.function() for i in hook.get_hookimpls() if i.plugin is module]
         if not answers:
             return {}
+        hook_name = f"hook {GROUP}_{kind}"
         if not isinstance(answers[0], Mapping):
-            raise PluginError(f"hook {GROUP}_{kind} must return a mapping, got {answers[0]!r}")
+            raise PluginError(f"{hook_name} must return a mapping, got {shown(answers[0])}")
+        for name, target in answers[0].items():
+            if not isinstance(name, str) or not name:
+                raise PluginError(f"{hook_name}: a name must be a text, got {shown(name)}")
+            if not (isinstance(target, _TARGETS[kind]) or (kind == "steps" and callable(target))):
+                raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {_WANTED[kind]}")
         return dict(answers[0])
 
     def _add(self, kind: str, offer: Offer) -> None:
@@ -196,9 +208,11 @@ class Registry:
 def _import(offer: Offer) -> Any:
     module_name, _, attribute = str(offer.target).partition(":")
     where = f"{offer.name!r} of {offer.plugin.label}"
+    if not module_name or not attribute:
+        raise PluginError(f"{where}: {offer.target!r} is no import string 'module:name'")
     try:
         module = importlib.import_module(module_name)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise PluginError(f"{where}: cannot import {module_name}: {error}") from error
     try:
         return getattr(module, attribute)

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from tactile_graph.errors import did_you_mean, one_of
+from tactile_graph.errors import did_you_mean, one_of, shown
 from tactile_graph.steps.signature import Setting, Signature, strip, type_name
 
 Trouble = tuple[tuple[str | int, ...], str]
@@ -55,6 +55,8 @@ def validate_settings(
                 troubles += [(_path(name, e), _words(e, setting)) for e in _shortest(error)]
             except _BadValue as error:
                 troubles.append(((name,), str(error)))
+            except Exception as error:  # a plugin's own validator may raise anything
+                troubles.append(((name,), f"{error or type(error).__name__}"))
         elif setting.required:
             troubles.append(((), f"setting {name!r} is missing ({type_name(setting.annotation)})"))
         else:
@@ -69,7 +71,7 @@ class _BadValue(Exception):  # noqa: N818 -- never leaves this module
 def _one(setting: Setting, value: Any) -> Any:
     if isinstance(value, bool) and not _takes_bool(setting.annotation):
         # pydantic would read "yes" as the number 1
-        raise _BadValue(f"must be {_allowed(setting)}, got {value!r}")
+        raise _BadValue(f"must be {_allowed(setting)}, got {shown(value)}")
     return adapter(setting).validate_python(value)
 
 
@@ -112,14 +114,15 @@ def _words(e: Any, setting: Setting) -> str:
     kind, context, got = str(e["type"]), e.get("ctx", {}), e["input"]
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
-        return f"must be {sign} {context[key]}, got {got!r}"
+        return f"must be {sign} {context[key]}, got {shown(got)}"
     if kind == "literal_error":
         names = [part.strip().strip("'") for part in _allowed(setting).split("|")]
-        return f"must be one of {_allowed(setting)}, got {got!r}{did_you_mean(str(got), names)}"
+        hint = did_you_mean(got if isinstance(got, str) else shown(got), names)
+        return f"must be one of {_allowed(setting)}, got {shown(got)}{hint}"
     if kind == "value_error":
         return f"{context.get('error', e['msg'])}"
     if kind.endswith(("_parsing", "_type", "_from_float")):
-        return f"must be {_allowed(setting)}, got {got!r}"
+        return f"must be {_allowed(setting)}, got {shown(got)}"
     if kind in ("too_short", "too_long"):
         return f"{str(e['msg'])[0].lower()}{str(e['msg'])[1:]}"
-    return f"must be {_allowed(setting)}, got {got!r} ({e['msg']})"
+    return f"must be {_allowed(setting)}, got {shown(got)} ({e['msg']})"

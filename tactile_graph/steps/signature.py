@@ -77,6 +77,7 @@ class Signature:
     output_quantity: Quantity | None = None
     output_grid: Grid | None = None
     rng: str = ""
+    rng_at_init: bool = False
     report: str = ""
     gap: str = ""
     stateful: bool = False
@@ -122,12 +123,21 @@ def list_item(kind: Any) -> Any:
     return args[0] if is_list else None
 
 
-def _pick(metadata: tuple[Any, ...], kind: type) -> Any:
-    return next((m for m in metadata if isinstance(m, kind)), None)
+def _pick(annotation: Any, kind: type) -> Any:
+    """Return the rule of that kind in an annotation, also in ``Annotated[Image, …] | None``."""
+    bare, metadata = strip(annotation)
+    found = next((m for m in metadata if isinstance(m, kind)), None)
+    if found is None and get_origin(bare) in (Union, types.UnionType):
+        found = next((f for a in get_args(bare) if (f := _pick(a, kind)) is not None), None)
+    return found
 
 
-def _parameters(target: Callable[..., Any]) -> list[inspect.Parameter]:
-    return [p for p in inspect.signature(target).parameters.values() if p.name != "self"]
+def _parameters(name: str, target: Callable[..., Any]) -> list[inspect.Parameter]:
+    try:
+        parameters = inspect.signature(target).parameters.values()
+    except ValueError as error:
+        raise PluginError(f"step {name!r}: its signature cannot be read: {error}") from error
+    return [p for p in parameters if p.name != "self"]
 
 
 def _hints(name: str, target: Callable[..., Any]) -> dict[str, Any]:
@@ -140,19 +150,22 @@ def _hints(name: str, target: Callable[..., Any]) -> dict[str, Any]:
 def _annotation(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Any:
     if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
         raise PluginError(f"step {name!r}: *args and **kwargs cannot be wired; name each parameter")
+    if p.kind is p.POSITIONAL_ONLY:
+        raise PluginError(f"step {name!r}: {p.name!r} is wired by name; take the '/' away")
     if p.name not in hints:
         raise PluginError(f"step {name!r}: parameter {p.name!r} has no annotation")
     return hints[p.name]
 
 
 def _port(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Port:
-    bare, metadata = strip(_annotation(name, hints, p))
-    return Port(p.name, bare, p.default, _pick(metadata, Quantity), _pick(metadata, Grid))
+    annotation = _annotation(name, hints, p)
+    rules = _pick(annotation, Quantity), _pick(annotation, Grid)
+    return Port(p.name, strip(annotation)[0], p.default, *rules)
 
 
 def _setting(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Setting:
     annotation = _annotation(name, hints, p)
-    return Setting(p.name, annotation, p.default, _pick(strip(annotation)[1], Quantity))
+    return Setting(p.name, annotation, p.default, _pick(annotation, Quantity))
 
 
 def read_signature(name: str, target: Callable[..., Any]) -> Signature:
@@ -167,8 +180,10 @@ def read_signature(name: str, target: Callable[..., Any]) -> Signature:
         return _read_class(name, target)
     if not callable(target):
         raise PluginError(f"step {name!r}: {target!r} is not a function or class")
+    if inspect.iscoroutinefunction(target) or inspect.isasyncgenfunction(target):
+        raise PluginError(f"step {name!r}: an 'async' function cannot be a step")
     hints = _hints(name, target)
-    parameters = _parameters(target)
+    parameters = _parameters(name, target)
     positional = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
     injected, settings = _split(name, hints, [p for p in parameters if p.kind is p.KEYWORD_ONLY])
     source = inspect.isgeneratorfunction(target)
@@ -217,13 +232,16 @@ def _output(
 ) -> tuple[Any, Quantity | None, Grid | None]:
     if "return" not in hints:
         raise PluginError(f"step {name!r}: it has no return annotation")
-    bare, metadata = strip(hints["return"])
+    annotation = hints["return"]
+    quantity, grid = _pick(annotation, Quantity), _pick(annotation, Grid)
+    bare = strip(annotation)[0]
     if source:
         if get_origin(bare) not in (Iterator, Iterable, Generator):
             raise PluginError(f"step {name!r}: a source returns Iterator[Frame]")
-        bare, inner = strip(get_args(bare)[0])
-        metadata = (*metadata, *inner)
-    return bare, _pick(metadata, Quantity), _pick(metadata, Grid)
+        annotation = get_args(bare)[0]
+        bare = strip(annotation)[0]
+        quantity, grid = quantity or _pick(annotation, Quantity), grid or _pick(annotation, Grid)
+    return bare, quantity, grid
 
 
 def _read_class(name: str, target: type) -> Signature:
@@ -233,10 +251,10 @@ def _read_class(name: str, target: type) -> Signature:
     init = inspect.getattr_static(target, "__init__")
     has_init = inspect.isfunction(init)
     init_hints = _hints(name, init) if has_init else {}
-    init_parameters = _parameters(init) if has_init else []
+    init_parameters = _parameters(name, init) if has_init else []
     from_init, settings = _split(name, init_hints, init_parameters)
     hints = _hints(name, call)
-    parameters = _parameters(call)
+    parameters = _parameters(name, call)
     positional = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
     injected, extra = _split(name, hints, [p for p in parameters if p.kind is p.KEYWORD_ONLY])
     if extra:
@@ -256,8 +274,11 @@ def _read_class(name: str, target: type) -> Signature:
         quantity,
         grid,
         rng=from_init["rng"] or injected["rng"],
+        rng_at_init=bool(from_init["rng"]),
         gap=injected["gap"],
-        stateful=not getattr(target, "stateless", False),
+        # Knowing when it last ran, or drawing on from frame to frame, is a state too.
+        stateful=not getattr(target, "stateless", False)
+        or bool(injected["gap"] or from_init["rng"]),
     )
 
 

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.wires.image import Image
+from tactile_graph.errors import did_you_mean
+from tactile_graph.wires.image import QUANTITIES, Image
 from tactile_graph.wires.shapes import Shape
 
 
@@ -72,8 +73,13 @@ class Frame:
         valid = None if finite.all() else finite
         if valid is not None:
             copy[~valid] = 0.0  # a NaN left in place would spread through the first sum
-        pitch = (float(pitch_cm),) * 2 if isinstance(pitch_cm, int | float) else pitch_cm
-        return cls(Image(copy, (pitch[0], pitch[1]), origin_cm, quantity, valid), **rest)
+        x, y = (float(p) for p in np.broadcast_to(pitch_cm, 2))
+        if not (0.0 < x < np.inf and 0.0 < y < np.inf):
+            raise ValueError(f"a pitch must be > 0 cm, got {pitch_cm}")
+        if quantity not in QUANTITIES:
+            hint = did_you_mean(quantity, QUANTITIES) or f"; allowed: {', '.join(QUANTITIES)}"
+            raise ValueError(f"unknown quantity {quantity!r}{hint}")
+        return cls(Image(copy, (x, y), origin_cm, quantity, valid), **rest)
 
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""

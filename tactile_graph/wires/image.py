@@ -153,10 +153,13 @@ class Mask(_Gridded):
     values : ndarray of bool, shape (rows, columns)
     pitch_cm, origin_cm : (float, float)
         As in `Image`.
+    count : int, optional
+        Number of cells that are on, where whoever made the mask has counted them.
     """
 
-    __slots__ = ()
+    __slots__ = ("_count",)
     values: NDArray[np.bool_]
+    _count: int | None
     columns_shown: ClassVar[tuple[str, ...]] = ("count", "area_cm2")
 
     def __init__(
@@ -164,11 +167,13 @@ class Mask(_Gridded):
         values: NDArray[np.bool_],
         pitch_cm: tuple[float, float] = (1.0, 1.0),
         origin_cm: tuple[float, float] = (0.0, 0.0),
+        count: int | None = None,
     ) -> None:
         values.setflags(write=False)
         _set_values(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
+        _set_count(self, count)
 
     def with_values(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""
@@ -177,7 +182,11 @@ class Mask(_Gridded):
     @property
     def count(self) -> int:
         """Number of cells that are on."""
-        return int(np.count_nonzero(self.values))
+        count = self._count
+        if count is None:
+            count = int(np.count_nonzero(self.values))
+            _set_count(self, count)
+        return count
 
     @property
     def fraction(self) -> float:
@@ -194,9 +203,10 @@ class Mask(_Gridded):
 
 
 # The slots' own setters: the one way past the frozen __setattr__, at half a dataclass's cost.
-_slots: Mapping[str, Any] = {**vars(_Gridded), **vars(Image)}
+_slots: Mapping[str, Any] = {**vars(_Gridded), **vars(Image), **vars(Mask)}
 _set_values = _slots["values"].__set__
 _set_pitch = _slots["pitch_cm"].__set__
 _set_origin = _slots["origin_cm"].__set__
 _set_quantity = _slots["quantity"].__set__
 _set_valid = _slots["valid"].__set__
+_set_count = _slots["_count"].__set__

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+
 from helpers_circles import arc_xy, three
+from tactile_graph.compiled import have_compiler
+from tactile_graph.wires import Circle, Points
 from tactile_graph_fitters.algebra import moments
 from tactile_graph_fitters.fit_circle_hyper import fit_circle_hyper
 from tactile_graph_fitters.fit_circle_kasa import fit_circle_kasa
 from tactile_graph_fitters.fit_circle_taubin import fit_circle_taubin
-
-from tactile_graph.compiled import have_compiler
-from tactile_graph.wires import Circle, Points
 
 HUNDRED = Circle(3.0, -7.0, 100.0)
 

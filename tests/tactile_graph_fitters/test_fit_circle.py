@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from helpers_circles import arc, arc_xy, three
 from scipy.optimize import least_squares
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_circle_kasa import fit_circle_kasa
 
+from helpers_circles import arc, arc_xy, three
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Points
+from tactile_graph_fitters.fit_circle import fit_circle
+from tactile_graph_fitters.fit_circle_kasa import fit_circle_kasa
 
 HUNDRED = Circle(3.0, -7.0, 100.0)
 

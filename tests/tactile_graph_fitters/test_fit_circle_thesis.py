@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from helpers_circles import arc, arc_xy, three
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis, iterated
 
+from helpers_circles import arc, arc_xy, three
 from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle
+from tactile_graph_fitters.fit_circle import fit_circle
+from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis, iterated
 
 DISC = Circle(10.0, 9.0, 4.0)
 

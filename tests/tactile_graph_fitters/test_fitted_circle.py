@@ -3,9 +3,9 @@
 import dataclasses
 
 import pytest
-from tactile_graph_fitters.fitted_circle import FittedCircle
 
 from tactile_graph.wires import Circle
+from tactile_graph_fitters.fitted_circle import FittedCircle
 
 
 def test_quick_way_makes_the_same_record():

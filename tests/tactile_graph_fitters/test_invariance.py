@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from helpers_circles import ALL_FITS, arc_xy, three
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers_circles import ALL_FITS, arc_xy, three
 from tactile_graph.wires import Circle, Points
 
 seeds = st.integers(0, 2**32 - 1)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from helpers_circles import ALL_FITS, arc, arc_xy, three
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis
 
+from helpers_circles import ALL_FITS, arc, arc_xy, three
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Points
+from tactile_graph_fitters.fit_circle import fit_circle
+from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis
 
 third = np.arange(10)[:, None] / 10.0 * (1.0, 3.0)  # in one line but for rounding
 HOPELESS = {

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+
+from tactile_graph.compiled import have_compiler
 from tactile_graph_fitters.principal import (
     ALL_EQUAL,
     NOT_FINITE,
@@ -12,8 +14,6 @@ from tactile_graph_fitters.principal import (
     into_frame,
     turned,
 )
-
-from tactile_graph.compiled import have_compiler
 
 SETS = {
     OK: np.random.default_rng(3).normal(size=(17, 2)) * (3.0, 0.5) + (100.0, -7.0),

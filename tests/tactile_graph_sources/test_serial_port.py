@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 import tracemalloc
@@ -12,14 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from helpers_serial import KITS, FakePad, Kit
+from tactile_graph import Frame, loads
+from tactile_graph.errors import DataError, UsageError
+from tactile_graph.steps.injected import Report
 from tactile_graph_sources.devices.port import Port
 from tactile_graph_sources.devices.reader import Reader
 from tactile_graph_sources.serial_port import serial
-
-from tactile_graph import Frame
-from tactile_graph.errors import DataError, UsageError
-from tactile_graph.steps.injected import Report
 
 BY_NAME = {k.preset: k for k in KITS}
 FLEXITAC = BY_NAME["flexitac-12x32"]
@@ -163,20 +164,23 @@ def test_a_pad_that_is_asked_answers(pad: FakePad, opened: threading.Event, name
     frames = encoded(kit, 8)
     frames[4] = frames[4][:-9]
     report = Report()
-    source = source_of(pad, name, report, n_frames=5)
+    # A fast line, so that a reply that does not come is not waited for long.
+    source = source_of(pad, name, report, n_frames=5, baud=2_000_000)
+    done = threading.Event()
     question = {"fsrray": b"\x10", "itas": b"A", "pressure-mat-28x56": b"start_reading\n"}[name]
     asked = []
 
     def play() -> None:
         pad.send(kit.junk)
         for frame in frames:
-            asked.append(pad.asked(len(question), 2.0))
+            asked.append(pad.asked(len(question), done))
             if not asked[-1]:
                 return
             pad.send(frame)
 
     with played(opened, play):
         got = list(source)
+        done.set()
     assert set(asked) <= {question, b""}
     values = [int(f.image.values[0, 0]) - kit.low for f in got]
     assert values == sorted(values)
@@ -247,3 +251,102 @@ def test_closing_ends_the_thread_and_frees_the_port(pad: FakePad, opened: thread
             next(source)
         source.close()
         assert not [t for t in threading.enumerate() if t.name.startswith("serial")]
+
+
+def test_a_pad_that_must_be_started_is_asked_again_when_it_missed_it(
+    pad: FakePad, opened: threading.Event, tmp_path: Path
+) -> None:
+    preset = tmp_path / "mine.yaml"
+    preset.write_text(
+        "preset: mine\nextends: flexitac-12x32\nrequest: {send: 'text:go', when: start}\n"
+    )
+    asked = []
+    never = threading.Event()
+
+    def play() -> None:
+        asked.append(pad.asked(2, never))  # as if still starting: no answer
+        asked.append(pad.asked(2, never))
+        pad.send(b"".join(encoded(FLEXITAC, 3)))
+
+    source = source_of(pad, str(preset), Report(), timeout_s=0.2, n_frames=2)
+    with played(opened, play):
+        assert len(list(source)) == 2
+    assert asked == [b"go", b"go"]
+
+
+def test_a_socket_is_a_port_too(opened: threading.Event) -> None:
+    """Its in_waiting is 0 or 1, however much has come."""
+    frames = encoded(FLEXITAC, 200)
+    report = Report()
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        url = f"socket://127.0.0.1:{server.getsockname()[1]}"
+
+        def play() -> None:
+            connection, _ = server.accept()
+            with connection:
+                connection.sendall(b"".join(frames))
+                assert done.wait(20.0)
+
+        done = threading.Event()
+        with played(opened, play):
+            got = list(
+                serial(
+                    port=url, preset=FLEXITAC.preset, n_frames=199, give_up_s=20.0, report=report
+                )
+            )
+            done.set()
+    assert [int(f.image.values[0, 0]) for f in got] == [i % 200 for i in range(199)]
+
+
+CIRCLE_OF_COUNTS = """
+pipeline: live-circle
+nodes:
+  footprint: {step: threshold, in: frame, with: {level: 60}}
+  fine: {step: subdivide, in: footprint, with: {factor: 2}}
+  eroded: {step: erode, in: fine, with: {element: disc5}}
+  dilated: {step: dilate, in: eroded, with: {element: disc5}}
+  boundary: {step: boundary_scan, in: dilated}
+  hull: {step: hull, in: boundary}
+  circle: {step: fit_circle, in: hull, when: footprint.count > 0}
+outputs: [circle]
+"""
+
+
+def test_circle_3_follows_a_disc_on_a_live_pad_through_an_unplugging(
+    pad: FakePad, opened: threading.Event
+) -> None:
+    """500 frames a second of FlexiTac through circle-3's steps: the disc, the gap, the counters."""
+    n, rows, columns = 250, 12, 32
+    y, x = np.mgrid[:rows, :columns] + 0.5
+    centres = [8.0 + 16.0 * i / n for i in range(n)]
+    discs = [np.where(np.hypot(x - c, y - 6.0) < 4.0, 120, 3).astype(np.uint8) for c in centres]
+    frames = [FLEXITAC.encode(d, i) for i, d in enumerate(discs)]
+    report = Report()
+    source = source_of(pad, FLEXITAC.preset, report)
+    half_seen = threading.Event()
+
+    def play() -> None:
+        stream(pad, frames)
+        assert half_seen.wait(30.0)
+        opened.clear()
+        pad.unplug()
+        pad.plug_in()
+        assert opened.wait(20.0)
+        stream(pad, frames)
+
+    results = []
+    with played(opened, play):
+        for result in loads(CIRCLE_OF_COUNTS).stream(source):
+            results.append(result)
+            if len(results) == n - 1:
+                half_seen.set()
+            if len(results) == 2 * (n - 1):
+                break
+    source.close()
+    assert all(r.ok for r in results)
+    pitch = results[0].frame.image.pitch_cm[0]
+    found = np.array([r["circle"].x_cm / pitch for r in results])
+    assert np.abs(found - np.array([*centres[:-1], *centres[:-1]])).max() < 0.6
+    assert [i for i, r in enumerate(results) if r.frame.gap] == [n - 1]
+    assert report.counts["good frames"] == 2 * (n - 1)
+    assert report.counts["reconnects"] == 1

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_recordings import frames_of
-from tactile_graph_sources.write_npz import write_npz
 
+from helpers_recordings import frames_of
 from tactile_graph.wires import Circle, Ellipse, Frame, Image, Polygon, Rectangle, TrueObject
+from tactile_graph_sources.write_npz import write_npz
 
 SHAPES = (
     Circle(1.0, 2.0, 3.0),

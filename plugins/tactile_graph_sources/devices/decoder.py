@@ -12,8 +12,9 @@ from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.delimited import DelimitedFramer
 from tactile_graph_sources.devices.geometry import Placement
 from tactile_graph_sources.devices.layout import Layout
-from tactile_graph_sources.devices.packet import PacketFramer, ReplyFramer
+from tactile_graph_sources.devices.packet import PacketFramer
 from tactile_graph_sources.devices.preset import Packet, Preset, Text
+from tactile_graph_sources.devices.reply import ReplyFramer
 from tactile_graph_sources.devices.text import TextFramer
 from tactile_graph_sources.devices.units import Assembled, Units
 
@@ -42,6 +43,7 @@ class Decoder:
         self.framer = _framer(preset, self.counts)
         self.assembler = _assembler(preset, self.framer, self.counts)
         self._clock = _clock(preset)
+        self._by_silence = preset.framed_by_silence
         self._lost = False
         self._out_of_range = ""
 
@@ -61,7 +63,7 @@ class Decoder:
         A kit whose frames are found by what they hold takes no notice: a pause inside a line is
         the host's own hiccup.
         """
-        if not self.preset.framed_by_silence:
+        if not self._by_silence:
             return []
         return self._frames(self.framer.boundary())
 
@@ -75,7 +77,7 @@ class Decoder:
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found; may be empty."""
-        return self.framer.hint() or self._out_of_range
+        return "; ".join(filter(None, (self._out_of_range, self.framer.hint())))
 
     def _frames(self, runs: list[Units]) -> list[Decoded]:
         out: list[Decoded] = []
@@ -88,6 +90,8 @@ class Decoder:
         good = self.placement.in_range(batch.cells)
         gap = batch.gap
         times = self._clock.seconds(batch.time) if self._clock and batch.time is not None else None
+        if good.any():
+            self._out_of_range = ""
         if not good.all():
             self._refuse(batch.cells[~good])
             gap = gap | np.concatenate([[False], ~good[:-1]])

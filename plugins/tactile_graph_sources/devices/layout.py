@@ -21,6 +21,7 @@ from tactile_graph_sources.devices.preset import (
     Value,
     unit_cells,
 )
+from tactile_graph_sources.devices.units import Units
 
 TAG_ROWS_AHEAD = 2
 """Rows of the next frame whose tags are looked at: one row of zeros mimics tag 0 when shifted."""
@@ -121,9 +122,10 @@ class Layout:
 
     def ok(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Return which units, shape (k, size), hold what they must, checksum apart."""
-        good: NDArray[np.bool_] = (
-            (units[:, self.at] & self.mask[self.at]) == self.want[self.at]
-        ).all(axis=1)
+        if len(self.at) == 0:
+            good = np.ones(len(units), dtype=np.bool_)
+        else:
+            good = ((units[:, self.at] & self.mask[self.at]) == self.want[self.at]).all(axis=1)
         start = self.places.get("start")
         if start is not None:
             number = start.read(units).astype(np.int64) - start.value.first
@@ -138,8 +140,10 @@ class Layout:
 
     def beginnings(self, array: NDArray[np.uint8], start: int, stop: int) -> NDArray[np.int64]:
         """Return the places from ``start`` to ``stop`` of a stream that look like beginnings."""
-        places = np.arange(start, stop)
-        for at in self.at_ahead:
+        first, *others = self.at_ahead.tolist()
+        fits = (array[start + first : stop + first] & self.mask[first]) == self.want[first]
+        places = start + np.flatnonzero(fits)
+        for at in others:
             places = places[(array[places + at] & self.mask[at]) == self.want[at]]
             if len(places) == 0:
                 break
@@ -167,6 +171,26 @@ class Layout:
                     if got[0] == _crc_field(unit[None, :], offset, tried)[0]:
                         found.append(f"variant: {variant}, order: {order}, after: {after}")
         return found
+
+    def units(self, rows: NDArray[np.uint8], end: int, broken: bool) -> Units:
+        """Return good units; ``end`` is the stream place just after the last of them."""
+        ends = end - self.size * np.arange(len(rows) - 1, -1, -1, dtype=np.int64)
+        if not self.places:
+            return Units(self.values(rows), ends, broken)
+
+        def read(name: str) -> NDArray[np.int64] | None:
+            place = self.places.get(name)
+            return None if place is None else place.read(rows).astype(np.int64) - place.value.first
+
+        return Units(
+            self.values(rows),
+            ends,
+            broken,
+            time=read("time"),
+            sequence=read("sequence"),
+            start=read("start"),
+            device=read("device"),
+        )
 
     def values(self, units: NDArray[np.uint8]) -> NDArray[Any]:
         """Return the cells of each unit, shape (k, m)."""

@@ -1,4 +1,4 @@
-"""Framers of units of fixed size: found by header look-ahead, by checksum, or by silence."""
+"""Framer of units of fixed size, found by header look-ahead or by checksum."""
 
 from __future__ import annotations
 
@@ -8,31 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_sources.devices.counters import LinkCounts
-from tactile_graph_sources.devices.layout import Layout, Place
+from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.units import Units
 
 RECENT = 8192
 """Bytes kept for a hint while no frame is found."""
-
-
-def _units_of(layout: Layout, rows: NDArray[np.uint8], end: int, broken: bool) -> Units:
-    """Return good units; ``end`` is the stream place just after the last of them."""
-    k = len(rows)
-    ends = end - layout.size * np.arange(k - 1, -1, -1, dtype=np.int64)
-
-    def read(name: str) -> NDArray[np.int64] | None:
-        place: Place | None = layout.places.get(name)
-        return None if place is None else place.read(rows).astype(np.int64) - place.value.first
-
-    return Units(
-        layout.values(rows),
-        ends,
-        broken,
-        time=read("time"),
-        sequence=read("sequence"),
-        start=read("start"),
-        device=read("device"),
-    )
 
 
 class PacketFramer:
@@ -96,7 +76,7 @@ class PacketFramer:
         n = k if good.all() else int(np.argmin(good))
         if n:
             end = at + n * layout.size
-            out.append(_units_of(layout, rows[:n].copy(), self._place + end, self._broken))
+            out.append(layout.units(rows[:n].copy(), self._place + end, self._broken))
             self._broken = False
             at = end
         if n < k:
@@ -193,63 +173,3 @@ class PacketFramer:
                 f"headers come every {step} bytes, the preset expects {layout.size}: rows, columns?"
             )
         return ""
-
-
-class ReplyFramer:
-    """Takes what lies between two silences as one unit, if it has exactly the right length."""
-
-    def __init__(self, layout: Layout, counts: LinkCounts) -> None:
-        self.layout = layout
-        self.counts = counts
-        self._buffer = bytearray()
-        self._length = 0
-        self._place = 0
-        self._broken = False
-        self._ever = False
-
-    @property
-    def complete(self) -> bool:
-        """Whether a whole reply is there."""
-        return self._length >= self.layout.size
-
-    def feed(self, data: bytes) -> list[Units]:
-        """Keep bytes until the next silence; never more than one unit of them."""
-        self._length += len(data)
-        self._place += len(data)
-        room = self.layout.size - len(self._buffer)
-        self._buffer += data[:room]
-        return []
-
-    def boundary(self) -> list[Units]:
-        """Judge what came since the last silence."""
-        if self._length == 0:
-            return []
-        row = np.frombuffer(bytes(self._buffer), np.uint8)[None, :]
-        length, self._length = self._length, 0
-        self._buffer.clear()
-        size = self.layout.size
-        good = length == size and bool(self.layout.ok(row)[0])
-        if not good:
-            self._refuse(length)
-            return []
-        self._ever = True
-        broken, self._broken = self._broken, False
-        return [_units_of(self.layout, row, self._place, broken)]
-
-    def _refuse(self, length: int) -> None:
-        self.counts.discarded_bytes += length
-        self._broken = True
-        size = self.layout.size
-        if self._ever:  # before the first frame it is boot text
-            cause = "short" if length < size else "long" if length > size else "fixed bytes"
-            self.counts.bad[cause] += 1
-
-    def reset(self) -> None:
-        """Forget what was buffered."""
-        self.counts.discarded_bytes += self._length
-        self._buffer.clear()
-        self._length, self._broken = 0, True
-
-    def hint(self) -> str:
-        """Return what the bytes themselves say about why no frame is found."""
-        return f"a reply must be {self.layout.size} bytes: rows, columns, baud?"

@@ -37,6 +37,7 @@ class TextFramer:
         self._ever = False
         self._broken = self._opens = False
         self._run = (False, False)
+        self._no_rows = (np.zeros((0, self.n_numbers), np.int64), np.zeros(0, np.int64))
         self._n_last = 0
 
     def feed(self, data: bytes) -> list[Units]:
@@ -72,7 +73,7 @@ class TextFramer:
             self._place += len(self._buffer)
             self._buffer = b""
         self._claim()
-        out = [self._units([], [])]
+        out = [Units(*self._no_rows, *self._run)]
         self._skipping, self._opens = False, True
         return out
 

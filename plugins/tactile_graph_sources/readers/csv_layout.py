@@ -63,7 +63,10 @@ def is_comment(line: str) -> bool:
 
 
 def name_columns(header: str) -> tuple[dict[str, int], float]:
-    """Return which column is what by a header line, and the factor from its time to seconds."""
+    """Return which column is what by a header line, and the factor from its time to seconds.
+
+    A row of numbers names none.
+    """
     separator = next((s for s in (";", "\t", ",") if s in header), None)
     names = [n.strip().strip('"').lower() for n in header.split(separator)]
     columns: dict[str, int] = {}
@@ -90,20 +93,14 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
         Whether there are no more lines.
     """
     content = [line for line in lines if not is_blank(line) and not is_comment(line)]
-    if content and not is_numeric(content[0]):  # a long table is long: its start must do
-        named, factor = name_columns(content[0])
-        if {"row", "column", "value"} <= named.keys():
-            content = content[:1000]
+    named, factor = name_columns(content[0]) if content else ({}, 1.0)
+    if {"row", "column", "value"} <= named.keys():
+        return _long(content[1:1000], named, factor)
     numeric = [line for line in content if is_numeric(line)]
     if not numeric or 2 * len(numeric) < len(content):
         return None
     dialect = Dialect.of(numeric[:200])
-    named, factor = ({}, 1.0) if is_numeric(content[0]) else name_columns(content[0])
     header = bool(named) or _is_header(dialect, content[0], numeric)
-    if {"row", "column", "value"} <= named.keys():
-        least = 1 + max(named.values())  # a header of more names than there are numbers is damage
-        width = max(_width(dialect, numeric), least)
-        return Layout("long", dialect, width, columns=named, time_factor=factor)
     width = _width(dialect, numeric)
     lead = {k: v for k, v in named.items() if k in ("frame", "time") and v < 2}
     groups, run = _groups(lines, dialect)
@@ -117,6 +114,16 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     if not lead:
         lead = _lead(dialect, numeric, width, told)
     return Layout("flat", dialect, width, header=header, columns=lead, time_factor=factor)
+
+
+def _long(content: Sequence[str], named: dict[str, int], time_factor: float) -> Layout | None:
+    numeric = [line for line in content if is_numeric(line)]
+    if not numeric:
+        return None
+    dialect = Dialect.of(numeric[:200])
+    least = 1 + max(named.values())  # a header of more names than there are numbers is damage
+    width = max(_width(dialect, numeric), least)
+    return Layout("long", dialect, width, columns=named, time_factor=time_factor)
 
 
 def _is_header(dialect: Dialect, line: str, numeric: Sequence[str]) -> bool:

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from helpers_circuits import exact_ratio, spread_siemens
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers_circuits import exact_ratio, spread_siemens
 from tactile_graph_pads.circuits.divider import Divider, ratio_kernel, siemens_kernel
 
 CIRCUITS = [

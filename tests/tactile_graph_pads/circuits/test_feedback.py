@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from helpers_circuits import exact_ratio, spread_siemens
 
+from helpers_circuits import exact_ratio, spread_siemens
 from tactile_graph_pads.circuits.feedback import Feedback
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from helpers_circuits import exact_ratio, spread_siemens
 
+from helpers_circuits import exact_ratio, spread_siemens
 from tactile_graph_pads.circuits.floating import Floating, equivalent_s
 from tactile_graph_pads.circuits.newton import MOST_ITERATIONS
 
@@ -50,9 +50,7 @@ def test_three_corners_make_a_ghost_at_the_fourth_and_the_inverse_removes_it():
     assert found.siemens[6, 5] < 1e-3 * found.siemens[2, 2]
 
 
-@pytest.mark.parametrize(
-    ("low", "high"), [(1e3, 1e6), (1.0, 1e2), (1e9, 1e12), (5e3, 6e3)]
-)
+@pytest.mark.parametrize(("low", "high"), [(1e3, 1e6), (1.0, 1e2), (1e9, 1e12), (5e3, 6e3)])
 def test_the_inverse_gives_noiseless_conductances_back_to_1e_9(low, high):
     circuit = Floating(bias_ohm=float(np.sqrt(low * high)))
     siemens = spread_siemens(7, (16, 16), low, high)

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from helpers_circuits import spread_siemens
 
+from helpers_circuits import spread_siemens
 from tactile_graph_pads.circuits.nodal import measured_ratio, node_voltages
 
 

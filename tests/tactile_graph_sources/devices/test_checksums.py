@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from tactile_graph_sources.devices.checksums import crc16
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from tactile_graph_sources.devices.geometry import Placement
 from tactile_graph_sources.devices.preset import Geometry
 

@@ -6,6 +6,7 @@ import threading
 
 import numpy as np
 import pytest
+
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.decoder import Decoded
 from tactile_graph_sources.devices.inbox import Arrived, Inbox

@@ -1,15 +1,15 @@
-"""Presets: those that ship load; a user's own file is a preset; every fault is named with its line."""
+"""Presets: those that ship load, a user's own file is one, every fault is named with its line."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
-from helpers_serial import KITS
-from tactile_graph_sources.devices.preset_file import PresetError, load_preset
 
+from helpers_serial import KITS
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
+from tactile_graph_sources.devices.preset_file import PresetError, load_preset
 
 GOOD = """\
 preset: mine

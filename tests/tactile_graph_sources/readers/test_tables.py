@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers_recordings import blobs, flat_text, frames_of, long_text, stacked_text, write
 
+from helpers_recordings import blobs, flat_text, frames_of, long_text, stacked_text, write
 from tactile_graph.errors import DataError
 
 VALUES = blobs(5, 8, 8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from tactile_graph_sources.readers.units import length_cm, pressure_unit
 
 

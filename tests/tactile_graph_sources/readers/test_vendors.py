@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from helpers_recordings import (
     blobs,
     capfingerid_text,
@@ -23,7 +24,6 @@ from helpers_recordings import (
     xsensor_says,
     xsensor_text,
 )
-
 from tactile_graph.wires import Ellipse, Image
 
 N_PER_KPA_CM2 = 0.1

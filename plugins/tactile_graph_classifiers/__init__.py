@@ -1,0 +1,27 @@
+"""The classifiers family: features of an object on the pad, and which known object it is."""
+
+from collections.abc import Mapping
+
+from tactile_graph import hookimpl
+
+_STEPS = {
+    "features": "features:FeaturesOf",
+    "fitted_area": "fitted_area:fitted_area",
+    "mahalanobis": "mahalanobis:Mahalanobis",
+    "mean_reading": "mean_reading:MeanReading",
+    "minimum_distance": "minimum_distance:MinimumDistance",
+    "minimum_distance_normalised": "minimum_distance_normalised:MinimumDistanceNormalised",
+}
+
+
+@hookimpl
+def tactile_graph_steps() -> Mapping[str, str]:
+    """Offer features and classifiers."""
+    return {name: f"{__name__}.{home}" for name, home in _STEPS.items()}
+
+
+@hookimpl
+def tactile_graph_commands() -> Mapping[str, str]:
+    """Offer the commands about known objects."""
+    names = ("forget", "identify", "learn", "objects")
+    return {name: f"{__name__}.commands.{name}:{name}" for name in names}

@@ -1,0 +1,54 @@
+"""``Identity``: which known object it is, and how sure that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+UNKNOWN = "unknown"
+"""The name of what is none of the known objects; no object can be learned under it."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """The object a reading belongs to.
+
+    Parameters
+    ----------
+    name : str
+        Of the object; ``unknown`` where even the nearest is too far.
+    shape : str
+        What it was learned as: disc, rectangle, ellipse, polygon; empty where unknown.
+    known : bool
+        Whether the nearest object is near enough.
+    distance : float
+        To the nearest object, as the classifier measures it.
+    limit : float
+        Largest distance at which that object is accepted, learned from its readings; infinite
+        where nothing is rejected.
+    nearest : str
+        The nearest object, near enough or not.
+    runner_up : str
+        The second nearest; empty where only one object is known.
+    runner_up_distance : float
+        Infinite where only one object is known.
+    margin : float
+        1 - distance / runner_up_distance: 0 for a tie, 1 if nothing else comes into question.
+    """
+
+    name: str
+    shape: str
+    known: bool
+    distance: float
+    limit: float
+    nearest: str
+    runner_up: str
+    runner_up_distance: float
+    margin: float
+    columns_shown: ClassVar[tuple[str, ...]] = (
+        "name",
+        "distance",
+        "runner_up",
+        "margin",
+        "known",
+    )

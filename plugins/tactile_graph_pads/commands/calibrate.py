@@ -1,0 +1,326 @@
+"""``tactile-graph calibrate``: from recordings of known loads to a calibration file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+if TYPE_CHECKING:
+    from tactile_graph_pads.calibration import Calibration, Origin
+    from tactile_graph_pads.calibration_groups import GroupReader
+    from tactile_graph_pads.calibration_points import Observation
+
+FITS = ("polynomial", "isotonic", "power")
+
+
+class Loaded(NamedTuple):
+    """A recording and the weight that lay on its group; None where the frames' truth says it."""
+
+    path: Path
+    load_g: float | None
+
+
+class _Group(click.ParamType):
+    name = "group"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[int, int] | str:
+        if not isinstance(value, str) or value == "all":
+            return value  # type: ignore[no-any-return]
+        rows, _, columns = value.lower().partition("x")
+        if not (rows.isdecimal() and columns.isdecimal() and int(rows) and int(columns)):
+            self.fail(f"must be ROWSxCOLUMNS or 'all', got {value!r}", param, ctx)
+        return int(rows), int(columns)
+
+
+@click.command()
+@click.argument("recordings", nargs=-1, metavar="[FILE=GRAMS | FILE]...")
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path),
+              help="Where the calibration goes; without it, only what it would be is said.")  # fmt: skip
+@click.option("--loads", type=click.Path(exists=True, dir_okay=False, path_type=Path),
+              help="A list of recordings: YAML (file: grams) or CSV (columns recording, load_g).")  # fmt: skip
+@click.option("--fit", type=click.Choice(FITS), default="polynomial", show_default=True)
+@click.option("--order", type=click.IntRange(1, 9), default=5, show_default=True,
+              help="Of the polynomial.")  # fmt: skip
+@click.option("--group", type=_Group(), default="2x2", show_default=True,
+              help="Neighbouring elements that share each load: ROWSxCOLUMNS, or 'all'.")  # fmt: skip
+@click.option("--at", nargs=2, type=click.IntRange(min=0), metavar="ROW COLUMN",
+              help="The group's top left element, from 0; otherwise the strongest group.")  # fmt: skip
+@click.option("--pad", "pad_name", help="A pad by name or file: counts become volts by it.")
+@click.option("--decouple", is_flag=True,
+              help="Take the pad's crosstalk out first: a curve of conductance.")  # fmt: skip
+@click.option("--empty", type=click.Path(exists=True, path_type=Path),
+              help="A recording of the empty pad; its median is taken off.")  # fmt: skip
+@click.option("--full-scale", type=float, help="Reading from which on an element is saturated.")
+@click.option("--about", default="", help="A line for people, kept in the file.")
+@click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
+              help="Draw points, error bars and curve (.png, .svg, .pdf).")  # fmt: skip
+def calibrate(
+    recordings: tuple[str, ...],
+    output: Path | None,
+    loads: Path | None,
+    fit: Any,
+    order: int,
+    group: Any,
+    at: tuple[int, int] | None,
+    pad_name: str | None,
+    decouple: bool,
+    empty: Path | None,
+    full_scale: float | None,
+    about: str,
+    plot: Path | None,
+) -> None:
+    """Fit grams on an element to its reading, from recordings of known loads.
+
+    Each FILE=GRAMS is a recording of one weight on a group of neighbouring elements; the weight
+    is shared by them, and their readings are averaged (thesis section 2.4.2). A FILE alone holds
+    many loads: its frames say their own.
+    """
+    from tactile_graph.errors import UsageError
+    from tactile_graph_pads.calibration import Provenance, write_calibration
+    from tactile_graph_pads.calibration_fit import calibrated
+    from tactile_graph_pads.calibration_plot import check_picture, save_calibration_plot
+    from tactile_graph_pads.calibration_points import points_of
+
+    if plot is not None:
+        check_picture(plot)
+    if output is not None and not output.parent.is_dir():
+        raise UsageError(f"-o {output}: there is no folder {str(output.parent)!r}")
+    given = [*map(parse_loaded, recordings), *(read_loads(loads) if loads else ())]
+    if not given:
+        raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
+    group = None if group == "all" else group
+    reader = _reader(group, at or None, pad_name, decouple, empty, full_scale)
+    seen, origins, quantity, shape = _observe(given, reader)
+    provenance = Provenance(
+        made_by=_made_by(),
+        made_at=_now(),
+        command=("tactile-graph", *sys.argv[1:]),
+        pad=pad_name or "",
+        decoupled=decouple,
+        group=group or shape,
+        recordings=tuple(origins),
+    )
+    points = points_of(seen)
+    made = calibrated(points, fit, quantity, order, about=about, provenance=provenance)
+    _say(made)
+    if output is not None:
+        write_calibration(output, made)
+        click.echo(f"wrote {output}")
+    if plot is not None:
+        save_calibration_plot(plot, made)
+        click.echo(f"wrote {plot}")
+
+
+# -- what is given ---------------------------------------------------------------------------
+
+
+def parse_loaded(text: str) -> Loaded:
+    """Return the recording and load of ``FILE=GRAMS`` or ``FILE``.
+
+    Parameters
+    ----------
+    text : str
+
+    Raises
+    ------
+    UsageError
+        If what follows ``=`` is no weight above 0.
+    """
+    path, sign, weight = text.rpartition("=")
+    if not sign or Path(text).exists():
+        return Loaded(Path(text), None)
+    return Loaded(Path(path), _grams(weight, text))
+
+
+def _grams(value: object, where: str) -> float:
+    import math
+
+    from tactile_graph.errors import UsageError
+
+    try:
+        grams = float(str(value))
+    except ValueError:
+        grams = math.nan
+    if isinstance(value, bool) or not (math.isfinite(grams) and grams > 0.0):
+        raise UsageError(f"{where}: a load is a number of grams above 0, got {value!r}")
+    return grams
+
+
+def read_loads(path: Path) -> list[Loaded]:
+    """Return the recordings and loads that a YAML or CSV list names, relative to its folder.
+
+    Parameters
+    ----------
+    path : Path
+        YAML: a mapping of recording to grams, or a list of such mappings where a recording
+        stands several times. CSV: columns ``recording`` and ``load_g``.
+
+    Raises
+    ------
+    DataError
+        If it is neither.
+    """
+    rows = _csv_rows(path) if path.suffix.lower() == ".csv" else _yaml_rows(path)
+    return [Loaded(path.parent / name, _grams(load, where)) for name, load, where in rows]
+
+
+def _csv_rows(path: Path) -> list[tuple[str, object, str]]:
+    import csv
+
+    from tactile_graph.errors import DataError
+
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        table = csv.DictReader(file, skipinitialspace=True)
+        missing = {"recording", "load_g"} - set(table.fieldnames or ())
+        if missing:
+            raise DataError(
+                f"{path}:1", f"needs the columns recording and load_g, got {table.fieldnames}"
+            )
+        return [
+            (str(row["recording"]).strip(), row["load_g"], f"{path}:{table.line_num}")
+            for row in table
+        ]
+
+
+def _yaml_rows(path: Path) -> list[tuple[str, object, str]]:
+    from tactile_graph.errors import DataError, PipelineError
+    from tactile_graph_pads.pad import read_file
+
+    document = read_file(path, "list of loads")
+    if document.problems:
+        raise PipelineError(document.problems)
+    parts = document.data if isinstance(document.data, list) else [document.data]
+    rows: list[tuple[str, object, str]] = []
+    for part in parts:
+        if not isinstance(part, dict):
+            raise DataError(str(path), f"must map recordings to grams, got {part!r}")
+        rows += [(str(name), load, str(path)) for name, load in part.items()]
+    return rows
+
+
+# -- reading it ------------------------------------------------------------------------------
+
+
+def _reader(
+    group: tuple[int, int] | None,
+    at: tuple[int, int] | None,
+    pad_name: str | None,
+    decouple: bool,
+    empty: Path | None,
+    full_scale: float | None,
+) -> GroupReader:
+    from tactile_graph.errors import UsageError
+    from tactile_graph_pads.calibration_groups import GroupReader
+    from tactile_graph_pads.pad import load_pad
+
+    if decouple and pad_name is None:
+        raise UsageError("--decouple needs --pad: whose circuit is it?")
+    pad = None if pad_name is None else load_pad(pad_name)
+    return GroupReader(group, at, pad, decouple, full_scale, _median(empty))
+
+
+def _median(empty: Path | None) -> Any:
+    if empty is None:
+        return None
+    import numpy as np
+
+    frames, _ = _frames(empty)
+    return np.median([frame.image.values for frame in frames], axis=0)
+
+
+def _frames(path: Path) -> tuple[list[Any], Origin]:
+    from tactile_graph.errors import UsageError
+    from tactile_graph.steps.injected import Report
+    from tactile_graph_pads.calibration import Origin
+
+    try:
+        from tactile_graph_sources.frames_of import frames_of
+    except ModuleNotFoundError as error:
+        raise UsageError(f"recordings need the plugin 'sources': {error}") from error
+    report = Report()
+    frames = list(frames_of(path, report))
+    digest = next(iter(report.digests.values()), "")
+    return frames, Origin(path.name, digest, len(frames))
+
+
+def _observe(
+    given: Sequence[Loaded], reader: GroupReader
+) -> tuple[list[Observation], list[Origin], Any, tuple[int, int]]:
+    from tactile_graph.errors import DataError
+
+    seen: list[Observation] = []
+    origins: list[Origin] = []
+    quantities: dict[str, str] = {}
+    for path, load_g in given:
+        frames, origin = _frames(path)
+        for frame in frames:
+            quantities.setdefault(_read_as(frame.image.quantity, reader), str(path))
+        seen += reader.observations(frames, load_g, str(path))
+        if origin not in origins:
+            origins.append(origin)
+    if len(quantities) > 1:
+        found = ", ".join(f"{q} ({p})" for q, p in quantities.items())
+        raise DataError("calibration", f"recordings of different quantities: {found}")
+    if not seen:
+        raise DataError("calibration", "too few loads: every frame is of the empty pad")
+    quantity = next(iter(quantities))
+    if quantity not in ("volt", "siemens", "counts", "raw"):
+        raise DataError(
+            "calibration", f"only readings can be calibrated, these are {quantity} already"
+        )
+    return seen, origins, quantity, frames[0].image.shape
+
+
+def _read_as(quantity: str, reader: GroupReader) -> str:
+    if reader.pad is None or quantity not in ("counts", "volt"):
+        return quantity
+    return "siemens" if reader.decouple else "volt"
+
+
+def _made_by() -> str:
+    from importlib.metadata import version
+
+    return f"tactile-graph {version('tactile-graph')}"
+
+
+def _now() -> str:
+    from datetime import UTC, datetime
+
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+# -- saying it -------------------------------------------------------------------------------
+
+
+def _say(made: Calibration) -> None:
+    from rich.table import Table
+
+    from tactile_graph.cli.terminal import console
+
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    unit = made.units.reading
+    for name in ("load / g", f"reading / {unit}", "group SD / %", "single SD / %",
+                 "placements", "fit / g", "off / %"):  # fmt: skip
+        table.add_column(name, justify="right")
+    import numpy as np
+
+    fitted = made.grams_of(np.array([min(p.reading, made.up_to) for p in made.points])).load_g
+    for p, grams in zip(made.points, fitted, strict=True):
+        table.add_row(
+            f"{p.load_g:.4g}", f"{p.reading:.4g}",
+            *(f"{100 * sd / p.reading:.1f}" for sd in (p.sd, p.sd_single)),
+            str(p.placements), f"{grams:.4g}", f"{100 * (grams / p.load_g - 1):+.1f}",
+        )  # fmt: skip
+    say = console()
+    say.print(table)
+    q = made.quality
+    say.print(
+        f"{made.fit.kind} fit of {len(made.points)} loads, for readings up to {made.up_to:.4g} "
+        f"{unit}: off by {q.rms_percent:.1f} % (rms), {q.largest_percent:.1f} % at most; "
+        f"{q.rms_g:.3g} g rms; R² {q.r_squared:.4f}",
+        soft_wrap=True,
+    )

@@ -1,0 +1,115 @@
+"""``tactile-graph record``: a pad on a serial port into a Zarr store."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from tactile_graph.steps.injected import Report
+    from tactile_graph.wires.frame import Frame
+    from tactile_graph_sources.write_store import StoreWriter
+
+SHOW_EVERY_S = 0.5
+
+
+@click.command()
+@click.argument("target", type=click.Path(path_type=Path))
+@click.option("--port", required=True, help="Device or pyserial URL; see 'ports'.")
+@click.option("--preset", required=True, help="The kit's name, or a YAML file.")
+@click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
+@click.option("--frames", "n_frames", type=click.IntRange(min=1), help="End after so many.")
+@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), help="End after so long.")
+@click.option("--pad", default="", help="Name of the pad, kept with the recording.")
+@click.option("--append", is_flag=True, help="Go on with a recording that is there.")
+@click.option(
+    "--chunk",
+    type=click.IntRange(min=1),
+    default=256,
+    show_default=True,
+    help="Frames written at a time; a crash loses at most so many.",
+)
+@click.option(
+    "--give-up",
+    type=click.FloatRange(min=0, min_open=True),
+    help="End after so many seconds without a frame; otherwise it waits for the pad.",
+)
+def record(
+    target: Path,
+    port: str,
+    preset: str,
+    baud: int | None,
+    n_frames: int | None,
+    seconds: float | None,
+    pad: str,
+    append: bool,
+    chunk: int,
+    give_up: float | None,
+) -> None:
+    """Record every frame of a pad into the Zarr store TARGET, until Ctrl-C.
+
+    Frames carry the host's time, the pad's own time where it sends one, and marks where some were
+    lost. A pad that is unplugged is waited for.
+    """
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.steps.injected import Report
+    from tactile_graph_sources.serial_port import serial
+    from tactile_graph_sources.write_store import StoreWriter
+
+    report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
+    frames = serial(
+        port=port, preset=preset, baud=baud, n_frames=n_frames, give_up_s=give_up, report=report
+    )
+    about = {"preset": preset, "pad": pad, "port": port}
+    failure: Exception | None = None
+    try:
+        with StoreWriter(target, chunk, append, about) as store:
+            _keep(_until(frames, seconds), store)
+    except KeyboardInterrupt:
+        pass  # the usual way to end a recording; what was held is written by now
+    except TactileGraphError as error:
+        failure = error
+    finally:
+        if isinstance(frames, Generator):
+            frames.close()
+    if failure is None or report.counts["good frames"]:
+        click.echo(f"{target}: {store.n_frames} frames")
+        _tell(report)
+    if failure is not None:
+        raise click.ClickException(str(failure))
+
+
+def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
+    end = None if seconds is None else time.monotonic() + seconds
+    for frame in frames:
+        yield frame
+        if end is not None and time.monotonic() > end:
+            return
+
+
+def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
+    """Write the frames; on a terminal, say how many and how fast."""
+    shown = sys.stderr.isatty()
+    since, n = time.monotonic(), 0
+    for frame in frames:
+        store.write(frame)
+        n += 1
+        now = time.monotonic()
+        if shown and now - since > SHOW_EVERY_S:
+            rate = n / (now - since)
+            click.echo(f"\r{store.n_frames} frames, {rate:.0f} a second ", nl=False, err=True)
+            since, n = now, 0
+    if shown:
+        click.echo("", err=True)
+
+
+def _tell(report: Report) -> None:
+    """Say what the link was like, leaving out what is as it should be."""
+    names = [n for n in sorted(report.counts) if n not in ("bytes", "good frames", "troubles")]
+    for name in names:
+        click.echo(f"  {name}: {report.counts[name]}", err=True)

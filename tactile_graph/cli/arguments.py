@@ -1,0 +1,245 @@
+"""The arguments commands share that open a pipeline on a source."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from tactile_graph.errors import UsageError
+from tactile_graph.plugins import registry
+
+if TYPE_CHECKING:
+    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.wires.frame import Frame
+
+F = TypeVar("F", bound=Callable[..., Any])
+RECORDING = "recording"
+COUNT = "frames"
+"""The setting by which a source that makes its frames is told how many."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """Which frames of a source, by count from 0: from ``start`` up to, not with, ``stop``."""
+
+    start: int = 0
+    stop: int | None = None
+
+    @property
+    def most(self) -> int | None:
+        """How many frames it can be; None if there is no end."""
+        return None if self.stop is None else self.stop - self.start
+
+    def of(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Return those frames."""
+        return islice(frames, self.start, self.stop)
+
+    def expected(self, n_source: int | None) -> int | None:
+        """Return how many frames to expect of a source that gives ``n_source``, if known."""
+        if n_source is None:
+            return self.most
+        stop = n_source if self.stop is None else min(self.stop, n_source)
+        return max(0, stop - self.start)
+
+
+def parse_span(ctx: click.Context, param: click.Parameter, value: str | None) -> Span:
+    """Return the span that ``N`` or ``A:B`` spells.
+
+    Raises
+    ------
+    click.BadParameter
+        If it spells none, or one that holds no frame.
+    """
+    if value is None:
+        return Span()
+    found = re.fullmatch(r"(\d+)|(\d*):(\d*)", value.strip())
+    if found is None:
+        raise click.BadParameter(
+            f"{value!r}: must be a number of frames (20) or a range (10:30)", ctx, param
+        )
+    start = int(found[2] or 0)
+    stop = int(found[1]) if found[1] else int(found[3]) if found[3] else None
+    if stop is not None and stop <= start:
+        raise click.BadParameter(
+            f"{value!r}: holds no frame; must be like 20, 10:30, 10: or :30", ctx, param
+        )
+    return Span(start, stop)
+
+
+def complete_pipeline(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[Any]:
+    """Return pipeline names and YAML files that begin so, for the shell."""
+    names = [n for n in registry.installed().names("pipelines") if n.startswith(incomplete)]
+    return names + [str(p) for p in Path().glob(f"{incomplete}*.y*ml")]
+
+
+def pipeline_argument(command: F) -> F:
+    """Add PIPELINE."""
+    return click.argument("pipeline", required=False, shell_complete=complete_pipeline)(command)
+
+
+def source_options(command: F) -> F:
+    """Add RECORDING… and the options that choose a source and change settings."""
+    for add in reversed(
+        (
+            click.argument("recordings", metavar="[RECORDING]...", nargs=-1),
+            click.option("--source", metavar="STEP", help="Take frames from this source step."),
+            click.option(
+                "--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+                help="A setting of the source, as under 'with:' in YAML; can be repeated.",
+            ),
+            click.option(
+                "--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+                help="A setting of a node instead of the file's, the value as in YAML "
+                "(0.02, [1, 2], true); can be repeated.",
+            ),
+            click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
+                         help="Seed of everything random."),
+            click.option("--only", metavar="NODE", multiple=True,
+                         help="Ask for this node or node.field instead of the pipeline's outputs; "
+                         "can be repeated."),
+        )
+    ):  # fmt: skip
+        command = add(command)
+    return command
+
+
+def open_pipeline(
+    name: str | None,
+    recordings: Sequence[str] = (),
+    source: str | None = None,
+    source_settings: Sequence[str] = (),
+    settings: Sequence[str] = (),
+    span: Span | None = None,
+) -> Pipeline:
+    """Return the pipeline a command line names, with its source and settings.
+
+    Raises
+    ------
+    UsageError
+        If something that is named does not exist, or no source is left.
+    PipelineError
+        If the file or a setting is wrong.
+    """
+    from tactile_graph.pipeline.load import load
+
+    found = registry.installed()
+    if name is None:
+        raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
+    pipeline = load(name, found)
+    if settings:
+        pipeline = pipeline.with_settings(dict(_assignment("--set", s) for s in settings))
+    return _sourced(pipeline, recordings, source, source_settings, span or Span())
+
+
+def offered() -> str:
+    """Return the pipelines there are, a line each."""
+    from tactile_graph.cli.pipelines import heads
+
+    found = heads(registry.installed())
+    width = max((len(h.name) for h in found), default=0)
+    lines = [f"  {h.name:<{width}}  {h.about or h.trouble}" for h in found]
+    return "\n".join(["there are:", *lines]) if lines else "no plugin offers any"
+
+
+def _sourced(
+    pipeline: Pipeline,
+    recordings: Sequence[str],
+    step: str | None,
+    given: Sequence[str],
+    span: Span,
+) -> Pipeline:
+    if recordings and step is not None and step != RECORDING:
+        raise UsageError(f"give recordings or --source {step}, not both: {recordings[0]}")
+    own = pipeline.source
+    base: dict[str, Any] = {}
+    if recordings:
+        step = RECORDING
+        base = {"path": recordings[0] if len(recordings) == 1 else list(recordings)}
+    elif step is None:
+        if own is None:
+            raise UsageError(
+                f"pipeline {pipeline.name!r} declares no source: give it recordings or --source"
+            )
+        step = own.name
+    if own is not None and step == own.name and not recordings:
+        base = {k: v for k, v in own.settings.items() if not _is_default(own, k, v)}
+    base.update(_assignment("--with", text) for text in given)
+    wanted = {text.partition("=")[0].strip() for text in given}
+    if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
+        base[COUNT] = span.stop
+    if own is not None and step == own.name and not (recordings or given or COUNT in base):
+        return pipeline
+    _check_source(step, base, bool(recordings))
+    return pipeline.with_source(step, **base)
+
+
+def _is_default(source: Any, name: str, value: Any) -> bool:
+    default = next(s.default for s in source.signature.settings if s.name == name)
+    return default is value
+
+
+def _counts(step: str) -> bool:
+    found = registry.installed()
+    return found.has("steps", step) and any(s.name == COUNT for s in found.step(step).settings)
+
+
+def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
+    """Check what the command line says of the source: it is no mistake of the file.
+
+    Raises
+    ------
+    UsageError
+        With everything wrong with it.
+    """
+    from tactile_graph.steps.settings import validate_settings
+    from tactile_graph.steps.signature import Kind
+
+    found = registry.installed()
+    if not found.has("steps", step):
+        names = [n for n in found.names("steps") if _is_source(n)]
+        raise UsageError(
+            f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}"
+            if not recordings
+            else f"recordings need the step {RECORDING!r}: {found.unknown('steps', step)}"
+        )
+    signature = found.step(step)
+    if signature.kind is not Kind.SOURCE:
+        raise UsageError(f"--source {step}: this step is no source: it yields no frames")
+    _, troubles = validate_settings(signature, given)
+    lines = [f"source {step}, {'.'.join(map(str, p)) + ': ' if p else ''}{m}" for p, m in troubles]
+    if lines:
+        raise UsageError("\n".join(lines))
+
+
+def _is_source(name: str) -> bool:
+    from tactile_graph.plugins.outline import outline
+
+    return outline(registry.installed().offer("steps", name).target).kind == "source"
+
+
+def _assignment(option: str, text: str) -> tuple[str, Any]:
+    """Return name and value of ``name=value``, the value read as YAML.
+
+    Raises
+    ------
+    UsageError
+        If there is no ``=``, or the value is no plain YAML.
+    """
+    from tactile_graph.pipeline.document import read_document
+
+    name, sign, value = text.partition("=")
+    form = "node.setting=value" if option == "--set" else "key=value"
+    if not sign or not name.strip():
+        raise UsageError(f"{option} {text}: must be {form}")
+    if not value.strip():
+        return name.strip(), ""
+    document = read_document(value, f"{option} {name.strip()}")
+    if document.problems:
+        raise UsageError(f"{option} {text}: {document.problems[0].message}")
+    return name.strip(), document.data

@@ -1,0 +1,72 @@
+"""A progress bar on stderr for work that turns out to be long."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+WORTH_A_BAR_S = 1.0
+REDRAW_S = 0.1
+
+
+class Bar:
+    """Counts frames; shows itself after a second, on a terminal only.
+
+    Parameters
+    ----------
+    console : Console
+        On stderr.
+    what : str
+        Stands before the bar.
+    shown : bool
+        False where it would disturb.
+    """
+
+    def __init__(self, console: Console, what: str, shown: bool = True) -> None:
+        self._console = console
+        self._what = what
+        self._next = time.monotonic() + WORTH_A_BAR_S
+        self._progress: Progress | None = None
+        self._task: TaskID | None = None
+        self._shown = shown and console.is_terminal
+
+    def at(self, done: int, total: int | None) -> None:
+        """Say how far the work is; ``total`` is None where nobody knows."""
+        if not self._shown or time.monotonic() < self._next:
+            return
+        if self._progress is None:
+            self._progress, self._task = self._start(done, total)
+        if self._task is not None:
+            self._progress.update(self._task, completed=done, total=total)
+        self._next = time.monotonic() + REDRAW_S
+
+    def now(self, total: int | None) -> None:
+        """Show the bar without waiting: the first frame of a long run may take a while."""
+        if self._shown and self._progress is None:
+            self._progress, self._task = self._start(0, total)
+
+    def _start(self, done: int, total: int | None) -> tuple[Progress, TaskID]:
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeRemainingColumn,
+        )
+
+        progress = Progress(
+            TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+            TextColumn("frames"), TimeRemainingColumn(), console=self._console, transient=True,
+        )  # fmt: skip
+        progress.start()
+        return progress, progress.add_task(self._what, completed=done, total=total)
+
+    def stop(self) -> None:
+        """Take the bar away."""
+        if self._progress is not None:
+            self._progress.stop()

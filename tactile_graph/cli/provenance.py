@@ -1,0 +1,82 @@
+"""What a run must say so that it can be made again, beside the file it writes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.plugins.registry import Plugin, Registry, installed
+from tactile_graph.steps.injected import Report
+
+
+def sidecar(output: str | Path) -> Path:
+    """Return the path of the provenance of an output file: ``out.csv.meta.json``."""
+    return Path(f"{output}.meta.json")
+
+
+def provenance(pipeline: Pipeline, seed: int, report: Report, **more: Any) -> dict[str, Any]:
+    """Return how to make a run's output again, as plain data.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        As it ran: resolved, with every setting spelled out.
+    seed : int
+    report : Report
+        Of the source: its counters, troubles and the digests of its files.
+    **more
+        Whatever else belongs to it (frames, what was asked for).
+    """
+    used = {p.name: p for p in used_plugins(pipeline, pipeline.registry or installed())}
+    source = pipeline.resolved()["source"] or {}
+    return {
+        **plain(more),
+        "seed": seed,
+        "source": {
+            **source,
+            "sha256": dict(report.digests),
+            "counts": dict(report.counts),
+            "troubles": [{"where": where, "what": what} for where, what in report.troubles],
+        },
+        "pipeline": pipeline.resolved(),
+        "file": {"name": pipeline.file, "sha256": _sha256(pipeline.text)},
+        "versions": {
+            "tactile-graph": version("tactile-graph"),
+            "python": platform.python_version(),
+            "numpy": version("numpy"),
+            "platform": platform.platform(),
+        },
+        "plugins": {n: {"package": p.package, "version": p.version} for n, p in used.items()},
+    }  # fmt: skip
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def used_plugins(pipeline: Pipeline, registry: Registry) -> Iterator[Plugin]:
+    """Yield the plugins that the pipeline, its source and its steps come from."""
+    if registry.has("pipelines", pipeline.name):
+        yield registry.offer("pipelines", pipeline.name).plugin
+    if pipeline.source is not None:
+        yield registry.offer("steps", pipeline.source.name).plugin
+    for node in pipeline.nodes.values():
+        if node.signature is not None:
+            yield registry.offer("steps", node.signature.name).plugin
+        if node.inner is not None:
+            yield from used_plugins(node.inner, registry)
+
+
+def write_provenance(output: str | Path, data: Mapping[str, Any]) -> None:
+    """Write the sidecar of an output file, at once or not at all."""
+    path = sidecar(output)
+    temporary = path.with_name(f".{path.name}.part")
+    temporary.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    os.replace(temporary, path)

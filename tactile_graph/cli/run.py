@@ -1,0 +1,273 @@
+"""``tactile-graph run``: frames through a pipeline, to people, to programs, to a picture."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tactile_graph.cli.app import EXIT_CODES
+from tactile_graph.cli.arguments import (
+    Span,
+    open_pipeline,
+    parse_span,
+    pipeline_argument,
+    source_options,
+)
+from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED
+from tactile_graph.errors import UsageError
+
+if TYPE_CHECKING:
+    from tactile_graph.engine.result import Result
+    from tactile_graph.pipeline.pipeline import Pipeline
+
+IN_A_PICTURE = 12
+LONG_RUN = 200
+STALLED_S = 1.0
+PICTURES = (".png", ".svg", ".pdf", ".jpg")
+
+
+@click.command(epilog=EXIT_CODES)
+@pipeline_argument
+@source_options
+@click.option(
+    "--frames",
+    "span",
+    callback=parse_span,
+    metavar="N|A:B",
+    help="Only the first N frames, or frames A up to B, counted from 0. A source that makes its "
+    "frames makes as many.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="Write a line a frame: out.jsonl, out.csv, or - for stdout. How it was made is written "
+    "beside it, as FILE.meta.json.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["jsonl", "csv"]),
+    help="Format of the lines, where the file's name does not say; alone it means '-o -'.",
+)
+@click.option(
+    "--plot",
+    metavar="FILE",
+    help=f"Draw the first {IN_A_PICTURE} frames: a row a frame, a column a node (.png, .svg, …).",
+)
+def run(
+    pipeline: str | None,
+    recordings: tuple[str, ...],
+    source: str | None,
+    source_settings: tuple[str, ...],
+    settings: tuple[str, ...],
+    seed: int,
+    only: tuple[str, ...],
+    span: Span,
+    output: str | None,
+    form: str | None,
+    plot: str | None,
+) -> None:
+    """Run PIPELINE, a name or a YAML file, over recordings or another source.
+
+    Without recordings and --source the pipeline's own source is used. People get a table on
+    stdout, with errors where the truth is known; programs ask for lines with -o.
+    """
+    output = output or ("-" if form else None)
+    _check_files(recordings, output, plot)
+    opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
+    _Run(opened, tuple(only), span, seed, output, form, plot).go()
+
+
+def _check_files(recordings: Sequence[str], output: str | None, plot: str | None) -> None:
+    """Refuse what could not be written in the end, before the work."""
+    for option, name in (("-o", output), ("--plot", plot)):
+        if name is None or name == "-":
+            continue
+        path = Path(name)
+        if not path.parent.is_dir():
+            raise UsageError(f"{option} {name}: there is no folder {str(path.parent)!r}")
+        if path.is_dir():
+            raise UsageError(f"{option} {name}: is a folder; name a file in it")
+        if any(Path(r).resolve() == path.resolve() for r in recordings):
+            raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
+    if plot is not None and Path(plot).suffix.lower() not in PICTURES:
+        raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
+
+
+@dataclass
+class _Run:
+    """One run from its first frame to its closing lines."""
+
+    pipeline: Pipeline
+    only: tuple[str, ...]
+    span: Span
+    seed: int
+    output: str | None
+    form: str | None
+    plot: str | None
+    kept: list[Result] = field(default_factory=list)
+    interrupted: bool = False
+    last_frame_s: float = field(default_factory=time.monotonic)
+    error: Exception | None = None
+
+    def go(self) -> None:
+        from tactile_graph.cli.interrupt import Interrupts
+        from tactile_graph.cli.progress import Bar
+        from tactile_graph.cli.tally import Tally
+        from tactile_graph.cli.terminal import console
+        from tactile_graph.engine.columns import columns_of
+        from tactile_graph.steps.injected import Report
+
+        self.report = Report(listener=self._trouble)
+        self.runner = self.pipeline.runner(self.only, self.seed)
+        self.columns = columns_of(self.pipeline, self.only or tuple(self.pipeline.outputs))
+        self.tally = Tally(self.columns)
+        # Lines own stdout; what is said to people then goes to stderr.
+        self.people = console(stderr=self.output is not None)
+        self.table: Any = None
+        self.lines = self._lines()
+        on_screen = self.lines is None and sys.stdout.isatty()
+        self.stderr = console(stderr=True)
+        self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
+        with Interrupts() as interrupts:
+            self._frames(interrupts.held)
+            code = self._close()
+        click.get_current_context().exit(code)
+
+    def _lines(self) -> Any:
+        from tactile_graph.cli.writers import Csv, JsonLines, LineFile, format_of
+
+        if self.output is None:
+            return None
+        form = format_of(self.output, self.form)
+        return LineFile(self.output, Csv(self.columns) if form == "csv" else JsonLines())
+
+    # -- the frames --------------------------------------------------------------------------
+
+    def _results(self) -> Iterator[Result]:
+        frames = self.span.of(self.pipeline.frames(self.seed, self.report))
+        for i, frame in enumerate(frames):
+            if i == 0:
+                self._warm_up()
+            yield self.runner(frame)
+
+    def _warm_up(self) -> None:
+        from tactile_graph.compiled import warm_up
+
+        expected = self.span.expected(self.report.n_expected)
+        if expected is None or expected > LONG_RUN:
+            warm_up()
+            self.bar.now(expected)
+
+    def _frames(self, held: Any) -> None:
+        try:
+            for result in self._results():
+                with held:
+                    self._one(result)
+        except KeyboardInterrupt:
+            self.interrupted = True
+        except BrokenPipeError:
+            raise
+        except Exception as error:  # a source may raise anything; what was done is kept
+            self.error = error
+        finally:
+            self.bar.stop()
+
+    def _trouble(self, where: str, what: str) -> None:
+        """Tell a trouble at once when no frame comes: closing lines would be too late."""
+        if time.monotonic() - self.last_frame_s > STALLED_S:
+            self.stderr.print(f"{where}: {what}", style="yellow", soft_wrap=True)
+
+    def _one(self, result: Result) -> None:
+        self.last_frame_s = time.monotonic()
+        self.tally.add(result)
+        if self.lines is None:
+            self._row(result)
+        else:
+            self.lines.write(result)
+            if self.tally.n == 1 and self.output != "-":
+                self._provenance(complete=False)  # should the run be killed
+        if self.plot is not None and len(self.kept) < IN_A_PICTURE:
+            self.kept.append(result)
+        self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
+
+    def _row(self, result: Result) -> None:
+        if self.table is None:
+            from tactile_graph.cli.live_table import LiveTable
+
+            self.people.print(self._heading(result), soft_wrap=True)
+            self.table = LiveTable(self.people, self.columns, result)
+        self.table.row(result)
+
+    def _heading(self, result: Result) -> Any:
+        from rich.text import Text
+
+        image = result.frame.image
+        pitch = " x ".join(f"{p:g}" for p in dict.fromkeys(image.pitch_cm))
+        name = self.pipeline.source.name if self.pipeline.source else "frames"
+        what = f"{image.rows} x {image.columns} cells of {pitch} cm, {image.quantity}"
+        return Text.assemble((self.pipeline.name, "bold"), f" on {name}: {what}")
+
+    # -- the end -----------------------------------------------------------------------------
+
+    def _close(self) -> int:
+        if self.error is None and not self.tally.n and not self.interrupted:
+            self._no_frames()
+        if self.tally.n or self.error is None:
+            self._finish_files()
+            self.tally.close(self.people, self.report, self.interrupted)
+            self._hints()
+        if self.error is not None:
+            raise self.error  # the command line shows it; what was done stands above
+        if self.interrupted:
+            return INTERRUPTED
+        return SOME_FAILED if self.tally.n_failed else 0
+
+    def _no_frames(self) -> None:
+        got = self.report.counts["frames"]
+        if self.span.start:
+            self.error = UsageError(
+                f"--frames {self.span.start}:…: the source gave only {got} frames"
+            )
+
+    def _finish_files(self) -> None:
+        if self.lines is not None:
+            self.lines.close()
+            if self.output != "-":
+                self._provenance(complete=self.error is None and not self.interrupted)
+        if self.plot is not None and self.kept:
+            from tactile_graph.draw.strip import save_strip
+
+            save_strip(self.kept, Path(self.plot))
+
+    def _provenance(self, complete: bool) -> None:
+        from tactile_graph.cli.provenance import provenance, write_provenance
+
+        data = provenance(
+            self.pipeline, self.seed, self.report,
+            command=["tactile-graph", *sys.argv[1:]], complete=complete,
+            asked=list(self.only or self.pipeline.outputs),
+            frames={"from": self.span.start, "to": self.span.stop}, result=self.tally.data(),
+        )  # fmt: skip
+        write_provenance(str(self.output), data)
+
+    def _hints(self) -> None:
+        say = self.people
+        hidden = self.table.hidden if self.table is not None else []
+        if hidden:
+            names = ", ".join(c.key for c in hidden)
+            say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
+                      soft_wrap=True)  # fmt: skip
+        for name in (self.output, self.plot):
+            if name not in (None, "-"):
+                say.print(f"wrote {name}", style="dim", soft_wrap=True)
+        most = self.span.most
+        if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
+            say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")

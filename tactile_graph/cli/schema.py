@@ -1,0 +1,30 @@
+"""``tactile-graph schema``: a JSON Schema of pipeline files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from tactile_graph.plugins import registry
+
+
+@click.command(
+    epilog="An editor with a YAML language server checks a pipeline file as it is written when "
+    "its first line is:  # yaml-language-server: $schema=pipeline.schema.json"
+)
+@click.option("-o", "--output", metavar="FILE", help="Write to a file instead of stdout.")
+def schema(output: str | None) -> None:
+    """Write a JSON Schema (draft 2020-12) of what the installed plugins allow in a pipeline."""
+    from tactile_graph.schema import pipeline_schema
+
+    made, troubles = pipeline_schema(registry.installed())
+    for trouble in troubles:
+        click.echo(f"{click.style('left open:', fg='yellow')} {trouble}", err=True)
+    text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
+    if output in (None, "-"):
+        click.echo(text, nl=False)
+    else:
+        Path(str(output)).write_text(text, encoding="utf-8")
+        click.echo(f"wrote {output}", err=True)

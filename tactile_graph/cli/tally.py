@@ -1,0 +1,169 @@
+"""Count what the frames of a run came to, and say it in closing."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from tactile_graph.cli.live_table import shown
+from tactile_graph.engine.columns import OutputColumns, values_of
+from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.result import Result
+from tactile_graph.steps.injected import Report
+
+MOST_TROUBLES = 20
+
+
+@dataclass
+class _Kept:
+    """How often something happened, and the first time in full."""
+
+    outcome: Any
+    first_frame: int
+    n: int = 0
+
+
+@dataclass
+class _Error:
+    unit: str
+    n: int = 0
+    total: float = 0.0
+    most: float = 0.0
+
+    def add(self, value: float) -> None:
+        self.n += 1
+        self.total += abs(value)
+        self.most = max(self.most, abs(value))
+
+
+@dataclass
+class Tally:
+    """What a run came to so far."""
+
+    outputs: list[OutputColumns]
+    n: int = 0
+    n_failed: int = 0
+    n_skipped: int = 0
+    failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    errors: dict[str, dict[str, _Error]] = field(default_factory=dict)
+    started: float = field(default_factory=time.perf_counter)
+    seconds: float = 0.0
+
+    def add(self, result: Result) -> None:
+        """Count a frame."""
+        self.n += 1
+        classes = {result.outcome(o.output).__class__ for o in self.outputs}
+        self.n_failed += Failed in classes
+        self.n_skipped += Skipped in classes and Failed not in classes
+        for failure in result.failures:
+            key = (failure.origin, failure.reason.partition("\n")[0])
+            self._keep(self.failed, key, failure, result)
+        for output in self.outputs:
+            outcome = result.outcome(output.output)
+            if isinstance(outcome, Skipped):
+                self._keep(self.skipped, (output.output, outcome.origin), outcome, result)
+            elif output.errors and result.frame.truth is not None:
+                self._compare(output, result)
+        self.seconds = time.perf_counter() - self.started
+
+    @staticmethod
+    def _keep(
+        where: dict[tuple[str, str], _Kept], key: tuple[str, str], outcome: Any, result: Result
+    ) -> None:
+        kept = where.setdefault(key, _Kept(outcome, result.frame.index))
+        kept.n += 1
+
+    def _compare(self, output: OutputColumns, result: Result) -> None:
+        values = values_of(result, output)
+        errors = self.errors.setdefault(output.output, {})
+        for column in output.errors:
+            value = values.get(column.key)
+            if value is not None:
+                errors.setdefault(column.field, _Error(column.unit)).add(value)
+
+    def data(self) -> dict[str, Any]:
+        """Return the counts as plain data."""
+        failed: dict[str, int] = {}
+        for (node, _), kept in self.failed.items():
+            failed[node] = failed.get(node, 0) + kept.n
+        return {
+            "frames": self.n,
+            "frames_failed": self.n_failed,
+            "frames_skipped": self.n_skipped,
+            "failures_by_node": failed,
+        }
+
+    # -- in closing --------------------------------------------------------------------------
+
+    def close(self, console: Console, report: Report, interrupted: bool = False) -> None:
+        """Print what the run came to and what the source had to say."""
+        lines = [*self._errors(), *self._outcomes(), *_source(report), self._last(interrupted)]
+        for line in lines:
+            console.print(line, soft_wrap=True)
+
+    def _errors(self) -> Iterator[Text]:
+        for output, errors in self.errors.items():
+            parts = [
+                f"{name} {shown(e.total / e.n, e.unit)} {e.unit} (most {shown(e.most, e.unit)})"
+                for name, e in errors.items()
+            ]
+            n = max((e.n for e in errors.values()), default=0)
+            if parts:
+                frames = "frame" if n == 1 else "frames"
+                text = f"{output} is off, on average over {n} {frames}, by {', '.join(parts)}"
+                yield _labelled("truth", "magenta", text)
+
+    def _outcomes(self) -> Iterator[Text]:
+        for (node, _), kept in self.failed.items():
+            failure = kept.outcome
+            where = f" ({failure.where})" if failure.where and failure.kind == "error" else ""
+            text = f"{node} {_times(kept)}: {failure.reason}{where}"
+            yield _labelled("failed", "red", text)
+        for (output, origin), kept in self.skipped.items():
+            at = "" if origin in ("", output) else f"{origin}: "
+            text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
+            yield _labelled("skipped", "yellow", text)
+
+    def _last(self, interrupted: bool) -> Text:
+        rate = f" ({self.n / self.seconds:.4g} a second)" if self.seconds > 0 and self.n else ""
+        frames = "frame" if self.n == 1 else "frames"
+        text = Text.assemble(
+            ("interrupted: " if interrupted else "", "bold red"),
+            (f"{self.n} {frames} in {self.seconds:.2f} s{rate}", "bold"),
+        )
+        if not self.n:
+            return text
+        good = self.n - self.n_failed - self.n_skipped
+        parts = [(f"{good} with all outputs", "green" if good else "")]
+        parts += [(f"{self.n_skipped} skipped", "yellow")] if self.n_skipped else []
+        parts += [(f"{self.n_failed} failed", "red")] if self.n_failed else []
+        for i, (part, style) in enumerate(parts):
+            text.append(", " if i else ": ")
+            text.append(part, style=style)
+        return text
+
+
+def _times(kept: _Kept) -> str:
+    first = f"frame {kept.first_frame}"
+    return f"in {first}" if kept.n == 1 else f"in {kept.n} frames, first in {first}"
+
+
+def _source(report: Report) -> Iterator[Text]:
+    told = {k: n for k, n in report.counts.items() if k not in ("frames", "troubles")}
+    if told:
+        yield _labelled("source", "cyan", ", ".join(f"{k}: {n}" for k, n in told.items()))
+    n = report.counts["troubles"]
+    for where, what in report.troubles[:MOST_TROUBLES]:
+        yield _labelled("source", "cyan", f"{where}: {what}")
+    if n > MOST_TROUBLES:
+        yield _labelled("source", "cyan", f"… and {n - MOST_TROUBLES} more troubles")
+
+
+def _labelled(label: str, style: str, text: str) -> Text:
+    return Text.assemble((f"{label:<8}", style), " ", text)

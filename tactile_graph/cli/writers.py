@@ -1,0 +1,176 @@
+"""Write results as they come, a line a frame, as JSON lines or CSV; lines are whole."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+import click
+
+from tactile_graph.engine.columns import OutputColumns, outcome_word, values_of
+from tactile_graph.engine.outcome import NO_VALUE
+from tactile_graph.engine.result import Result
+from tactile_graph.engine.rows import as_data
+from tactile_graph.engine.truth import errors_against, nearest
+
+FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv"}
+
+
+class Lines(Protocol):
+    """A format of one line a frame."""
+
+    def head(self) -> str:
+        """Return what stands before the first frame."""
+
+    def line(self, result: Result) -> str:
+        """Return a frame's line, its end included."""
+
+
+class JsonLines:
+    """One JSON object a frame: outputs in full, errors where the truth is known, the truth."""
+
+    def head(self) -> str:
+        """Return nothing: every line is a frame."""
+        return ""
+
+    def line(self, result: Result) -> str:
+        """Return a frame's line."""
+        return json.dumps(_clean(json_row(result)), ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def json_row(result: Result) -> dict[str, Any]:
+    """Return a result as plain data."""
+    frame = result.frame
+    row: dict[str, Any] = {"frame": frame.index}
+    if frame.label:
+        row["label"] = frame.label
+    if frame.time_s is not None:
+        row["time_s"] = frame.time_s
+    if frame.device_time_s is not None:
+        row["device_time_s"] = frame.device_time_s
+    if frame.gap:
+        row["gap"] = True
+    outcomes = {name: result.outcome(name) for name in result.plan.asked}
+    row["outputs"] = {name: as_data(outcome) for name, outcome in outcomes.items()}
+    if frame.truth is None:
+        return row
+    errors = {}
+    for name, outcome in outcomes.items():
+        true = nearest(outcome, frame.truth) if outcome.__class__ not in NO_VALUE else None
+        if true is not None:
+            errors[name] = errors_against(outcome, true)
+    row["errors"] = errors
+    row["truth"] = [{"kind": type(t.shape).__name__, **as_data(t)} for t in frame.truth]
+    return row
+
+
+def _clean(data: Any) -> Any:
+    """Return data without a record's private fields, and with null for NaN, which JSON has not."""
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, dict):
+        return {k: _clean(v) for k, v in data.items() if not k.startswith("_")}
+    return [_clean(v) for v in data] if isinstance(data, list) else data
+
+
+class Csv:
+    """A row a frame; the columns follow from the types of the outputs, whatever a frame gave.
+
+    Parameters
+    ----------
+    columns : list of OutputColumns
+    """
+
+    def __init__(self, columns: list[OutputColumns]) -> None:
+        self.columns = columns
+        self.names = ["frame", "time_s", "label"]
+        for output in columns:
+            keys = [c.key for c in (*output.values, *output.errors)]
+            self.names += [f"{output.output}.outcome", *keys]
+
+    def head(self) -> str:
+        """Return the line of names."""
+        return _csv_line(self.names)
+
+    def line(self, result: Result) -> str:
+        """Return a frame's row; empty cells where an output has no value."""
+        frame = result.frame
+        row: dict[str, Any] = {"frame": frame.index, "time_s": frame.time_s, "label": frame.label}
+        for output in self.columns:
+            row[f"{output.output}.outcome"] = outcome_word(result.outcome(output.output))
+            row.update(values_of(result, output))
+        return _csv_line([row.get(name) for name in self.names])
+
+
+def _csv_line(cells: list[Any]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue()
+
+
+def format_of(output: str, given: str | None) -> str:
+    """Return ``jsonl`` or ``csv``, as asked for or by the file's name.
+
+    Raises
+    ------
+    click.UsageError
+        If neither says.
+    """
+    if given is not None:
+        return given
+    suffix = Path(output).suffix.lower()
+    if output != "-" and suffix not in FORMATS:
+        raise click.UsageError(
+            f"-o {output}: its name must end in {', '.join(FORMATS)}, or give --format"
+        )
+    return FORMATS.get(suffix, "jsonl")
+
+
+class LineFile:
+    """A file, or stdout, that takes whole lines; made when the first one comes.
+
+    Parameters
+    ----------
+    output : str
+        Path, or ``-`` for stdout.
+    lines : Lines
+    """
+
+    def __init__(self, output: str, lines: Lines) -> None:
+        self.output = output
+        self.lines = lines
+        self._file: BinaryIO | None = None
+
+    def write(self, result: Result) -> None:
+        """Write a frame's line through to the file."""
+        file = self._file or self.open()
+        _whole(file, self.lines.line(result))
+
+    def open(self) -> BinaryIO:
+        """Open the file and write what stands before the first frame."""
+        if self._file is None:
+            if self.output == "-":
+                self._file = sys.stdout.buffer
+            else:
+                # Unbuffered: a line goes out in one piece, so a killed run leaves whole lines.
+                self._file = Path(self.output).open("wb", buffering=0)  # noqa: SIM115
+            _whole(self._file, self.lines.head())
+        return self._file
+
+    def close(self) -> None:
+        """Close the file; one without any frame still gets its head."""
+        file = self.open()
+        if self.output != "-":
+            file.close()
+
+
+def _whole(file: BinaryIO, text: str) -> None:
+    data = memoryview(text.encode())
+    while data:
+        data = data[file.write(data) :]
+    file.flush()

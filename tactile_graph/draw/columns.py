@@ -1,0 +1,146 @@
+"""Which nodes a picture strip shows, what each column is called, and its fixed colour range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done
+from tactile_graph.engine.result import Result
+from tactile_graph.pipeline.node import FRAME, NodeKind
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.wires import Image, Mask, Points
+
+MOST_COLUMNS = 10
+UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: what is drawn in it, its step, the range and quantity of its images."""
+
+    name: str
+    step: str
+    low: float = 0.0
+    high: float = 1.0
+    quantity: str = ""
+
+    @property
+    def scale(self) -> str:
+        """Label of the colour bar: the quantity and its unit."""
+        unit = UNITS.get(self.quantity)
+        return f"{self.quantity} in {unit}" if unit else self.quantity
+
+
+def columns(results: Sequence[Result], nodes: Sequence[str] | None) -> list[Column]:
+    """Return the columns to draw; without ``nodes`` the frame and every node with a picture.
+
+    Raises
+    ------
+    UsageError
+        If a node or output is not there.
+    """
+    pipeline = results[0].plan.pipeline
+    names = _picturable(results, pipeline) if nodes is None else list(dict.fromkeys(nodes))
+    return [_column(name, results, pipeline) for name in names]
+
+
+def outcome_of(result: Result, name: str) -> Any:
+    """Return the outcome of a node, an output, or the frame itself."""
+    if name == FRAME:
+        return result.frame
+    asked = name in result.plan.asked or name in result.plan.slots
+    if asked or name in result.plan.pipeline.nodes:
+        return result.outcome(name)
+    ref = result.plan.pipeline.ref(name)  # a field of a node that nobody asked for by name
+    if ref.node == FRAME:
+        value: Any = result.frame
+    else:
+        value = result.outcome(ref.node)
+    if value.__class__ in NO_VALUE or ref.getter is None:
+        return value
+    return ref.getter(value)
+
+
+def _picturable(results: Sequence[Result], pipeline: Pipeline) -> list[str]:
+    found = [n for n in pipeline.nodes if _worth_a_column(n, results, pipeline)]
+    outputs = {ref.node for ref in pipeline.outputs.values()}
+    spare = len(found) + 1 - MOST_COLUMNS
+    if spare > 0:
+        middle = [n for n in found if n not in outputs]
+        # Of a long chain its beginning says least about the answer.
+        dropped = set(middle[:spare])
+        found = [n for n in found if n not in dropped]
+    return [FRAME, *found[: MOST_COLUMNS - 1]]
+
+
+def _worth_a_column(name: str, results: Sequence[Result], pipeline: Pipeline) -> bool:
+    node = pipeline.nodes[name]
+    outcomes = [r.outcome(name) for r in results]
+    if all(o is NOT_ASKED for o in outcomes):
+        return False
+    if node.kind is NodeKind.PASS and node.choices[0].node in pipeline.nodes:
+        return False  # it shows what the node it hands on shows
+    values = [o for o in outcomes if o.__class__ not in NO_VALUE]
+    if not values:
+        return not node.is_sink and not _is_scalar_type(node.output)
+    return any(is_picture(v) for v in values)
+
+
+def _is_scalar_type(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic)
+
+
+def is_picture(value: Any) -> bool:
+    """Return whether a value has a place on the pad, as against a bare number."""
+    if isinstance(value, Image | Mask | Points) or hasattr(value, "outline_cm"):
+        return True
+    if isinstance(value, Done | str):
+        return False
+    if place(value) is not None:
+        return True
+    if isinstance(value, list | tuple):
+        return any(is_picture(v) for v in value)
+    return any(view(value, kind) is not None for kind in (Mask, Image, Points))
+
+
+def place(value: Any) -> tuple[float, float] | None:
+    """Return the place on the pad that a record names as ``x_cm`` and ``y_cm``, or None."""
+    x, y = getattr(value, "x_cm", None), getattr(value, "y_cm", None)
+    numbers = isinstance(x, int | float) and isinstance(y, int | float)
+    return (float(x), float(y)) if numbers else None  # type: ignore[arg-type]
+
+
+def view(value: Any, kind: type) -> Any:
+    """Return a record's own view as ``kind`` (``provides``), or None."""
+    name = getattr(value, "provides", {}).get(kind)
+    return getattr(value, name) if name else None
+
+
+def _column(name: str, results: Sequence[Result], pipeline: Pipeline) -> Column:
+    images = [i for r in results for i in images_in(outcome_of(r, name))]
+    node = pipeline.nodes.get(name)
+    step = "" if node is None else "first of" if node.choices else node.what
+    if not images:
+        return Column(name, step)
+    shown = [i.values if i.valid is None else i.values[i.valid] for i in images]
+    low = min((float(v.min()) for v in shown if v.size), default=0.0)
+    high = max((float(v.max()) for v in shown if v.size), default=1.0)
+    low = min(low, 0.0)  # a pad's values are read from nothing up
+    return Column(name, step, low, high if high > low else low + 1.0, images[0].quantity)
+
+
+def images_in(value: Any) -> Iterator[Image]:
+    """Yield the images that drawing a value shows as heat maps."""
+    if isinstance(value, Image):
+        yield value
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from images_in(item)
+    elif not isinstance(value, Mask) and view(value, Mask) is None:
+        image = view(value, Image)
+        if image is not None and not hasattr(value, "outline_cm"):
+            yield image

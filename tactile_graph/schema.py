@@ -1,0 +1,239 @@
+"""JSON Schema (draft 2020-12) of pipeline files, made from what the installed plugins offer.
+
+A schema knows one file and no graph: names of steps, their settings and ports, and the shape of
+everything. Whether a wire leads anywhere, types and quantities are `tactile-graph check`'s work.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from tactile_graph.docstring import parameters
+from tactile_graph.errors import TactileGraphError
+from tactile_graph.pipeline.declaration import RESERVED
+from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.settings import adapter
+from tactile_graph.steps.signature import Kind, Port, Setting, Signature, type_name
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+NAME = "[A-Za-z_][A-Za-z0-9_]*"
+REF = f"^{NAME}(\\.{NAME})*$"
+
+Schema = dict[str, Any]
+
+
+def pipeline_schema(registry: Registry) -> tuple[Schema, list[str]]:
+    """Return the schema, and the steps that had to be left open because they cannot be imported."""
+    signatures: dict[str, Signature | None] = {}
+    troubles: list[str] = []
+    for name in registry.names("steps"):
+        try:
+            signatures[name] = registry.step(name)
+        except TactileGraphError as error:
+            signatures[name] = None
+            troubles.append(str(error))
+    return _Maker(registry, signatures).schema(), troubles
+
+
+class _Maker:
+    def __init__(self, registry: Registry, signatures: dict[str, Signature | None]) -> None:
+        self.registry = registry
+        self.steps = {n: s for n, s in signatures.items() if s is None or s.kind is not Kind.SOURCE}
+        self.sources = {n: s for n, s in signatures.items() if s is None or s.kind is Kind.SOURCE}
+        self.defs: Schema = {
+            "ref": {
+                "type": "string", "pattern": REF,
+                "description": "A node, node.field, or frame (what the source gives).",
+            },
+            "refs": {"type": "array", "items": {"$ref": "#/$defs/ref"}, "minItems": 1},
+            "wire": {"anyOf": [{"$ref": "#/$defs/ref"}, {"$ref": "#/$defs/refs"}]},
+        }  # fmt: skip
+
+    def schema(self) -> Schema:
+        pipelines = self.registry.names("pipelines")
+        self.defs["node"] = self._node(pipelines)
+        self.defs["source"] = self._source()
+        text = {"type": ["string", "number", "null"]}
+        expression = {"type": ["string", "number", "boolean"]}
+        return {
+            "$schema": DRAFT,
+            "title": "tactile-graph pipeline",
+            "type": "object",
+            "additionalProperties": False,
+            "required": ["pipeline", "nodes", "outputs"],
+            "properties": {
+                "pipeline": {"type": ["string", "number"], "description": "Its name."},
+                "about": {**text, "description": "What it is for, in a line."},
+                "evolves": {
+                    **text, "examples": pipelines,
+                    "description": "The pipeline it was made from, by name or file.",
+                },
+                "source": {"oneOf": [{"$ref": "#/$defs/source"}, {"type": "null"}],
+                           "description": "Where frames come from unless the run says otherwise."},
+                "conditions": {
+                    "type": ["object", "null"],
+                    "propertyNames": _names(),
+                    "additionalProperties": expression,
+                    "description": "Named conditions, for use in 'when'.",
+                },
+                "nodes": {
+                    "type": "object", "minProperties": 1,
+                    "propertyNames": _names(),
+                    "additionalProperties": {"$ref": "#/$defs/node"},
+                    "description": "The graph: each node by its name.",
+                },
+                "outputs": {
+                    "anyOf": [{"$ref": "#/$defs/ref"},
+                              {"$ref": "#/$defs/refs", "uniqueItems": True}],
+                    "description": "What a run asks for: nodes or node.field.",
+                },
+            },
+            "$defs": self.defs,
+        }  # fmt: skip
+
+    def _node(self, pipelines: list[str]) -> Schema:
+        return {
+            "type": "object",
+            "additionalProperties": False,
+            "properties": {
+                "step": _choice(self.steps, "The step it runs."),
+                "use": {"type": "string", "examples": pipelines,
+                        "description": "A pipeline put in as a node, by name or file."},
+                "first_of": {"$ref": "#/$defs/refs",
+                             "description": "The first of these that has a value; those after it "
+                             "are not computed."},
+                "in": {
+                    "anyOf": [{"$ref": "#/$defs/wire"}, {"type": "null"},
+                              {"type": "object",
+                               "additionalProperties": {"$ref": "#/$defs/wire"}}],
+                    "description": "What it reads: a node, a list, or a map of ports.",
+                },
+                "with": {"type": ["object", "null"], "description": "Its settings."},
+                "when": {"type": ["string", "number", "boolean", "null"],
+                         "description": "The condition under which it runs, like "
+                         "contacts.count > 0 and not saturated."},
+                "each": {"type": "boolean",
+                         "description": "Run it once for each item of the list it reads."},
+                "about": {"type": ["string", "number", "null"]},
+            },
+            "oneOf": [{"required": [kind]} for kind in ("step", "use", "first_of")],
+            "allOf": [
+                {"if": {"required": ["first_of"]},
+                 "then": {"properties": {"in": False, "with": False, "each": False}}},
+                {"if": {"required": ["use"]},
+                 "then": {"properties": {"with": {"propertyNames": {"pattern": "\\."}}}}},
+                *(self._rule(n, s) for n, s in self.steps.items() if s is not None),
+            ],
+        }  # fmt: skip
+
+    def _source(self) -> Schema:
+        return {
+            "type": "object",
+            "additionalProperties": False,
+            "required": ["step"],
+            "properties": {
+                "step": _choice(self.sources, "The source step."),
+                "with": {"type": ["object", "null"], "description": "Its settings."},
+            },
+            "allOf": [self._rule(n, s) for n, s in self.sources.items() if s is not None],
+        }
+
+    # -- one step ----------------------------------------------------------------------------
+
+    def _rule(self, name: str, signature: Signature) -> Schema:
+        """Return what a node of one step must be like."""
+        self.defs[f"{name}.with"] = self._settings(name, signature)
+        then: Schema = {"properties": {"with": {"$ref": f"#/$defs/{name}.with"}}}
+        required = ["with"] if any(s.required for s in signature.settings) else []
+        if signature.kind is not Kind.SOURCE:
+            self.defs[f"{name}.in"] = _ports(signature)
+            then["properties"]["in"] = {"$ref": f"#/$defs/{name}.in"}
+            required += ["in"] if any(p.required for p in signature.ports) else []
+        if required:
+            then["required"] = required
+        return {
+            "if": {"properties": {"step": {"const": name}}, "required": ["step"]},
+            "then": then,
+        }
+
+    def _settings(self, name: str, signature: Signature) -> Schema:
+        meanings = parameters(signature.doc)
+        required = [s.name for s in signature.settings if s.required]
+        made: Schema = {
+            "type": "object" if required else ["object", "null"],
+            "description": f"Settings of {name}: {signature.summary}",
+            "additionalProperties": False,
+            "properties": {
+                s.name: self._setting(name, s, meanings.get(s.name, "")) for s in signature.settings
+            },
+        }
+        return {**made, "required": required} if required else made
+
+    def _setting(self, step: str, setting: Setting, meaning: str) -> Schema:
+        prefix = f"#/$defs/{step}.{setting.name}."
+        try:
+            made = adapter(setting).json_schema(ref_template=prefix + "{model}")
+        except Exception:  # a type of a plugin's own that JSON Schema has no words for
+            made = {}
+        for model, inner in made.pop("$defs", {}).items():
+            self.defs[f"{step}.{setting.name}.{model}"] = inner
+        words = f"{meaning} ({type_name(setting.annotation)})".strip()
+        made = {**made, "description": words}
+        default = plain(setting.default) if not setting.required else None
+        if default is not None and _is_json(default):
+            made["default"] = default
+        return made
+
+
+def _ports(signature: Signature) -> Schema:
+    """Return what a step's ``in`` may be; ports are named in the order a list fills them."""
+    ports = signature.ports
+    if not ports:
+        return {"anyOf": [{"type": "null"}, {"type": "array", "maxItems": 0},
+                          {"type": "object", "maxProperties": 0}]}  # fmt: skip
+    needed = [p.name for p in ports if p.required]
+    as_map: Schema = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {p.name: _port(p) for p in ports},
+        "required": needed,
+    }
+    arms: list[Schema] = [as_map]
+    if len(needed) <= 1:
+        arms.append({"$ref": "#/$defs/ref"})
+    if not needed:
+        arms.append({"type": "null"})
+    as_list: Schema = {"$ref": "#/$defs/refs"}
+    if ports[0].item is None:
+        as_list = {**as_list, "minItems": max(1, len(needed)), "maxItems": len(ports)}
+    names = ", ".join(f"{p.name} ({type_name(p.type)})" for p in ports)
+    return {"anyOf": [*arms, as_list], "description": f"Ports of {signature.name}: {names}."}
+
+
+def _port(port: Port) -> Schema:
+    wire = "#/$defs/wire" if port.item is not None else "#/$defs/ref"
+    optional = "" if port.required else ", optional"
+    return {"$ref": wire, "description": f"{type_name(port.type)}{optional}"}
+
+
+def _choice(steps: dict[str, Signature | None], what: str) -> Schema:
+    """Return an enumeration; editors show the lines beside the names."""
+    return {
+        "enum": list(steps),
+        "description": what,
+        "markdownEnumDescriptions": [s.summary if s is not None else "" for s in steps.values()],
+    }
+
+
+def _names() -> Schema:
+    return {"pattern": f"^{NAME}$", "not": {"enum": list(RESERVED)}}
+
+
+def _is_json(value: Any) -> bool:
+    try:
+        json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError):
+        return False
+    return True

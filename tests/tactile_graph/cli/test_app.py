@@ -1,0 +1,319 @@
+"""The command itself: lazy commands, plugins' commands, and errors without tracebacks."""
+
+from __future__ import annotations
+
+import json
+import sys
+import types
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from helpers_cli import broken_plugin, call, install
+from tactile_graph.cli.app import COMMANDS
+
+COMMAND = '''
+"""A plugin's module of commands."""
+import click
+from tactile_graph.errors import UsageError
+
+@click.command()
+@click.option("--fail", is_flag=True)
+@click.option("--crash", is_flag=True)
+def hello(fail, crash):
+    """Say hello to the pad. And more."""
+    if fail:
+        raise UsageError("nobody there")
+    if crash:
+        raise KeyError("pad")
+    click.echo("hello")
+    return 5
+
+not_a_command = 3
+'''
+COMMAND_OF = {
+    "hello": "tg_test_commands:hello",
+    "gone": "tg_test_commands:gone",
+    "lost": "tg_no_such_module:x",
+    "number": "tg_test_commands:not_a_command",
+    "run": "tg_test_commands:hello",
+}
+
+
+@pytest.fixture
+def with_commands(hand_made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (hand_made / "tg_test_commands.py").write_text(COMMAND)
+    monkeypatch.syspath_prepend(str(hand_made))
+    monkeypatch.delitem(sys.modules, "tg_test_commands", raising=False)
+    install(monkeypatch, hand_made, commands=COMMAND_OF)
+
+
+@pytest.mark.usefixtures("with_commands")
+def test_help_lists_plugins_commands_with_their_first_sentence_without_importing_them():
+    got = call("--help")
+    assert got.exit_code == 0
+    own, _, others = got.stdout.partition("Commands of plugins:")
+    assert all(name in own for name in COMMANDS)
+    assert "hello   Say hello to the pad.\n" in others
+    assert "gone    (of plugin 'hand' (package hand-made))" in others
+    assert "run " not in others
+    assert "tg_test_commands" not in sys.modules
+
+
+@pytest.mark.usefixtures("with_commands")
+def test_a_plugins_command_runs_takes_the_shared_options_and_returns_no_exit_code():
+    got = call("hello", "--plugins", "hand")
+    assert got.exit_code == 0
+    assert got.stdout == "hello\n"
+
+
+@pytest.mark.usefixtures("with_commands")
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["hello", "--fail"], "error: nobody there\n"),
+        (["hello", "--crash"], "error: KeyError: 'pad'\n(--debug shows where)"),
+        (["hello", "--fial"], "--fial"),
+        (["lost"], "'lost' of plugin 'hand' (package hand-made): cannot import tg_no_such_module"),
+        (["gone"], "tg_test_commands has no 'gone'"),
+        (["number"], "command 'number' of plugin 'hand' (package hand-made) is no click command"),
+        (["helo"], "no command named 'helo'; did you mean 'hello'?"),
+        (["xyzzy"], "no command named 'xyzzy'; there are: check, explain, gone,"),
+        (["--plugins", "hnad", "run"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),
+        (["run", "--plugins", "hnad"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),
+    ],
+)
+def test_every_mistake_is_a_line_on_stderr_and_exit_code_2(args, message):
+    got = call(*args)
+    assert got.exit_code == 2
+    assert message in got.stderr
+    assert "Traceback" not in got.output
+
+
+def test_version():
+    assert call("--version").stdout == f"tactile-graph, version {version('tactile-graph')}\n"
+
+
+@pytest.mark.parametrize("args", [["--help"], ["run", "--help"]])
+@pytest.mark.usefixtures("hand_made")
+def test_help_says_the_exit_codes(args):
+    text = call(*args).stdout
+    for code in (0, 1, 2, 130, 141):
+        assert f"  {code:<4} " in text
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_the_flag_goes_before_the_environment(monkeypatch):
+    from tactile_graph.plugins import registry
+
+    monkeypatch.setenv(registry.ENVIRONMENT, "-hand")
+    registry.installed.cache_clear()
+    assert "no pipeline named 'discs'" in call("run", "discs").stderr
+    assert call("run", "discs", "--plugins", "hand").exit_code == 0
+
+
+# -- plugins -------------------------------------------------------------------------------------
+
+
+def test_plugins_lists_what_is_offered_broken_blocked_and_refused(hand_made, monkeypatch):
+    from tactile_graph.plugins import registry
+
+    twin = types.ModuleType("twin")
+    from tactile_graph import hookimpl
+
+    @hookimpl
+    def tactile_graph_steps() -> dict[str, str]:
+        return {"disc": "x:y", "other": "x:z"}
+
+    twin.tactile_graph_steps = tactile_graph_steps  # type: ignore[attr-defined]
+    more = (
+        ("torn", "torn-package", "0.3", broken_plugin),
+        ("twin", "twin-package", "2", lambda: twin),
+        ("shut", "shut-package", "4", broken_plugin),
+    )
+    install(monkeypatch, hand_made, *more, commands={"run": "a:b"})
+    monkeypatch.setenv(registry.ENVIRONMENT, "-shut")
+    registry.installed.cache_clear()
+    got = call("plugins")
+    assert got.exit_code == 0
+    cells = {line.split()[0]: line.split() for line in got.stdout.splitlines() if line.strip()}
+    assert cells["hand"][1:3] == ["hand-made", "1.2"]
+    assert cells["hand"][4:] == ["9", "steps,", "2", "pipelines,", "1", "command"]
+    assert cells["torn"][4:] == ["failed", "to", "load,", "see", "below"]
+    assert cells["twin"][4:] == ["1", "step"]
+    assert cells["shut"] == ["shut", "shut-package", "4", "blocked"]
+    assert (
+        "plugin 'torn' (package torn-package): ImportError: No module named 'antigravity'"
+        in got.stdout
+    )
+    assert (
+        "clash: step 'disc' of plugin 'twin' (package twin-package) is refused: plugin 'hand' "
+        "(package hand-made) has it already" in got.stdout
+    )
+    assert (
+        "clash: command 'run' of plugin 'hand' (package hand-made) is refused: tactile-graph has "
+        "its own" in got.stdout
+    )
+
+
+# -- pipelines -----------------------------------------------------------------------------------
+
+
+def test_pipelines_are_listed_below_what_they_evolved_from(hand_made, monkeypatch):
+    for name, text in {
+        "third": "pipeline: third\nabout: The third\nevolves: loads\nnodes: {}\noutputs: []\n",
+        "torn": "pipeline: [",
+        "round": "pipeline: round\nabout: A loop\nevolves: round\nnodes: {a: {}}\noutputs: [a]\n",
+    }.items():
+        (hand_made / f"{name}.yaml").write_text(text)
+    names = ("third", "torn", "round", "absent")
+    more = {n: hand_made / f"{n}.yaml" for n in names}
+    install(monkeypatch, hand_made, pipelines=more)
+    got = call("pipelines")
+    assert got.exit_code == 0
+    lines = got.stdout.splitlines()
+    at = lines.index(next(line for line in lines if line.startswith("discs ")))
+    assert lines[at].split("  ")[0] == "discs"
+    assert "A disc on hand-made frames" in lines[at]
+    assert lines[at + 1].startswith("└─ loads")
+    assert lines[at + 2].startswith("   └─ third")
+    assert any(line.startswith("torn") and "this is not YAML" in line for line in lines)
+    assert any(line.startswith("absent") and "cannot be read" in line for line in lines)
+    assert sum(line.startswith("round") for line in lines) == 1
+
+
+# -- check ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_check_says_what_is_right_and_which_nodes_no_output_needs():
+    got = call("check", "discs", "loads")
+    assert got.exit_code == 0
+    assert "discs: right  2 nodes → circle; takes frames from made\n" in got.stdout
+    assert "loads: right  4 nodes → load, shape; declares no source; evolves discs" in got.stdout
+    assert "no output needs: spare" in got.stdout
+
+
+def test_check_reports_every_problem_of_every_file_and_exits_with_2(hand_made):
+    from helpers_cli import DISCS
+
+    bad = DISCS.replace("step: pressed", "step: presed").replace("outputs", "output")
+    (hand_made / "bad.yaml").write_text(bad)
+    got = call("check", "bad.yaml", "discs", "absent")
+    assert got.exit_code == 2
+    assert "bad.yaml: wrong" in got.stdout
+    assert "bad.yaml:5:21: node 'footprint': no step named 'presed'" in got.stdout
+    assert "unknown key 'output'; did you mean 'outputs'?" in got.stdout
+    assert "discs: right" in got.stdout
+    assert "no pipeline named 'absent'" in got.stdout
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_check_without_names_checks_all_that_are_installed():
+    got = call("check")
+    assert got.exit_code == 0
+    assert got.stdout.count(": right") == 2
+
+
+# -- graph ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("hand_made")
+@pytest.mark.parametrize(
+    ("args", "start"),
+    [
+        ([], "flowchart LR"), (["--format", "mermaid"], "flowchart LR"),
+        (["--format", "dot"], "digraph"), (["--format", "svg"], "<svg"),
+    ],
+)  # fmt: skip
+def test_graphs_go_to_stdout(args, start):
+    got = call("graph", "discs", *args)
+    assert got.exit_code == 0
+    assert start in got.stdout
+    assert "footprint" in got.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "start"), [("g.svg", "<svg"), ("g.dot", "digraph"), ("g.mmd", "flowchart")]
+)
+def test_the_files_name_decides_the_graphs_format(hand_made, name, start):
+    got = call("graph", "discs", "-o", name)
+    assert got.exit_code == 0
+    assert start in (hand_made / name).read_text()
+    assert f"wrote {name}" in got.stderr
+
+
+@pytest.mark.usefixtures("hand_made")
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["discs", "-o", "g.bmp"], "-o g.bmp: its name must end in .svg, .mmd"),
+        (["dics"], "no pipeline named 'dics'; did you mean 'discs'?"),
+        ([], "name a pipeline, or a file of one"),
+        (["discs", "-o", "no/g.svg"], "no/g.svg: No such file or directory"),
+    ],
+)
+def test_mistakes_with_graphs(args, message):
+    got = call("graph", *args)
+    assert got.exit_code == 2
+    assert message in got.stderr
+
+
+# -- explain -------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_explain_shows_values_and_times_of_what_ran():
+    got = call("explain", "discs", "--frame", 2)
+    assert got.exit_code == 0
+    assert "discs, frame 2 of made: 4 x 6 volt, total 4" in got.stdout
+    rows = {line.split()[0]: line for line in got.stdout.splitlines() if line.strip()}
+    assert "Mask 4 x 6, count 4, area 4 cm²" in rows["footprint"]
+    assert "Circle: x 3 cm, y 2 cm, radius 1.1284 cm" in rows["circle"]
+    assert rows["circle"].split()[1:4] == ["*", "disc", "ran"]
+    assert float(rows["footprint"].split()[3]) > 0
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_explain_says_why_a_node_was_skipped():
+    got = call("explain", "discs", "--with", "empty=[1]", "--frame", 1)
+    assert got.exit_code == 0
+    assert "skipped" in got.stdout
+    assert "when footprint.count > 0 is false (footprint.count = 0)" in got.stdout
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_explain_says_where_a_node_failed_and_with_what():
+    got = call("explain", "discs", "--set", "circle.crash=true")
+    assert got.exit_code == 1
+    assert "ZeroDivisionError: divided by nothing" in got.stdout
+    assert "helpers_cli.py:" in got.stdout
+    assert "with Mask 4x6" in got.stdout
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_explain_of_a_frame_that_does_not_come(hand_made):
+    (hand_made / "a.txt").write_text("1\n2\n")
+    got = call("explain", "loads", "a.txt", "--frame", 7)
+    assert got.exit_code == 2
+    assert "--frame 7: the source gave 2 frames, the first is 0" in got.stderr
+
+
+# -- schema --------------------------------------------------------------------------------------
+
+
+def test_schema_goes_to_a_file_or_to_stdout(hand_made):
+    got = call("schema", "-o", "pipeline.schema.json")
+    assert got.exit_code == 0
+    assert "wrote pipeline.schema.json" in got.stderr
+    written = json.loads((hand_made / "pipeline.schema.json").read_text())
+    assert written["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    assert written == json.loads(call("schema").stdout)
+
+
+def test_schema_names_the_steps_it_left_open(hand_made, monkeypatch):
+    install(monkeypatch, hand_made, steps={"lost": "tg_no_such_module:lost"})
+    got = call("schema")
+    assert got.exit_code == 0
+    assert "left open: 'lost' of plugin 'hand'" in got.stderr

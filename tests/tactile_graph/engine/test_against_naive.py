@@ -1,0 +1,85 @@
+"""Plans give what the meaning says, run nothing that is not needed, and nothing twice."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+
+from helpers_graphs import CALLS, NAIVE, STEPS, cases, frame, registry, shown
+from helpers_naive import Naive, Outcome
+from tactile_graph import loads
+from tactile_graph.engine.outcome import Failed, Skipped
+
+FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (5, 2.0), (1, 2.25), (2, 4.0)]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("library")
+
+
+def seen(outcome: Any) -> Outcome:
+    if isinstance(outcome, Skipped):
+        return Outcome("skipped", origin=outcome.origin)
+    if isinstance(outcome, Failed):
+        return Outcome("failed", origin=outcome.origin)
+    return Outcome("value", outcome)
+
+
+@settings(
+    max_examples=600, deadline=None, derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)  # fmt: skip
+@given(case=cases())
+def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
+    case: tuple[dict[str, Any], dict[str, Any]], folder: Path
+) -> None:
+    document, library = case
+    files = {name: folder / f"{name}.yaml" for name in library}
+    for name, path in files.items():
+        path.write_text(shown(library[name]))
+    pipeline = loads(shown(document), "random.yaml", registry(STEPS, files))
+    naive = Naive(document, library, NAIVE)
+    runner = pipeline.runner()
+    asked = document["outputs"]
+    for index, (number, time_s) in enumerate(FRAMES):
+        one = frame(number, index, time_s)
+        CALLS.clear()
+        expected = naive.run(one, asked)
+        result = runner(one)
+        assert not result.reused
+        got = {name: seen(result.outcome(name)) for name in asked}
+        assert got == expected
+        assert Counter(CALLS) == naive.ran
+        for outcome in expected.values():
+            event(outcome.state)
+
+
+def test_the_generator_covers_what_it_should(folder: Path) -> None:
+    """Every kind of node, guard and outcome comes up in the graphs the property is tested on."""
+    kinds: Counter[str] = Counter()
+
+    @settings(max_examples=150, deadline=None, derandomize=True, database=None,
+              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @given(case=cases())
+    def look(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
+        document, library = case
+        naive = Naive(document, library, NAIVE)
+        for index, (number, time_s) in enumerate(FRAMES[:3]):
+            outcomes = naive.run(frame(number, index, time_s), document["outputs"])
+            kinds.update(o.state for o in outcomes.values())
+        kinds.update(b.get("step") or next(iter(b)) for b in document["nodes"].values())
+        kinds.update(k for b in document["nodes"].values() for k in ("when", "each") if k in b)
+        kinds["nested use"] += sum(
+            "use" in b for d in library.values() for b in d["nodes"].values()
+        )
+        kinds["named condition"] += len(document["conditions"])
+
+    look()
+    wanted = {*STEPS, "first_of", "use", "when", "each", "value", "skipped", "failed",
+              "nested use", "named condition"}  # fmt: skip
+    assert {k for k in wanted if kinds[k] < 3} == set()

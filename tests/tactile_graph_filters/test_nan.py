@@ -1,0 +1,31 @@
+import math
+
+import numpy as np
+import pytest
+
+from helpers_filters import image_of
+from tactile_graph.errors import DataError
+from tactile_graph_filters.nan import all_finite, refuse_nan
+
+
+@pytest.mark.parametrize("twin", ["reference", "compiled"])
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, None])
+def test_both_twins_find_what_is_no_number(twin, bad):
+    if twin == "compiled":
+        pytest.importorskip("numba")
+    values = np.array([[1e308, -1e308, 0.0], [5e-324, 1.0, 2.0]])
+    if bad is not None:
+        values[1, 2] = bad
+    assert getattr(all_finite, twin)(values) == (bad is None)
+
+
+def test_the_first_bad_cell_is_named_and_the_others_counted():
+    image = image_of([[1.0, math.inf], [math.nan, math.nan]])
+    with pytest.raises(DataError, match=r"row 1, column 0: must be a number, got nan \(and 1 more"):
+        refuse_nan(image)
+    with pytest.raises(DataError, match=r"row 0, column 1: must be a number, got inf \(and 2 more"):
+        refuse_nan(image, infinite=True)
+
+
+def test_good_and_invalid_cells_are_let_through():
+    refuse_nan(image_of([[1.0, math.nan]], valid=[[True, False]]), infinite=True)

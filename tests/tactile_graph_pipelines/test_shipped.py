@@ -1,0 +1,36 @@
+"""Every shipped pipeline loads, runs on its own source, and has a parent that exists."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import pytest
+
+from tactile_graph import load
+from tactile_graph.engine.outcome import Failed
+from tactile_graph.plugins.registry import installed
+
+NAMES = installed().names("pipelines")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_runs_on_its_own_source_without_an_error(name: str) -> None:
+    pipeline = load(name)
+    results = list(islice(pipeline.stream(), 6))
+    assert results, "its source gives no frame"
+    for result in results:
+        for output in pipeline.outputs:
+            assert not isinstance(result.outcome(output), Failed), result
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_is_short_says_what_it_is_and_is_named_as_its_file(name: str) -> None:
+    pipeline = load(name)
+    assert pipeline.name == name
+    assert pipeline.about
+    assert len(pipeline.text.splitlines()) <= 40
+    assert not pipeline.unused
+
+
+def test_each_circle_evolves_from_the_one_before() -> None:
+    assert [load(f"circle-{n}").evolves for n in (1, 2, 3)] == ["", "circle-1", "circle-2"]

@@ -1,0 +1,76 @@
+"""``convert`` between Zarr, npz and CSV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from tactile_graph import Frame
+from tactile_graph.steps.injected import Report
+from tactile_graph_sources.commands.convert import convert
+from tactile_graph_sources.frames_of import frames_of
+from tactile_graph_sources.write_npz import write_npz
+
+pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+
+
+@pytest.fixture
+def made(tmp_path: Path) -> list[Frame]:
+    rng = np.random.default_rng(0)
+    frames = [
+        Frame.of(rng.normal(size=(3, 5)), 1.3, quantity="volt", index=i, time_s=0.1 * i, gap=i == 2)
+        for i in range(6)
+    ]
+    write_npz(tmp_path / "a.npz", frames)
+    return frames
+
+
+def run(*args: object) -> str:
+    result = CliRunner().invoke(convert, [str(a) for a in args])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_there_and_back_again_nothing_is_lost(tmp_path: Path, made: list[Frame]) -> None:
+    run(tmp_path / "a.npz", tmp_path / "b.zarr")
+    run(tmp_path / "b.zarr", tmp_path / "c.npz")
+    for name in ("b.zarr", "c.npz"):
+        read = list(frames_of(tmp_path / name, Report()))
+        for a, b in zip(made, read, strict=True):
+            np.testing.assert_array_equal(a.image.values, b.image.values)
+            assert (a.time_s, a.gap, a.image.quantity) == (b.time_s, b.gap, b.image.quantity)
+            assert a.image.pitch_cm == b.image.pitch_cm
+
+
+def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: list[Frame]) -> None:
+    output = run(tmp_path / "a.npz", tmp_path / "b.csv")
+    assert "b.csv: 6 frames" in output
+    assert "left out, as a table has no place for it: gaps" in output
+    told = ("--rows", 3, "--columns", 5, "--quantity", "volt", "--pitch-cm", 1.3)
+    run(tmp_path / "b.csv", tmp_path / "c.zarr", *told)
+    read = list(frames_of(tmp_path / "c.zarr", Report()))
+    for a, b in zip(made, read, strict=True):
+        np.testing.assert_array_equal(a.image.values, b.image.values)
+        assert a.image.pitch_cm == b.image.pitch_cm
+
+
+@pytest.mark.parametrize(
+    ("target", "message"),
+    [("b.xyz", "TARGET must end in .zarr, .npz, .csv"), ("a.npz", "is there already")],
+)
+def test_a_target_that_will_not_do_is_refused(
+    tmp_path: Path, made: list[Frame], target: str, message: str
+) -> None:
+    result = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(tmp_path / target)])
+    assert result.exit_code == 2
+    assert message in result.output
+
+
+def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("hello\n")
+    result = CliRunner().invoke(convert, [str(tmp_path / "a.txt"), str(tmp_path / "b.npz")])
+    assert result.exit_code == 1
+    assert "a.txt: no recording" in result.output

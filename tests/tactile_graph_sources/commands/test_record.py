@@ -1,0 +1,111 @@
+"""``record`` a pad on a pseudo terminal into a store."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from helpers_serial import KITS, FakePad
+from tactile_graph_sources.commands.record import record
+from tactile_graph_sources.devices.port import Port
+from tactile_graph_sources.devices.reader import Reader
+from tactile_graph_sources.store import read_store
+from tactile_graph_sources.write_store import StoreWriter
+
+pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+KIT = next(k for k in KITS if k.preset == "fsr-8x8")
+
+
+@pytest.fixture
+def pad(tmp_path: Path) -> Iterator[FakePad]:
+    fake = FakePad(tmp_path / "tty")
+    yield fake
+    fake.unplug()
+
+
+@pytest.fixture
+def sends(monkeypatch: pytest.MonkeyPatch, pad: FakePad):
+    """Return a function that has the pad send some bytes as soon as its port is open."""
+    opened = threading.Event()
+    real = Reader._open
+
+    def open_and_tell(self: Reader) -> Port:
+        port = real(self)
+        opened.set()
+        return port
+
+    monkeypatch.setattr(Reader, "_open", open_and_tell)
+
+    def send(data: bytes) -> None:
+        opened.clear()
+        threading.Thread(target=lambda: opened.wait(20.0) and pad.send(data)).start()
+
+    return send
+
+
+def encoded(n: int) -> tuple[list[np.ndarray], bytes]:
+    rng = np.random.default_rng(0)
+    pads = [KIT.pad(rng) for _ in range(n)]
+    return pads, b"".join(KIT.encode(p, i) for i, p in enumerate(pads))
+
+
+def run(pad: FakePad, target: Path, *args: object):
+    fixed = [str(target), "--port", str(pad.link), "--preset", KIT.preset, "--give-up", "20"]
+    return CliRunner().invoke(record, [*fixed, *map(str, args)])
+
+
+def test_every_frame_is_recorded_and_gone_on_with(tmp_path: Path, pad: FakePad, sends) -> None:
+    pads, data = encoded(30)
+    target = tmp_path / "a.zarr"
+    for more in ([], ["--append"]):
+        sends(data)
+        result = run(pad, target, "--frames", 30, "--pad", "bench", "--chunk", 8, *more)
+        assert result.exit_code == 0, result.output
+    assert "a.zarr: 60 frames" in result.output
+    read = list(read_store(target))
+    for i, frame in enumerate(read):
+        np.testing.assert_array_equal(frame.image.values, pads[i % 30])
+        assert frame.device_time_s == pytest.approx(2e-3 * (i % 30))
+    assert [f.index for f in read if f.gap] == [30]
+
+
+def test_ctrl_c_keeps_what_was_recorded(
+    tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, data = encoded(10)
+    real = StoreWriter.write
+
+    def write(self: StoreWriter, frame) -> None:
+        real(self, frame)
+        if self.n_frames == 10:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(StoreWriter, "write", write)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr")
+    assert result.exit_code == 0
+    assert "a.zarr: 10 frames" in result.output
+    assert len(list(read_store(tmp_path / "a.zarr"))) == 10
+
+
+def test_a_pad_that_falls_silent_ends_in_an_error_and_keeps_what_came(
+    tmp_path: Path, pad: FakePad, sends
+) -> None:
+    _, data = encoded(5)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr", "--give-up", "0.5")
+    assert result.exit_code == 1
+    assert "a.zarr: 5 frames" in result.output
+    assert "no frame for 0.5 s" in result.output
+
+
+def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path, pad: FakePad) -> None:
+    (tmp_path / "a.zarr").mkdir()
+    result = run(pad, tmp_path / "a.zarr")
+    assert result.exit_code == 1
+    assert "is there already" in result.output

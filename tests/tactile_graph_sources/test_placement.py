@@ -1,0 +1,88 @@
+"""Objects are put down on the pad, and apart."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tactile_graph.errors import UsageError
+from tactile_graph.wires import Circle, Ellipse, Rectangle
+from tactile_graph_pads.geometry import Geometry
+from tactile_graph_sources.placement import are_apart, place
+from tactile_graph_sources.scene import Disc, Oval, Plate, Slab
+
+PAD = Geometry()
+THINGS = [
+    Disc(weight_g=1.0, radius_cm=7.7),
+    Slab(weight_g=1.0, length_cm=16.0, breadth_cm=7.0),
+    Oval(weight_g=1.0, semi_major_cm=8.0, semi_minor_cm=2.0),
+    Plate(weight_g=1.0, sides=5, radius_cm=5.0),
+]
+
+
+@pytest.mark.parametrize("thing", THINGS)
+def test_a_random_place_keeps_the_whole_object_on_the_pad_and_reaches_all_of_it(thing):
+    rng = np.random.default_rng(0)
+    outlines = [place([thing], PAD, 0.0, rng)[0].outline_cm(200) for _ in range(200)]
+    for xy in outlines:
+        assert (xy >= -1e-9).all()
+        assert (xy <= 20.5 + 1e-9).all()
+    low, high = np.min([o.min(axis=0) for o in outlines]), np.max([o.max() for o in outlines])
+    assert low < 0.5
+    assert high > 20.0
+
+
+def test_a_random_angle_takes_every_direction():
+    rng = np.random.default_rng(0)
+    slab = Slab(weight_g=1.0, length_cm=8.0, breadth_cm=2.0)
+    angles = [place([slab], PAD, 0.0, rng)[0].angle_deg for _ in range(300)]
+    assert min(angles) < -80.0
+    assert max(angles) > 80.0
+    assert np.mean(angles) == pytest.approx(0.0, abs=8.0)
+
+
+def test_given_place_and_angle_are_kept_even_beyond_the_pad():
+    slab = Slab(weight_g=1.0, length_cm=8.0, breadth_cm=2.0, place=(0.0, 4.0), angle_deg=30.0)
+    (shape,) = place([slab], PAD, 0.0, np.random.default_rng(0))
+    assert shape == Rectangle(0.0, 4.0, 8.0, 2.0, math.radians(30.0))
+
+
+def test_objects_keep_their_distance():
+    rng = np.random.default_rng(0)
+    discs = [Disc(weight_g=1.0, radius_cm=2.0)] * 4
+    for _ in range(20):
+        shapes = place(discs, PAD, 1.0, rng)
+        for i, one in enumerate(shapes):
+            for other in shapes[:i]:
+                assert math.hypot(one.x_cm - other.x_cm, one.y_cm - other.y_cm) >= 5.0
+
+
+def test_an_object_too_large_for_the_pad_is_named():
+    big = Disc(weight_g=1.0, radius_cm=11.0, name="plate")
+    with pytest.raises(UsageError, match=r"object 1 \(plate\) does not fit on the pad of 20.5 by"):
+        place([big], PAD, 0.0, np.random.default_rng(0))
+
+
+def test_objects_that_find_no_room_are_named():
+    two = [Disc(weight_g=1.0, radius_cm=7.0)] * 2
+    with pytest.raises(UsageError, match="object 2 found no place 0 cm apart from the 1 before"):
+        place(two, PAD, 0.0, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "by_cm", "apart"),
+    [
+        (Circle(0, 0, 1), Circle(2.01, 0, 1), 0.0, True),
+        (Circle(0, 0, 1), Circle(1.99, 0, 1), 0.0, False),
+        (Circle(0, 0, 1), Circle(2.5, 0, 1), 0.4, True),
+        (Circle(0, 0, 1), Circle(2.5, 0, 1), 0.6, False),
+        (Rectangle(0, 0, 4, 2, 0.0), Circle(3.01, 0, 1), 0.0, True),
+        (Rectangle(0, 0, 4, 2, math.pi / 4), Rectangle(3, 3, 4, 2, math.pi / 4), 1.0, True),
+        (Ellipse(0, 0, 4, 1, 0.0), Ellipse(0, 2.1, 4, 1, 0.0), 0.0, True),
+        (Ellipse(0, 0, 4, 1, 0.0), Ellipse(0, 1.9, 4, 1, 0.0), 0.0, False),
+        (Ellipse(0, 0, 4, 1, math.pi / 2), Ellipse(0, 2.1, 4, 1, math.pi / 2), 0.0, False),
+    ],
+)
+def test_two_outlines_are_apart_where_a_straight_gap_runs_between(one, other, by_cm, apart):
+    assert are_apart(one, other, by_cm) is apart
+    assert are_apart(other, one, by_cm) is apart

@@ -1,0 +1,241 @@
+"""Recordings as Zarr stores: whole, appended to, and after a crash."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, Frame
+from tactile_graph.errors import DataError, UsageError
+from tactile_graph.steps.injected import Report
+from tactile_graph.wires import TrueObject
+from tactile_graph_sources.store import is_store, read_store
+from tactile_graph_sources.write_store import StoreWriter
+
+pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+
+
+def frames(n: int, shape: tuple[int, int] = (3, 4), first: int = 0) -> list[Frame]:
+    rng = np.random.default_rng(first)
+    return [
+        Frame.of(
+            rng.integers(0, 4096, shape),
+            (1.3, 0.7),
+            (0.5, 0.25),
+            "counts",
+            index=i,
+            time_s=100.0 + 0.01 * i,
+            device_time_s=0.02 * i if i % 2 else None,
+            gap=i % 5 == 3,
+        )
+        for i in range(first, first + n)
+    ]
+
+
+def same(a: Frame, b: Frame) -> bool:
+    images = a.image, b.image
+    valid = [np.ones(i.shape, bool) if i.valid is None else i.valid for i in images]
+    return (
+        np.array_equal(a.image.values, b.image.values)
+        and np.array_equal(*valid)
+        and (a.image.pitch_cm, a.image.origin_cm) == (b.image.pitch_cm, b.image.origin_cm)
+        and a.image.quantity == b.image.quantity
+        and (a.index, a.time_s, a.truth, a.device_time_s, a.gap, a.label)
+        == (b.index, b.time_s, b.truth, b.device_time_s, b.gap, b.label)
+    )
+
+
+@pytest.mark.parametrize("n", [1, 7, 8, 9, 40])
+def test_what_is_written_is_read_back(tmp_path: Path, n: int) -> None:
+    written = frames(n)
+    with StoreWriter(tmp_path / "a.zarr", chunk=8, about={"preset": "m1616"}) as store:
+        for frame in written:
+            store.write(frame)
+    report = Report()
+    read = list(read_store(tmp_path / "a.zarr", report))
+    assert len(read) == store.n_frames == report.n_expected == n
+    assert all(same(a, b) for a, b in zip(written, read, strict=True))
+    assert is_store(tmp_path / "a.zarr")
+    assert [f.index for f in read_store(tmp_path / "a.zarr", start=5)] == list(range(5, n))
+
+
+def test_invalid_cells_truth_and_labels_are_kept(tmp_path: Path) -> None:
+    values = np.ones((2, 2))
+    values[0, 1] = np.nan
+    disc = TrueObject(Circle(1.0, 2.0, 3.0), 100.0, "disc-1")
+    written = [
+        Frame.of(values, quantity="volt", label="left"),
+        Frame.of(values, quantity="volt", index=1, truth=(disc,)),
+        Frame.of(np.ones((2, 2)), quantity="volt", index=2, truth=()),
+    ]
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        for frame in written:
+            store.write(frame)
+    read = list(read_store(tmp_path / "a.zarr"))
+    assert all(same(a, b) for a, b in zip(written, read, strict=True))
+
+
+def test_a_recording_is_gone_on_with(tmp_path: Path) -> None:
+    """The frames are numbered on, and the first of them follows a gap."""
+    path = tmp_path / "a.zarr"
+    for first in (0, 11):
+        with StoreWriter(path, chunk=4, append=True) as store:
+            for frame in frames(11, first=first):
+                store.write(frame)
+    read = list(read_store(path))
+    assert [f.index for f in read] == list(range(22))
+    expected = np.stack([f.image.values for part in (0, 11) for f in frames(11, first=part)])
+    np.testing.assert_array_equal(np.stack([f.image.values for f in read]), expected)
+    assert read[11].gap
+
+
+def test_the_arrays_are_what_dask_reads_in_place(tmp_path: Path) -> None:
+    import zarr
+
+    with StoreWriter(tmp_path / "a.zarr", chunk=4, about={"pad": "bench"}) as store:
+        for frame in frames(10):
+            store.write(frame)
+    group = zarr.open_group(str(tmp_path / "a.zarr"), mode="r")
+    assert group["values"].shape == (10, 3, 4)
+    assert group["values"].chunks == (4, 3, 4)
+    assert group.attrs["pad"] == "bench"
+    assert group.attrs["quantity"] == "counts"
+    np.testing.assert_array_equal(group["values"][9], frames(10)[9].image.values)
+
+
+WRITER = """
+import sys
+import numpy as np
+from tactile_graph import Frame
+from tactile_graph_sources.write_store import StoreWriter
+store = StoreWriter(sys.argv[1], chunk=16)
+for i in range(10**6):
+    store.write(Frame.of(np.full((4, 4), i), quantity="counts", index=i, time_s=float(i)))
+    print(i, flush=True)
+"""
+
+
+@pytest.mark.parametrize("after", [100, 211])
+def test_a_writer_that_is_killed_loses_at_most_its_last_chunk(tmp_path: Path, after: int) -> None:
+    path = tmp_path / "a.zarr"
+    writer = subprocess.Popen(
+        [sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True
+    )
+    assert writer.stdout is not None
+    last = 0
+    for line in writer.stdout:
+        last = int(line)
+        if last >= after:
+            os.kill(writer.pid, signal.SIGKILL)
+            break
+    last = max([last, *(int(line) for line in writer.stdout if line.endswith("\n"))])
+    writer.stdout.close()
+    writer.wait(20.0)
+    read = list(read_store(path))
+    assert last - 16 < len(read)
+    assert [f.image.values[0, 0] for f in read] == list(range(len(read)))
+    with StoreWriter(path, append=True) as store:
+        store.write(Frame.of(np.zeros((4, 4)), quantity="counts"))
+    again = list(read_store(path))
+    assert len(again) == len(read) + 1
+    assert again[-1].gap
+
+
+def test_rows_that_were_not_written_whole_do_not_count(tmp_path: Path) -> None:
+    """Whichever array a crash leaves behind, the store opens and goes on."""
+    import zarr
+
+    path = tmp_path / "a.zarr"
+    with StoreWriter(path, chunk=4) as store:
+        for frame in frames(8):
+            store.write(frame)
+    group = zarr.open_group(str(path), mode="r+")
+    for name in ("values", "time_s", "number"):
+        group[name].resize((12, *group[name].shape[1:]))
+    group["notes"].resize((50,))
+    assert len(list(read_store(path))) == 8
+    with StoreWriter(path, append=True) as store:
+        store.write(frames(1, first=8)[0])
+    assert [f.index for f in read_store(path)] == list(range(9))
+
+
+def test_a_flush_that_was_interrupted_is_done_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C in the middle of writing a chunk loses nothing."""
+    real, calls = StoreWriter._write, []
+
+    def interrupted(self: StoreWriter, name: str, low: int, rows: object) -> None:
+        calls.append(name)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        real(self, name, low, rows)
+
+    monkeypatch.setattr(StoreWriter, "_write", interrupted)
+
+    def write() -> None:
+        with StoreWriter(tmp_path / "a.zarr", chunk=5) as store:
+            for frame in frames(9):
+                store.write(frame)
+
+    with pytest.raises(KeyboardInterrupt):
+        write()
+    read = list(read_store(tmp_path / "a.zarr"))
+    assert all(same(a, b) for a, b in zip(frames(5), read, strict=True))
+
+
+def test_a_frame_on_another_grid_is_refused(tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(frames(1)[0])
+        with pytest.raises(DataError, match=r"holds frames of .*\[3, 4\].*is of .*\[5, 5\]"):
+            store.write(frames(1, (5, 5))[0])
+
+
+def test_a_store_that_is_there_is_not_overwritten(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="is there already; append to it"):
+        StoreWriter(tmp_path)
+
+
+def test_other_zarr_stores_are_no_recordings(tmp_path: Path) -> None:
+    import zarr
+
+    zarr.create_group(str(tmp_path / "b.zarr"))
+    with pytest.raises(DataError, match=r"b.zarr: is a Zarr store, but not a recording"):
+        list(read_store(tmp_path / "b.zarr"))
+    (tmp_path / "c.zarr").mkdir()
+    (tmp_path / "c.zarr" / "zarr.json").write_text("{")
+    with pytest.raises(DataError, match=r"c.zarr: is no Zarr store that opens"):
+        list(read_store(tmp_path / "c.zarr"))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("version", 99, "is a recording of version 99, 1 can be read"),
+        ("quantity", "bananas", "unknown quantity 'bananas'"),
+    ],
+)
+def test_attributes_that_cannot_be_true_are_refused(
+    tmp_path: Path, name: str, value: object, message: str
+) -> None:
+    import zarr
+
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(frames(1)[0])
+    zarr.open_group(str(tmp_path / "a.zarr"), mode="r+").attrs[name] = value
+    with pytest.raises(DataError, match=message):
+        list(read_store(tmp_path / "a.zarr"))
+
+
+def test_without_the_extra_it_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    with pytest.raises(UsageError, match=r"pip install 'tactile-graph\[zarr\]'"):
+        StoreWriter(tmp_path / "a.zarr")
