@@ -23,15 +23,15 @@ class Identity:
         Whether the nearest object is near enough.
     distance : float
         To the nearest object, as the classifier measures it.
-    limit : float
-        Largest distance at which that object is accepted, learned from its readings; infinite
-        where nothing is rejected.
+    limit : float, optional
+        Largest distance at which that object is accepted, learned from the readings; None where
+        nothing is rejected.
     nearest : str
         The nearest object, near enough or not.
     runner_up : str
         The second nearest; empty where only one object is known.
-    runner_up_distance : float
-        Infinite where only one object is known.
+    runner_up_distance : float, optional
+        None where only one object is known.
     margin : float
         1 - distance / runner_up_distance: 0 for a tie, 1 if nothing else comes into question.
     """
@@ -40,10 +40,10 @@ class Identity:
     shape: str
     known: bool
     distance: float
-    limit: float
+    limit: float | None
     nearest: str
     runner_up: str
-    runner_up_distance: float
+    runner_up_distance: float | None
     margin: float
     columns_shown: ClassVar[tuple[str, ...]] = (
         "name",

@@ -1,4 +1,4 @@
-"""Fit a calibration curve: fifth-order polynomial (the thesis), isotonic lines, or a power law."""
+"""Fit a calibration curve: fifth-order polynomial (the thesis), isotonic lines, sums, power law."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_pads.calibration_points import Observation
 from tactile_graph_pads.calibration import (
     FORMAT,
     UNITS,
@@ -23,9 +24,10 @@ from tactile_graph_pads.calibration import (
 )
 
 Array = NDArray[np.float64]
-FitKind = Literal["polynomial", "isotonic", "power"]
+FitKind = Literal["polynomial", "isotonic", "sums", "power"]
 FITS: tuple[str, ...] = get_args(FitKind)
-LEAST_LOADS = {"isotonic": 3, "power": 3}
+LEAST_LOADS = {"isotonic": 3, "sums": 3, "power": 3}
+MOST_LINES = 12
 
 
 def calibrated(
@@ -36,6 +38,7 @@ def calibrated(
     where: str = "calibration",
     about: str = "",
     provenance: Provenance | None = None,
+    observations: Sequence[Observation] = (),
 ) -> Calibration:
     """Return the calibration of one kind that comes nearest to the points.
 
@@ -43,7 +46,7 @@ def calibrated(
     ----------
     points : sequence of Point
         By rising load, as `calibration_points.points_of` makes them.
-    kind : "polynomial", "isotonic" or "power"
+    kind : "polynomial", "isotonic", "sums" or "power"
     reading : str
         What was read.
     order : int
@@ -52,6 +55,8 @@ def calibrated(
         What errors name.
     about : str
     provenance : Provenance, optional
+    observations : sequence of Observation
+        What the points were made from; the fit by sums needs them.
 
     Raises
     ------
@@ -60,16 +65,13 @@ def calibrated(
 
     Notes
     -----
-    Minimised is the sum of squares of the relative error of load for the polynomial (which goes
-    through (0, 0)), that of ln load for the power law, and that of the reading under the
-    condition that it does not fall for the isotonic lines.
+    Minimised is the sum of squares of: the relative error of load, for the polynomial (which goes
+    through (0, 0)); that of ln load, for the power law; that of the reading, under the condition
+    that it does not fall, for the isotonic lines; the relative error of each group's summed
+    load, for the sums. The first three take a group's mean reading for that of its mean load. On
+    uneven elements that is biased, as the law between them is curved; the sums are not.
     """
-    needed = order + 1 if kind == "polynomial" else LEAST_LOADS[kind]
-    if len(points) < needed:
-        what = f"a polynomial of order {order}" if kind == "polynomial" else f"the {kind} fit"
-        raise DataError(
-            where, f"too few loads: {what} needs {needed} different ones, got {len(points)}"
-        )
+    _check_number(points, kind, order, where)
     load = np.array([p.load_g for p in points])
     read = np.array([p.reading for p in points])
     fit: Polynomial | Isotonic | PowerLaw
@@ -77,21 +79,31 @@ def calibrated(
         fit = fit_polynomial(read, load, order, where)
     elif kind == "isotonic":
         fit = fit_isotonic(read, load, np.array([float(p.placements) for p in points]), where)
+    elif kind == "sums":
+        fit = fit_sums(observations, read, where)
     else:
         fit = fit_power(read, load, where)
-    top = fit.points[-1][0] if isinstance(fit, Isotonic) else float(read.max())
     return Calibration(
         format=FORMAT,
         reading=reading,
         fit=fit,
         from_reading=float(read.min()),
-        up_to=top,
-        quality=quality_of(fit, read, load, top),
+        up_to=fit.points[-1][0] if isinstance(fit, Isotonic) else float(read.max()),
+        quality=quality_of(fitted_g(fit, points, observations if kind == "sums" else ()), load),
         points=tuple(points),
         about=about,
         units=Units(UNITS[reading]),
         provenance=provenance or Provenance(),
     )
+
+
+def _check_number(points: Sequence[Point], kind: FitKind, order: int, where: str) -> None:
+    needed = order + 1 if kind == "polynomial" else LEAST_LOADS[kind]
+    if len(points) < needed:
+        what = f"a polynomial of order {order}" if kind == "polynomial" else f"the fit {kind}"
+        raise DataError(
+            where, f"too few loads: {what} needs {needed} different ones, got {len(points)}"
+        )
 
 
 def fit_polynomial(
@@ -160,6 +172,50 @@ def fit_isotonic(
     return Isotonic("isotonic", ((0.0, 0.0), *((r, g) for r, g, _ in blocks)))
 
 
+def fit_sums(
+    observations: Sequence[Observation], reading: Array, where: str = "calibration"
+) -> Isotonic:
+    """Return rising straight lines whose grams, summed over each group, come nearest its weight.
+
+    Parameters
+    ----------
+    observations : sequence of Observation
+    reading : ndarray, shape (n,)
+        Mean reading of each load: where lines may meet, besides the largest single reading.
+    where : str
+
+    Raises
+    ------
+    DataError
+        If no rising line explains the weights.
+
+    Notes
+    -----
+    A load cell's way to calibrate an array: a sum of rises that are not negative is linear in
+    them, so this is a non-negative least squares problem (Lawson and Hanson 1974). Lines meet at
+    none of the single readings between, as these would put grams on the noise of idle elements.
+    """
+    from scipy.optimize import nnls
+
+    if not observations:
+        raise ValueError("the fit by sums needs the observations")
+    largest = max(float(o.readings.max()) for o in observations)
+    levels = np.unique(np.append(reading, largest))
+    if len(levels) > MOST_LINES:
+        levels = np.quantile(levels, np.linspace(0.0, 1.0, MOST_LINES))
+    nodes = np.append(0.0, levels)
+    widths = np.diff(nodes)
+    rises = [
+        np.clip((o.readings[:, None] - nodes[:-1]) / widths, 0.0, 1.0).mean(axis=0) / o.load_g
+        for o in observations
+    ]
+    found = nnls(np.array(rises), np.ones(len(rises)))[0]
+    grams = np.append(0.0, np.cumsum(found))
+    if grams[-1] <= 0.0:
+        raise DataError(where, "not monotone: no rising curve explains these loads")
+    return Isotonic("isotonic", tuple(zip(nodes.tolist(), grams.tolist(), strict=True)))
+
+
 def fit_power(reading: Array, load_g: Array, where: str = "calibration") -> PowerLaw:
     """Return grams as a power of the reading.
 
@@ -180,19 +236,38 @@ def fit_power(reading: Array, load_g: Array, where: str = "calibration") -> Powe
     return PowerLaw("power", float(np.exp(log_scale)), float(exponent), unit)
 
 
-def quality_of(
-    fit: Polynomial | Isotonic | PowerLaw, reading: Array, load_g: Array, up_to: float
-) -> Quality:
-    """Return how far a fit is from its points, in load.
+def fitted_g(
+    fit: Polynomial | Isotonic | PowerLaw,
+    points: Sequence[Point],
+    observations: Sequence[Observation] = (),
+) -> Array:
+    """Return what a fit makes of each point, shape (n,).
 
     Parameters
     ----------
     fit : Polynomial, Isotonic or PowerLaw
-    reading, load_g : ndarray, shape (n,)
-    up_to : float
-        Readings above it count as this.
+    points : sequence of Point
+    observations : sequence of Observation
+        When given, single elements are turned into grams and averaged then.
     """
-    off = fit.grams(np.minimum(reading, up_to)) - load_g
+    top = fit.points[-1][0] if isinstance(fit, Isotonic) else np.inf
+    if not observations:
+        return fit.grams(np.minimum([p.reading for p in points], top))
+    by_load: dict[float, list[float]] = {p.load_g: [] for p in points}
+    for seen in observations:
+        grams = fit.grams(np.clip(seen.readings, 0.0, top))
+        by_load[float(seen.load_g)].append(float(grams.mean()))
+    return np.array([np.mean(by_load[p.load_g]) for p in points])
+
+
+def quality_of(found_g: Array, load_g: Array) -> Quality:
+    """Return how far fitted loads are from the known ones.
+
+    Parameters
+    ----------
+    found_g, load_g : ndarray, shape (n,)
+    """
+    off = found_g - load_g
     share = 100.0 * off / load_g
     spread = float(((load_g - load_g.mean()) ** 2).sum())
     return Quality(

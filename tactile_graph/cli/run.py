@@ -221,8 +221,9 @@ class _Run:
         if self.error is None and not self.tally.n and not self.interrupted:
             self._no_frames()
         if self.tally.n or self.error is None:
-            self._finish_files()
+            self._finish_lines()
             self.tally.close(self.people, self.report, self.interrupted)
+            self._picture()
             self._hints()
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
@@ -237,11 +238,13 @@ class _Run:
                 f"--frames {self.span.start}:…: the source gave only {got} frames"
             )
 
-    def _finish_files(self) -> None:
+    def _finish_lines(self) -> None:
         if self.lines is not None:
             self.lines.close()
             if self.output != "-":
                 self._provenance(complete=self.error is None and not self.interrupted)
+
+    def _picture(self) -> None:
         if self.plot is not None and self.kept:
             from tactile_graph.draw.strip import save_strip
 
@@ -265,7 +268,7 @@ class _Run:
             names = ", ".join(c.key for c in hidden)
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
-        for name in (self.output, self.plot):
+        for name in (self.output, self.plot if self.kept else None):
             if name not in (None, "-"):
                 say.print(f"wrote {name}", style="dim", soft_wrap=True)
         most = self.span.most

@@ -70,11 +70,11 @@ def json_row(result: Result) -> dict[str, Any]:
 
 
 def _clean(data: Any) -> Any:
-    """Return data without a record's private fields, and with null for NaN, which JSON has not."""
+    """Return data with null for NaN, which JSON has not."""
     if isinstance(data, float):
         return data if math.isfinite(data) else None
     if isinstance(data, dict):
-        return {k: _clean(v) for k, v in data.items() if not k.startswith("_")}
+        return {k: _clean(v) for k, v in data.items()}
     return [_clean(v) for v in data] if isinstance(data, list) else data
 
 

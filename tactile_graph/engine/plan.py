@@ -244,6 +244,8 @@ class _Planner:
 
     def _place_lazies(self, item: Item, main: set[int]) -> None:
         eager = {id(port) for port in self._eager_inputs(item)}
+        if len(eager) == len(item.inputs):
+            return
         done = main | self._eager(item.guard)
         for port in item.inputs:
             needed = self._eager(port.slots) - done - {0}

@@ -75,11 +75,12 @@ def as_data(value: Any) -> Any:
 
 
 def _record(value: Any) -> Any:
-    names = [f.name for f in dataclasses.fields(value)] if dataclasses.is_dataclass(value) else [
-        n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())
-        if not n.startswith("_")
-    ]  # fmt: skip
-    data = {n: as_data(getattr(value, n)) for n in dict.fromkeys(names)}
+    if dataclasses.is_dataclass(value):
+        names = [f.name for f in dataclasses.fields(value)]
+    else:
+        names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
+    shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
+    data = {n: as_data(getattr(value, n)) for n in shown}
     for name in getattr(value, "columns_shown", ()):
         data.setdefault(name, as_data(getattr(value, name)))
     return data if data else str(value)

@@ -15,7 +15,7 @@ from tactile_graph.steps.signature import list_item, type_name
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
 LONGEST = 2_000
-LONGEST_SPELLED = 20_000
+LONGEST_SPELLED = 4_000
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,

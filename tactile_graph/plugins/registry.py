@@ -178,8 +178,12 @@ class Registry:
         text = f"no {kind[:-1]} named {name!r}{did_you_mean(name, names)}"
         if not did_you_mean(name, names):
             text += f"; there are: {one_of(names)}"
-        down = [p.name for p in self.plugins if p.error]
-        return text + (f" (plugins that failed to load: {', '.join(down)})" if down else "")
+        for what, names in (
+            ("failed to load", [p.name for p in self.plugins if p.error]),
+            ("blocked", [p.name for p in self.plugins if p.blocked]),
+        ):
+            text += f" (plugins {what}: {', '.join(names)})" if names else ""
+        return text
 
     def has(self, kind: str, name: str) -> bool:
         """Return whether something of that kind and name is on offer."""
@@ -223,15 +227,23 @@ def _import(offer: Offer) -> Any:
 def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
     """Return the installed entry points, sorted, ours first among equals of a name."""
 
-    def place(entry: EntryPoint) -> tuple[bool, str, str]:
-        package = entry.dist.name if entry.dist else ""
-        return (package != "tactile-graph", entry.name, package)
+    packages: dict[int, tuple[str, str]] = {}
 
-    def row(entry: EntryPoint) -> tuple[str, str, str, Callable[[], ModuleType]]:
+    def package(entry: EntryPoint) -> tuple[str, str]:
+        # Each look at a name or version parses the package's whole metadata anew.
         dist = entry.dist
-        return (entry.name, dist.name if dist else "", dist.version if dist else "", entry.load)
+        if dist is None:
+            return ("", "")
+        if id(dist) not in packages:
+            packages[id(dist)] = (dist.name, dist.version)
+        return packages[id(dist)]
 
-    return [row(e) for e in sorted(set(entry_points(group=GROUP)), key=place)]
+    def place(entry: EntryPoint) -> tuple[bool, str, str]:
+        name = package(entry)[0]
+        return (name != "tactile-graph", entry.name, name)
+
+    found = sorted(set(entry_points(group=GROUP)), key=place)
+    return [(e.name, *package(e), e.load) for e in found]
 
 
 _override: str | None = None

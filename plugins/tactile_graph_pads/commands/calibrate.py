@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tactile_graph_pads.calibration_groups import GroupReader
     from tactile_graph_pads.calibration_points import Observation
 
-FITS = ("polynomial", "isotonic", "power")
+FITS = ("polynomial", "isotonic", "sums", "power")
 
 
 class Loaded(NamedTuple):
@@ -42,7 +42,9 @@ class _Group(click.ParamType):
               help="Where the calibration goes; without it, only what it would be is said.")  # fmt: skip
 @click.option("--loads", type=click.Path(exists=True, dir_okay=False, path_type=Path),
               help="A list of recordings: YAML (file: grams) or CSV (columns recording, load_g).")  # fmt: skip
-@click.option("--fit", type=click.Choice(FITS), default="polynomial", show_default=True)
+@click.option("--fit", type=click.Choice(FITS), default="polynomial", show_default=True,
+              help="The thesis' polynomial; rising straight lines through the group means; such "
+              "lines that make each group's sum right; a power of the reading.")  # fmt: skip
 @click.option("--order", type=click.IntRange(1, 9), default=5, show_default=True,
               help="Of the polynomial.")  # fmt: skip
 @click.option("--group", type=_Group(), default="2x2", show_default=True,
@@ -81,7 +83,7 @@ def calibrate(
     """
     from tactile_graph.errors import UsageError
     from tactile_graph_pads.calibration import Provenance, write_calibration
-    from tactile_graph_pads.calibration_fit import calibrated
+    from tactile_graph_pads.calibration_fit import calibrated, fitted_g
     from tactile_graph_pads.calibration_plot import check_picture, save_calibration_plot
     from tactile_graph_pads.calibration_points import points_of
 
@@ -105,8 +107,10 @@ def calibrate(
         recordings=tuple(origins),
     )
     points = points_of(seen)
-    made = calibrated(points, fit, quantity, order, about=about, provenance=provenance)
-    _say(made)
+    made = calibrated(
+        points, fit, quantity, order, about=about, provenance=provenance, observations=seen
+    )
+    _say(made, fitted_g(made.fit, points, seen if fit == "sums" else ()), fit)
     if output is not None:
         write_calibration(output, made)
         click.echo(f"wrote {output}")
@@ -296,7 +300,7 @@ def _now() -> str:
 # -- saying it -------------------------------------------------------------------------------
 
 
-def _say(made: Calibration) -> None:
+def _say(made: Calibration, fitted: Any, kind: str) -> None:
     from rich.table import Table
 
     from tactile_graph.cli.terminal import console
@@ -306,9 +310,6 @@ def _say(made: Calibration) -> None:
     for name in ("load / g", f"reading / {unit}", "group SD / %", "single SD / %",
                  "placements", "fit / g", "off / %"):  # fmt: skip
         table.add_column(name, justify="right")
-    import numpy as np
-
-    fitted = made.grams_of(np.array([min(p.reading, made.up_to) for p in made.points])).load_g
     for p, grams in zip(made.points, fitted, strict=True):
         table.add_row(
             f"{p.load_g:.4g}", f"{p.reading:.4g}",
@@ -319,7 +320,7 @@ def _say(made: Calibration) -> None:
     say.print(table)
     q = made.quality
     say.print(
-        f"{made.fit.kind} fit of {len(made.points)} loads, for readings up to {made.up_to:.4g} "
+        f"{kind} fit of {len(made.points)} loads, for readings up to {made.up_to:.4g} "
         f"{unit}: off by {q.rms_percent:.1f} % (rms), {q.largest_percent:.1f} % at most; "
         f"{q.rms_g:.3g} g rms; R² {q.r_squared:.4f}",
         soft_wrap=True,

@@ -165,10 +165,23 @@ def test_values_that_json_has_no_words_for_become_null(tmp_path):
     assert lines(got.stdout)[0]["outputs"] == {"n": None}
 
 
-def test_private_fields_of_records_are_not_written():
+def test_infinity_and_nan_are_null_for_json_has_neither():
     from tactile_graph.cli.writers import _clean
 
-    assert _clean({"a": [{"_whole": 1, "b": float("inf")}]}) == {"a": [{"b": None}]}
+    assert _clean({"a": [{"b": float("inf"), "c": float("nan")}]}) == {"a": [{"b": None, "c": None}]}
+
+
+def test_private_fields_of_records_are_not_written():
+    from dataclasses import dataclass
+
+    from tactile_graph.engine.rows import as_data
+
+    @dataclass
+    class Kept:
+        shown: int = 1
+        _whole: int = 2
+
+    assert as_data(Kept()) == {"shown": 1}
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path):

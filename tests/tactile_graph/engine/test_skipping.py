@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import types
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -216,7 +215,7 @@ def test_named_conditions_may_name_others() -> None:
 
 
 def test_a_node_may_be_named_like_a_function_of_conditions() -> None:
-    p = make(f"h: {{step: add1, in: max, when: max(max, 2) > 2}}\nmax: {V[3:]}", "h")
+    p = make(f"h: {{step: add1, in: max, when: 'max(max, 2) > 2'}}\nmax: {V[3:]}", "h")
     assert run(p)["h"] == 4
 
 
@@ -485,12 +484,12 @@ def test_work_that_depends_on_no_frame_is_done_once() -> None:
 
 
 def test_a_constant_behind_a_guard_is_only_made_when_it_is_needed() -> None:
-    nodes = f"{V}\nc: {{step: constant, with: {{tag: c}}}}\ne: {{step: add2, in: [v, c], when: v > 3}}"
-    runner = make(nodes, "e").runner()
+    nodes = f"{V}\nc: {{step: constant, with: {{tag: c}}}}\ne: {{step: add2, in: [v, c], when: v > 3,"
+    runner = make(f"{nodes} with: {{tag: e}}}}", "e").runner()
     CALLS.clear()
     for n in (1, 4, 2, 5):
         runner(frame(n))
-    assert CALLS == ["v", "v", "c", "v", "v"]
+    assert CALLS == ["v", "v", "c", "e", "v", "v", "e"]
 
 
 def test_a_step_that_draws_numbers_is_no_constant() -> None:
@@ -708,4 +707,3 @@ def test_the_modules_of_steps_are_named_in_failures_even_for_classes() -> None:
     failed = p.run(frame(1)).outcome("x")
     assert failed.step == f"step broken of {Broken.__module__}"
     assert isinstance(failed.error, RuntimeError)
-    assert isinstance(Broken, type) and types.MethodType  # the class itself is the step
