@@ -9,6 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Lt, MinLen
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph_classifiers.classifier import DEFAULT_FEATURES, Lookup
 from tactile_graph_classifiers.identity import Identity
 from tactile_graph_classifiers.known import Known
@@ -39,6 +40,11 @@ class Mahalanobis:
         Whether a reading too far from every object is unknown.
     confidence : float
         Share of a known object's readings to be accepted.
+
+    Raises
+    ------
+    DataError
+        If no object has two readings.
 
     Notes
     -----
@@ -95,13 +101,19 @@ class _Shrinkage(NamedTuple):
 
     @classmethod
     def of(cls, known: Known, prior: float) -> _Shrinkage:
+        freedom = float(np.maximum(known.counts - 1.0, 0.0).sum())
+        if freedom == 0.0:
+            raise DataError(
+                known.where,
+                "no object has two readings, so nothing says how much readings vary; learn more",
+            )
         readings = np.concatenate([o.readings for o in known.objects])
         extent = np.ptp(readings, axis=0)
         # a feature that is the same in every reading says nothing until one differs
         floor = np.where(extent > 0.0, RESOLUTION * extent, np.maximum(1.0, abs(readings[0])))
         return cls(
             known.scatters.sum(axis=0),
-            float(np.maximum(known.counts - 1.0, 0.0).sum()),
+            freedom,
             prior,
             floor**2,
         )
@@ -113,15 +125,11 @@ class _Shrinkage(NamedTuple):
     def __call__(self, scatters: Array, freedom: Array | float) -> Array:
         """Return covariances, shape (…, F, F), of scatters of that many degrees of freedom."""
         pooled = self.scatter / max(self.freedom, 1.0)
-        diagonal = np.eye(len(self.floor)) * np.maximum(
-            np.diagonal(pooled, axis1=-2, axis2=-1), self.floor
-        )[..., None, :]
-        # even without prior, a pooled covariance of few readings leans on its diagonal
-        lean = max(self.prior, 1e-3)
+        diagonal = np.eye(len(self.floor)) * np.diagonal(pooled, axis1=-2, axis2=-1)[..., None, :]
+        lean = max(self.prior, 1e-9)  # without a prior, an object of one reading still needs one
         pooled = (self.freedom * pooled + lean * diagonal) / (self.freedom + lean)
         weight = np.asarray(freedom, dtype=np.float64)[..., None, None]
-        shrunk = (scatters + lean * pooled) / (weight + lean)
-        return np.asarray(shrunk + np.diag(self.floor) * 1e-3)
+        return np.asarray((scatters + lean * pooled) / (weight + lean) + np.diag(self.floor))
 
 
 def _ratios(out: LeftOut, shrinkage: _Shrinkage) -> Array:

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
+from annotated_types import Ge
 from numpy.typing import NDArray
 from pydantic import AfterValidator
 
@@ -48,6 +49,10 @@ class Force:
         the fifth order to volts (section 2.4).
     up_to : float, optional
         Largest reading that the polynomial was fitted to; readings above become invalid.
+    floor_g : float, optional
+        Loads below this are 0 g. Half the turn-on load of a pad's law if nothing is given: there
+        the element's conductance is lost in the converter's noise, and without a floor an empty
+        thesis pad would read some 400 g. 0 for a curve or polynomial.
 
     Raises
     ------
@@ -70,6 +75,7 @@ class Force:
         curve: Curve = None,
         polynomial: list[float] | None = None,
         up_to: float | None = None,
+        floor_g: Annotated[float | None, Ge(0)] = None,
     ) -> None:
         kinds = {"pad": pad, "curve": curve, "polynomial": polynomial}
         given = [name for name, setting in kinds.items() if setting is not None]
@@ -90,6 +96,8 @@ class Force:
             from tactile_graph_pads.pad import load_pad
 
             self._law = load_pad("thesis" if pad is None else pad).law
+        turn_on_g = 0.0 if self._law is None else self._law.turn_on_g
+        self._floor_g = 0.5 * turn_on_g if floor_g is None else floor_g
 
     def __call__(
         self, image: Annotated[Image, Quantity("siemens", "volt", "counts", "raw")]
@@ -114,6 +122,8 @@ class Force:
             valid = known if valid is None else valid & known
         if valid is not None:
             grams = np.where(valid, grams, 0.0)
+        if self._floor_g > 0.0:
+            grams *= grams >= self._floor_g
         return Image(grams, image.pitch_cm, image.origin_cm, "gram", valid)
 
     def _grams(self, readings: Values) -> Values:

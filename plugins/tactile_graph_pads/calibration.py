@@ -21,7 +21,7 @@ from tactile_graph_pads.pad import read_file
 from tactile_graph_pads.records import inline, read_record
 
 Array = NDArray[np.float64]
-FORMAT = "tactile-graph calibration 1"
+FORMAT: Literal["tactile-graph calibration 1"] = "tactile-graph calibration 1"
 UNITS = {"volt": "V", "siemens": "S", "counts": "counts", "raw": "raw"}
 _CURVE_POINTS = 65
 

@@ -1,4 +1,4 @@
-"""Fit a calibration curve: fifth-order polynomial (the thesis), isotonic lines, sums, power law."""
+"""Fit a calibration curve: polynomial (the thesis), isotonic lines, group sums, power law."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph_pads.calibration_points import Observation
 from tactile_graph_pads.calibration import (
     FORMAT,
     UNITS,
@@ -22,6 +21,7 @@ from tactile_graph_pads.calibration import (
     Quality,
     Units,
 )
+from tactile_graph_pads.calibration_points import Observation
 
 Array = NDArray[np.float64]
 FitKind = Literal["polynomial", "isotonic", "sums", "power"]

@@ -1,4 +1,4 @@
-"""From recordings of known loads to observations: which elements were loaded, and what they read."""
+"""Observations out of recordings: which elements bore the load, and what they read."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ class GroupReader:
                 f"the load is not on one group: the {rows}x{columns} elements from row {row}, "
                 f"column {column} on hold {100 * share:.0f} % of all readings, at least "
                 f"{100 * LEAST_SHARE:.0f} % are needed; say how many elements are loaded "
-                "together, or take off what the empty pad reads",
+                "together, name the pad, or take off what the empty pad reads",
             )
         return row, column
 

@@ -114,8 +114,7 @@ class Registry:
             module = loader()
             if self._manager.has_plugin(plugin.name):
                 raise PluginError("another plugin of this name is already loaded")
-            self._manager.register(module, plugin.name)
-            self._manager.check_pending()
+            self._register(module, plugin.name)
             for kind in OFFERS:
                 plugin.offers[kind] = self._ask(module, kind)
         except (Exception, SystemExit) as error:  # it may raise anything; the rest must go on
@@ -125,6 +124,14 @@ class Registry:
         for kind, offers in plugin.offers.items():
             for name, target in offers.items():
                 self._add(kind, Offer(name, plugin, target))
+
+    def _register(self, module: ModuleType, name: str) -> None:
+        self._manager.register(module, name)
+        try:
+            self._manager.check_pending()
+        except pluggy.PluginValidationError:
+            self._manager.unregister(module)  # or the next plugin would be blamed for its hooks
+            raise
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")

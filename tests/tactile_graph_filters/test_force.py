@@ -74,3 +74,30 @@ def test_huge_loads_are_not_taken_for_infinite():
     grams = Force(polynomial=[0.0, 1e200])(image_of([[1.0, 2.0]]))
     assert grams.values.tolist() == [[1e200, 2e200]]
     assert grams.valid is None or grams.valid.all()
+
+
+CHAIN = """
+pipeline: weight
+nodes:
+  volts: {step: volts, in: frame}
+  siemens: {step: decouple, in: volts}
+  grams: {step: force, in: siemens}
+outputs: [grams]
+"""
+
+
+@pytest.mark.parametrize(
+    ("scene", "weight_g"), [("empty", 0.0), ("disc-1", 1860.0), ("disc-2", 6360.0)]
+)
+def test_a_pads_counts_weigh_what_lies_on_it_and_an_empty_pad_nothing(scene, weight_g):
+    from tactile_graph import load, loads
+
+    source = load("circle-3").with_source("simulate", scene=scene, frames=3, output="counts")
+    for frame in source.frames(seed=0):
+        assert loads(CHAIN).run(frame)["grams"].total == pytest.approx(weight_g, rel=0.03)
+
+
+def test_loads_below_the_floor_are_none_at_all():
+    image = Image(np.array([[0.004, 0.006, 0.02]]), quantity="volt")
+    step = Force(polynomial=[0.0, 1000.0], floor_g=5.0)
+    assert step(image).values.tolist() == [[0.0, 6.0, 20.0]]

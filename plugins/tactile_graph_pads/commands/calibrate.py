@@ -24,7 +24,7 @@ class Loaded(NamedTuple):
     load_g: float | None
 
 
-class _Group(click.ParamType):
+class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
     name = "group"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[int, int] | str:
@@ -39,18 +39,18 @@ class _Group(click.ParamType):
 @click.command()
 @click.argument("recordings", nargs=-1, metavar="[FILE=GRAMS | FILE]...")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path),
-              help="Where the calibration goes; without it, only what it would be is said.")  # fmt: skip
+              help="Where the calibration goes; without it, it is only said.")  # fmt: skip
 @click.option("--loads", type=click.Path(exists=True, dir_okay=False, path_type=Path),
-              help="A list of recordings: YAML (file: grams) or CSV (columns recording, load_g).")  # fmt: skip
+              help="Recordings by list: YAML (file: grams), CSV (recording, load_g).")  # fmt: skip
 @click.option("--fit", type=click.Choice(FITS), default="polynomial", show_default=True,
               help="The thesis' polynomial; rising straight lines through the group means; such "
               "lines that make each group's sum right; a power of the reading.")  # fmt: skip
 @click.option("--order", type=click.IntRange(1, 9), default=5, show_default=True,
               help="Of the polynomial.")  # fmt: skip
 @click.option("--group", type=_Group(), default="2x2", show_default=True,
-              help="Neighbouring elements that share each load: ROWSxCOLUMNS, or 'all'.")  # fmt: skip
+              help="Neighbours that share each load: ROWSxCOLUMNS, or 'all'.")  # fmt: skip
 @click.option("--at", nargs=2, type=click.IntRange(min=0), metavar="ROW COLUMN",
-              help="The group's top left element, from 0; otherwise the strongest group.")  # fmt: skip
+              help="The group's top left element; otherwise the strongest group.")  # fmt: skip
 @click.option("--pad", "pad_name", help="A pad by name or file: counts become volts by it.")
 @click.option("--decouple", is_flag=True,
               help="Take the pad's crosstalk out first: a curve of conductance.")  # fmt: skip

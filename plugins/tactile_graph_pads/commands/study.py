@@ -120,7 +120,7 @@ def draw(asked: Study[Any], result: Any, path: Path) -> None:
     """
     from tactile_graph_pads.calibration_plot import new_figure
 
-    figure = new_figure(*((11.0, 5.0) if asked.name in WIDE_STUDIES else (7.5, 5.0)))
+    figure = new_figure(*((12.0, 5.0) if asked.name in WIDE_STUDIES else (7.5, 5.0)))
     asked.plot(figure, result)
     figure.savefig(path)
 

@@ -188,6 +188,8 @@ class ErrorBars(NamedTuple):
         Largest deviation from the mean, of means of four and of single elements.
     group_sd_percent, single_sd_percent : ndarray, shape (w,)
         Standard deviations.
+    group_range_v, single_range_v : ndarray, shape (2, w)
+        Lowest and highest readings.
     """
 
     load_g: Array
@@ -196,6 +198,8 @@ class ErrorBars(NamedTuple):
     single_percent: Array
     group_sd_percent: Array
     single_sd_percent: Array
+    group_range_v: Array
+    single_range_v: Array
 
 
 def error_bars(pad: Pad, rng: np.random.Generator) -> ErrorBars:
@@ -208,20 +212,21 @@ def error_bars(pad: Pad, rng: np.random.Generator) -> ErrorBars:
     """
     found = characteristic(pad, rng)
     mean = found.group_v.mean(axis=0)
-    group = found.group_v / mean - 1.0
-    single = np.moveaxis(found.volts, 1, -1).reshape(-1, len(mean)) / mean - 1.0
+    read = (found.group_v, np.moveaxis(found.volts, 1, -1).reshape(-1, len(mean)))
+    group, single = (volts / mean - 1.0 for volts in read)
     return ErrorBars(
         found.weight_g / 4.0,
         mean,
         *(100.0 * abs(off).max(axis=0) for off in (group, single)),
         *(100.0 * off.std(axis=0, ddof=1) for off in (group, single)),
+        *(np.stack([volts.min(axis=0), volts.max(axis=0)]) for volts in read),
     )
 
 
 def _bar_table(found: ErrorBars) -> Table:
     columns = ("load_g", "mean_V", "of four: largest_%", "single: largest_%",
                "of four: SD_%", "single: SD_%")  # fmt: skip
-    return Table(columns, [tuple(map(float, row)) for row in zip(*found, strict=True)])
+    return Table(columns, [tuple(map(float, row)) for row in zip(*found[:6], strict=True)])
 
 
 def _bar_findings(found: ErrorBars) -> list[Finding]:
@@ -250,18 +255,18 @@ def _bar_findings(found: ErrorBars) -> list[Finding]:
 
 def _bar_plot(figure: Figure, found: ErrorBars) -> None:
     axes = figure.subplots()
-    for percent, color, name in (
-        (found.single_percent, "0.75", "single elements, largest deviation"),
-        (found.group_percent, "C0", "means of four, largest deviation"),
+    for span, color, name in (
+        (found.single_range_v, "0.75", "single elements, lowest to highest"),
+        (found.group_range_v, "C0", "means of four, lowest to highest"),
     ):
-        bar = found.mean_v * percent / 100.0
+        bar = abs(span - found.mean_v)
         axes.errorbar(found.load_g, found.mean_v, bar, fmt="none", ecolor=color, capsize=3.0,
                       label=name)  # fmt: skip
     axes.plot(found.load_g, found.mean_v, "o-", color="C0", ms=3.5, lw=1.0, label="mean")
     axes.set(xlabel="load on an element / g", ylabel="reading / V")
     axes.set_title("Error bars of nine groups of four elements")
     axes.grid(alpha=0.3)
-    axes.legend(loc="lower right")
+    axes.legend(loc="upper left")
 
 
 CHARACTERISTIC = Study(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -124,8 +125,8 @@ def _errors(
 
 
 def _table(found: ConverterErrors) -> Table:
-    bits = [f"{b:.0f} bits: {w}_%" for b in found.bits for w in ("error", "lost")]
-    noise = [f"{1e3 * v:g} mV: {w}_%" for v in found.noise_v for w in ("error", "lost")]
+    bits = [f"{b:.0f} bits {w}%" for b in found.bits for w in ("", "lost ")]
+    noise = [f"{1e3 * v:g} mV {w}%" for v in found.noise_v for w in ("", "lost ")]
     pairs = [
         np.stack([percent, 100.0 * lost], axis=1).reshape(-1, len(found.load_g))
         for percent, lost in (
@@ -134,11 +135,13 @@ def _table(found: ConverterErrors) -> Table:
         )
     ]
     values = np.column_stack([found.load_g, found.column_sum, *(p.T for p in pairs)])
-    columns = ("load_g", "column_sum", *bits, *noise)
+    columns = ("load_g", "T", *bits, *noise)
     return Table(columns, [tuple(map(float, row)) for row in values])
 
 
-def usable_g(load_g: Array, percent: Array, lost: Array, within: float = 5.0) -> tuple[float, float]:
+def usable_g(
+    load_g: Array, percent: Array, lost: Array, within: float = 5.0
+) -> tuple[float, float]:
     """Return the lightest and heaviest load of the stretch read within a share; 0 if none.
 
     Parameters
@@ -168,8 +171,7 @@ def _findings(found: ConverterErrors) -> list[Finding]:
         for p, n in zip(found.of_noise_percent, found.of_noise_lost, strict=True)
     ]
     at = int(np.argmin(abs(found.load_g - spans[twelve][1])))
-    wider = all(hi2 >= hi1 and (not lo1 or lo2 <= lo1)
-                for (lo1, hi1), (lo2, hi2) in zip(spans, spans[1:], strict=False))  # fmt: skip
+    wider = all(more[1] >= fewer[1] for fewer, more in pairwise(spans))
     return [
         Finding(
             "(not in the thesis) with eight loaded elements a column, grams are within 5 % rms",
@@ -215,7 +217,7 @@ def _plot(figure: Figure, found: ConverterErrors) -> None:
             axes.loglog(found.load_g[whole], percent[k][whole], color=f"C{k}", label=name)
             some = whole & (lost[k] > 0.0)
             axes.loglog(found.load_g[some], percent[k][some], "x", color=f"C{k}")
-        axes.set(title=title, xlabel="load on each of 8 elements a column / g")
+        axes.set(title=title, xlabel="load on 8 elements a column / g each")
         axes.grid(alpha=0.3, which="both")
         axes.legend(title="× some without an answer")
     both[0].set_ylabel("rms error of grams / %")

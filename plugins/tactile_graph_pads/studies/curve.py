@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_pads.calibration import Calibration
-from tactile_graph_pads.calibration_fit import FITS, FitKind, calibrated
+from tactile_graph_pads.calibration_fit import FitKind, calibrated, fitted_g
 from tactile_graph_pads.calibration_points import points_of
 from tactile_graph_pads.pad import Pad
 from tactile_graph_pads.studies.characteristic import characteristic
@@ -59,8 +59,8 @@ def curve(pad: Pad, rng: np.random.Generator) -> Curves:
     points = points_of(characteristic(pad, rng).observations())
     made = tuple(calibrated(points, kind) for kind in _KINDS)
     load, read = (np.array([getattr(p, n) for p in points]) for n in ("load_g", "reading"))
-    fitted = [c.fit.grams(np.minimum(read, c.up_to)) for c in made]
-    return Curves(load, read, FITS, np.array(fitted), _even_volts(pad, load), made)
+    fitted = [fitted_g(c.fit, points) for c in made]
+    return Curves(load, read, _KINDS, np.array(fitted), _even_volts(pad, load), made)
 
 
 _KINDS: tuple[FitKind, ...] = ("polynomial", "isotonic", "power")
@@ -115,9 +115,10 @@ def _plot(figure: Figure, found: Curves) -> None:
 
     axes = figure.subplots()
     draw_calibration(axes, found.calibrations[0])
-    for made, style in zip(found.calibrations[1:], ("--", ":"), strict=True):
+    others = list(zip(found.fits, found.calibrations, strict=True))[1:]
+    for (fit, made), style in zip(others, ("--", ":"), strict=True):
         fine = np.linspace(0.0, made.up_to, 300)
-        name = f"{made.fit.kind}, rms {made.quality.rms_percent:.1f} % of load"
+        name = f"{fit}, rms {made.quality.rms_percent:.1f} % of load"
         axes.plot(made.grams_of(fine).load_g, fine, style, label=name)
     axes.plot(found.load_g, found.true_v, "k-", lw=0.8, alpha=0.6, label="an even pad")
     axes.set_xlim(0.0, 1.1 * found.load_g[-1])

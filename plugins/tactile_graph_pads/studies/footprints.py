@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Circle
-from tactile_graph_pads.contact import Grain
+from tactile_graph_pads.contact import Contact, Grain
 from tactile_graph_pads.coverage import coverage_cm2
 from tactile_graph_pads.pad import Pad
 from tactile_graph_pads.studies.bench import Bench
@@ -33,6 +33,8 @@ class Footprints(NamedTuple):
         What each element truly bore.
     covered : ndarray, shape (rows, columns)
         Share of each element that lies under the object.
+    outline : ndarray, shape (n, 2)
+        The object's outline in columns and rows.
     """
 
     before_v: Array
@@ -40,6 +42,7 @@ class Footprints(NamedTuple):
     before_g: Array
     after_g: Array
     covered: Array
+    outline: Array
 
 
 def bump(pad: Pad, rng: np.random.Generator) -> Footprints:
@@ -73,7 +76,7 @@ def _centre_of(pad: Pad, grain: Grain) -> tuple[float, float]:
 
 
 def _compare(
-    pad: Pad, contact: object, disc: Circle, weight_g: float, rng: np.random.Generator
+    pad: Pad, contact: Contact, disc: Circle, weight_g: float, rng: np.random.Generator
 ) -> Footprints:
     bench = Bench(pad, rng)
     gains = bench.gains()
@@ -82,7 +85,8 @@ def _compare(
     bench.pad = replace(pad, contact=contact)
     after = bench.load_g(disc, weight_g, gains)
     covered = coverage_cm2(disc, pad.geometry) / pad.geometry.element_area_cm2
-    return Footprints(before_v, bench.volts(after), before, after, covered)
+    outline = (disc.outline_cm() - 0.5 * pad.geometry.element_cm) / pad.geometry.pitch_cm
+    return Footprints(before_v, bench.volts(after), before, after, covered, outline)
 
 
 def unevenness(volts: Array, covered: Array) -> float:
@@ -175,7 +179,7 @@ def _plot(figure: Figure, found: Footprints, names: tuple[str, str]) -> None:
     top = float(max(found.before_v.max(), found.after_v.max()))
     for axes, volts, name in zip(both, (found.before_v, found.after_v), names, strict=True):
         shown = axes.imshow(volts, cmap="gray", vmin=0.0, vmax=top)
-        axes.contour(found.covered, levels=[0.5], colors="tab:orange", linewidths=1.0)
+        axes.fill(*found.outline.T, fill=False, edgecolor="tab:orange")
         axes.set(title=name, xlabel="column")
     both[0].set_ylabel("row")
     figure.colorbar(shown, ax=both, label="output / V", shrink=0.8)

@@ -171,7 +171,7 @@ def _plot(figure: Figure, found: SampleErrors) -> None:
         axes.axhline(rounding, color="0.6", ls=":", label="one step, rounded")
     axes.set(xlabel="samples averaged", ylabel="rms error of a reading / mV")
     axes.set_title("Error of a reading against samples averaged")
-    axes.legend()
+    axes.legend(loc="lower left")
     axes.grid(alpha=0.3, which="both")
 
 

@@ -1,4 +1,4 @@
-"""Study ``weight-area``: what objects of several areas weigh, with and without decoupling (2.19)."""
+"""Study ``weight-area``: what objects weigh, with and without decoupling (figure 2.19)."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from tactile_graph_pads.studies.characteristic import STACK_CM, characteristic
 from tactile_graph_pads.studies.study import Finding, Study, Table
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
@@ -80,9 +81,7 @@ class Weighings(NamedTuple):
         return float(100.0 * np.polyfit(self.area_cm2, size, 1)[0])
 
 
-def weight_area(
-    pad: Pad, rng: np.random.Generator, n_placements: int = N_PLACEMENTS
-) -> Weighings:
+def weight_area(pad: Pad, rng: np.random.Generator, n_placements: int = N_PLACEMENTS) -> Weighings:
     """Return what the objects of table 2.2 seem to weigh with more and more stacked on top.
 
     Parameters
@@ -111,9 +110,7 @@ def weight_area(
         coupled[at] = _weighed(volt, read)
         decoupled[at], by_sums[at] = _weighed(siemens, behind), _weighed(sums, behind)
     names = tuple(f"{name}, {r:g} cm" for name, _, r in TABLE_2_2)
-    return Weighings(
-        names, np.pi * radius**2, PRESSURES_G_CM2, weight, coupled, decoupled, by_sums
-    )
+    return Weighings(names, np.pi * radius**2, PRESSURES_G_CM2, weight, coupled, decoupled, by_sums)
 
 
 def _curves(pad: Pad, rng: np.random.Generator) -> tuple[Calibration, Calibration, Calibration]:
@@ -192,18 +189,33 @@ def _findings(found: Weighings) -> list[Finding]:
 
 
 def _plot(figure: Figure, found: Weighings) -> None:
-    parts = figure.subplots(1, 3, sharey=True, sharex=True)
+    parts = figure.subplots(1, 3)
     top = 1.05 * float(found.weight_g.max())
-    titles = ("without decoupling", "with decoupling", "with decoupling, by sums")
-    for axes, values, title in zip(parts, _ways(found).values(), titles, strict=True):
+    ways = _ways(found)
+    for axes, way, title in (
+        (parts[0], "coupled", "without decoupling"),
+        (parts[1], "decoupled", "with decoupling"),
+    ):
         axes.plot([0.0, top], [0.0, top], color="0.6", lw=1.0)
         for k, name in enumerate(found.names):
-            axes.errorbar(found.weight_g[k], values[k].mean(axis=1), values[k].std(axis=1),
+            values = ways[way][k]
+            axes.errorbar(found.weight_g[k], values.mean(axis=1), values.std(axis=1),
                           marker="o", ms=3.5, capsize=2.0, label=name)  # fmt: skip
-        axes.set(title=title, xlabel="weight / g")
+        axes.set(title=title, xlabel="weight / g", ylabel="weight found / g", ylim=(0.0, top))
         axes.grid(alpha=0.3)
-    parts[0].set_ylabel("weight found / g")
     parts[0].legend()
+    _plot_errors(parts[2], found)
+
+
+def _plot_errors(axes: Axes, found: Weighings) -> None:
+    for (way, values), style in zip(_ways(found).items(), ("-", "--", ":"), strict=True):
+        axes.plot([], [], f"k{style}", label=way)
+        for p, percent in enumerate(found.error_percent(values).T):
+            label = f"{found.pressure_g_cm2[p]:g} g/cm²" if way == "coupled" else None
+            axes.plot(found.area_cm2, percent, style, color=f"C{p}", marker=".", label=label)
+    axes.set(title="error against area", xlabel="area / cm²", ylabel="mean error of weight / %")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small", loc="lower left")
 
 
 WEIGHT_AREA = Study(

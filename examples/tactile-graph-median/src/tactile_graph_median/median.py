@@ -1,0 +1,39 @@
+"""Step ``median``: each cell replaced by the median of its window."""
+
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge
+from numpy.lib.stride_tricks import sliding_window_view
+
+from tactile_graph import Image
+from tactile_graph.steps import Grid, Quantity
+
+
+def median(
+    image: Image, *, reach: Annotated[int, Ge(0)] = 1
+) -> Annotated[Image, Quantity.like("image"), Grid.like("image")]:
+    """Return the image with each valid cell replaced by the median of its window.
+
+    Parameters
+    ----------
+    image : Image
+        Readings; invalid cells count for nothing and stay invalid.
+    reach : int
+        Cells the window reaches to each side: it is ``2 * reach + 1`` wide. At the border the
+        window ends with the pad.
+
+    Returns
+    -------
+    Image
+        On the same grid, in the same quantity.
+    """
+    valid = np.ones(image.shape, dtype=bool) if image.valid is None else image.valid
+    # NaN stands for "no reading here"; every window kept below holds at least its own centre.
+    known = np.where(valid, image.values, np.nan)
+    size = 2 * reach + 1
+    windows = sliding_window_view(np.pad(known, reach, constant_values=np.nan), (size, size))
+    values = np.zeros(image.shape)
+    if valid.any():
+        values[valid] = np.nanmedian(windows[valid], axis=(1, 2))
+    return image.with_values(values)

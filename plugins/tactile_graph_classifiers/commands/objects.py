@@ -1,0 +1,97 @@
+"""``tactile-graph objects``: what the database knows; exports and imports of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+from tactile_graph.errors import DataError, UsageError
+from tactile_graph_classifiers.commands.shared import database_option, print_table
+
+if TYPE_CHECKING:
+    from tactile_graph_classifiers.known import Known, KnownObject
+
+LISTED = ("weight", "area_cm2")
+
+
+@click.command()
+@click.argument("name", required=False)
+@database_option
+@click.option("--export", "exported", metavar="FILE",
+              help="Write everything as YAML to FILE, or - for stdout.")  # fmt: skip
+@click.option("--import", "imported", type=click.Path(path_type=Path), metavar="FILE",
+              help="Add the objects of an export, all or none; made if there is no database.")  # fmt: skip
+def objects(
+    name: str | None, database: Path, timeout_s: float, exported: str | None, imported: Path | None
+) -> None:
+    """List the known objects, or mean and deviation of each feature of NAME."""
+    from tactile_graph_classifiers.database.store import ObjectDatabase
+
+    if (name is not None) + (exported is not None) + (imported is not None) > 1:
+        raise UsageError("give one of NAME, --export and --import")
+    store = ObjectDatabase(database, timeout_s)
+    if imported is not None:
+        from tactile_graph_classifiers.database.text import read_export
+
+        setting, lessons = read_export(imported)
+        store.learn(setting, lessons, new=True)
+        click.echo(f"{database}: {len(lessons)} objects imported")
+        return
+    known = store.known()
+    if exported is not None:
+        _export(known, exported)
+    elif name is None:
+        _list(known)
+    else:
+        one = next((o for o in known.objects if o.name == name), None)
+        if one is None:
+            raise store.unknown(name, known.names)
+        _describe(known, one)
+
+
+def _export(known: Known, file: str) -> None:
+    from tactile_graph_classifiers.database.text import to_text
+
+    text = to_text(known)
+    if file == "-":
+        click.echo(text, nl=False)
+        return
+    try:
+        Path(file).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise DataError(file, f"cannot be written: {error.strerror or error}") from None
+    click.echo(f"{file}: {len(known.objects)} objects exported")
+
+
+def _list(known: Known) -> None:
+    if not known.objects:
+        click.echo(f"{known.where}: no objects")
+        return
+    shown = [f for f in LISTED if f in known.features] or list(known.features[:2])
+    rows = [
+        [it.name, it.shape, str(it.statistics.n), *(_spread(known, it, f) for f in shown)]
+        for it in known.objects
+    ]
+    unit = f", readings in {known.quantity}" if known.quantity else ""
+    by = f", measured by {known.pipeline}" if known.pipeline else ""
+    print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
+
+
+def _spread(known: Known, it: KnownObject, feature: str) -> str:
+    k = known.features.index(feature)
+    deviation = float(np.sqrt(it.statistics.covariance[k, k]))
+    return f"{it.statistics.mean[k]:.4g} ± {deviation:.2g}"
+
+
+def _describe(known: Known, it: KnownObject) -> None:
+    rows = []
+    for k, feature in enumerate(known.features):
+        values = it.readings[:, k]
+        deviation = float(np.sqrt(it.statistics.covariance[k, k]))
+        numbers = (float(it.statistics.mean[k]), deviation, values.min(), values.max())
+        rows.append([feature, *(f"{v:.4g}" for v in numbers)])
+    title = f"{it.name}{f', {it.shape}' if it.shape else ''}, {it.statistics.n} readings"
+    print_table(title, ["feature", "mean", "deviation", "least", "most"], rows)

@@ -1,0 +1,60 @@
+"""What the commands about known objects share: the database, and tables for people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+F = TypeVar("F", bound=Callable[..., Any])
+DEFAULT_DATABASE = "tactile-objects.sqlite"
+
+
+def database_option(command: F) -> F:
+    """Add ``--database`` and ``--wait``."""
+    for add in (
+        click.option(
+            "--wait",
+            "timeout_s",
+            type=click.FloatRange(min=0.0),
+            default=5.0,
+            show_default=True,
+            metavar="SECONDS",
+            help="How long to wait while another program writes to the database.",
+        ),
+        click.option(
+            "--database",
+            type=click.Path(path_type=Path),
+            default=DEFAULT_DATABASE,
+            show_default=True,
+            help="The object database, an SQLite file.",
+        ),
+    ):
+        command = add(command)
+    return command
+
+
+def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Write a table to stdout.
+
+    Parameters
+    ----------
+    title : str
+    columns : sequence of str
+        The first is of texts, the others of numbers unless they end in a space.
+    rows : sequence of sequence of str
+    """
+    from rich.table import Table
+    from rich.text import Text
+
+    from tactile_graph.cli.terminal import console
+
+    table = Table(title=Text(title, "bold"), title_justify="left", box=None, pad_edge=False)
+    for i, name in enumerate(columns):
+        right = i > 0 and not name.endswith(" ")
+        table.add_column(Text(name.strip()), justify="right" if right else "left", no_wrap=True)
+    for row in rows:
+        table.add_row(*(Text(cell) for cell in row))
+    console().print(table)

@@ -1,0 +1,1 @@
+"""Object databases: SQLite files of objects, readings and statistics, and their YAML exports."""

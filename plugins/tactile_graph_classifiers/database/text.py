@@ -1,0 +1,174 @@
+"""Exports of object databases: YAML that people can read and programs can import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from tactile_graph.errors import DataError, did_you_mean, shown
+from tactile_graph_classifiers.database.store import Lesson, Setting
+from tactile_graph_classifiers.known import Known
+
+FORMAT = "tactile-graph objects"
+VERSION = 1
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+_KEYS = {"format", "version", "about", "quantity", "pipeline", "features", "objects"}
+_OBJECT_KEYS = {"name", "shape", "readings", "sources"}
+
+
+def to_text(known: Known, about: str = "") -> str:
+    """Return the YAML of known objects; floats keep every digit.
+
+    Parameters
+    ----------
+    known : Known
+    about : str
+        A line for people.
+    """
+    data = {
+        "format": FORMAT,
+        "version": VERSION,
+        **({"about": about} if about else {}),
+        "quantity": known.quantity,
+        "pipeline": known.pipeline,
+        "features": list(known.features),
+        "objects": [
+            {
+                "name": it.name,
+                "shape": it.shape,
+                "readings": it.readings.tolist(),
+                "sources": list(it.sources),
+            }
+            for it in known.objects
+        ],
+    }
+    options = {"sort_keys": False, "allow_unicode": True, "width": 2**20}
+    text: str = yaml.dump(data, Dumper=_Dumper, default_flow_style=None, **options)
+    return text
+
+
+def from_text(text: str, where: str) -> tuple[Setting, list[Lesson]]:
+    """Return what an export holds.
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        The file, for errors.
+
+    Raises
+    ------
+    DataError
+        If it is no export of an object database, or of a newer version.
+    """
+    try:
+        data = yaml.load(text, Loader=_Loader)  # noqa: S506 -- a safe loader
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        at = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
+        raise DataError(f"{where}{at}", f"is no YAML: {getattr(error, 'problem', error)}") from None
+    return from_data(data, where)
+
+
+def from_data(data: Any, where: str) -> tuple[Setting, list[Lesson]]:
+    """Return what an export, as plain data, holds.
+
+    Parameters
+    ----------
+    data : mapping
+    where : str
+
+    Raises
+    ------
+    DataError
+        As `from_text`.
+    """
+    if not isinstance(data, Mapping) or data.get("format") != FORMAT:
+        raise DataError(where, f"is no export of an object database (no 'format: {FORMAT}')")
+    if data.get("version") != VERSION:
+        got = shown(data.get("version"))
+        raise DataError(where, f"is an export of version {got}, version {VERSION} can be read")
+    _only(data, _KEYS, where, "")
+    features = data.get("features")
+    if not _texts(features) or len(set(features)) != len(features) or not features:
+        raise DataError(where, f"features: must be a list of different names, got {shown(features)}")
+    objects = data.get("objects")
+    if not isinstance(objects, list):
+        raise DataError(where, f"objects: must be a list, got {shown(objects)}")
+    lessons = [_lesson(o, len(features), where, f"object {i}") for i, o in enumerate(objects, 1)]
+    names = [lesson.name for lesson in lessons]
+    for name in names:
+        if names.count(name) > 1:
+            raise DataError(where, f"two objects are named {name!r}")
+    return (
+        Setting(tuple(features), str(data.get("quantity", "")), str(data.get("pipeline", ""))),
+        lessons,
+    )
+
+
+def _only(data: Mapping[str, Any], allowed: set[str], where: str, what: str) -> None:
+    for key in data:
+        if key not in allowed:
+            hint = did_you_mean(str(key), allowed) or f"; allowed: {', '.join(sorted(allowed))}"
+            raise DataError(where, f"{what}unknown key {shown(key)}{hint}")
+
+
+def _texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(v, str) for v in value)
+
+
+def _lesson(data: Any, n_features: int, where: str, what: str) -> Lesson:
+    if not isinstance(data, Mapping) or not isinstance(data.get("name"), str):
+        raise DataError(where, f"{what}: must be a mapping with a name, got {shown(data)}")
+    what = f"object {data['name']!r}: "
+    _only(data, _OBJECT_KEYS, where, what)
+    rows = data.get("readings")
+    readings = _numbers(rows, n_features)
+    if readings is None:
+        raise DataError(
+            where, f"{what}readings must be rows of {n_features} finite numbers, got {shown(rows)}"
+        )
+    sources: Sequence[str] = data.get("sources") or [""] * len(readings)
+    if not _texts(sources) or len(sources) != len(readings):
+        raise DataError(where, f"{what}sources must be a text for each of {len(readings)} readings")
+    shape = data.get("shape", "")
+    if not isinstance(shape, str):
+        raise DataError(where, f"{what}shape must be a text, got {shown(shape)}")
+    return Lesson(data["name"], shape, readings, sources)
+
+
+def _numbers(rows: Any, n_features: int) -> Any:
+    """Return the rows as an array, shape (n, F); None if they are anything else."""
+    if not isinstance(rows, list):
+        return None
+    for row in rows:
+        good = isinstance(row, list) and len(row) == n_features
+        if not good or any(isinstance(v, bool) or not isinstance(v, int | float) for v in row):
+            return None
+    array = np.array(rows, dtype=np.float64).reshape(-1, n_features)
+    return array if np.isfinite(array).all() else None
+
+
+def read_export(path: Path) -> tuple[Setting, list[Lesson]]:
+    """Return what an export's file holds.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    DataError
+        If it cannot be read or is no export.
+    """
+    try:
+        return from_text(path.read_text(encoding="utf-8"), str(path))
+    except UnicodeDecodeError:
+        raise DataError(str(path), "is no text file") from None
+    except OSError as error:
+        raise DataError(str(path), f"cannot be read: {error.strerror or error}") from None

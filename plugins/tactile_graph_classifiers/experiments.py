@@ -1,0 +1,432 @@
+"""The experiments of thesis section 4.4 on the simulated pad: table 4.9, figures 4.38 to 4.43."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph_classifiers.identity import Identity
+from tactile_graph_classifiers.known import Known, KnownObject
+from tactile_graph_classifiers.measurements import Measurements
+from tactile_graph_classifiers.shapes import true_name, true_shape
+from tactile_graph_classifiers.statistics import Statistics
+
+Array = NDArray[np.float64]
+SCENES_OF_THE_THESIS = ("identify", "rectangles")
+N_READINGS = 25
+"""Of each object in the thesis, to learn it and to test it."""
+STACK_OFFSET_CM = 1.0
+LARGEST_STACKED_G = 500.0
+MOST_CALIBRATED_G = 750.0
+"""On each of four elements: figure 2.15 ends at 3000 g."""
+DIFFERENCES_G = (0, 50, 100, 200, 300, 400, 600, 800, 1000, 1250, 1500, 2000)
+
+THESIS_WEIGHING = """
+pipeline: thesis-features
+about: Weight by the calibration curve alone, area from the circle's radius (section 4.4.3)
+conditions:
+  touched: footprint.count > 0
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  grams: {step: force, in: frame, with: {curve: [[5, 1000]]}, when: touched}
+  measured: {step: features, in: {image: grams, mask: footprint}}
+  circle: {use: circle-3, in: frame}
+  features: {step: fitted_area, in: {features: measured, shape: circle}}
+outputs: [features]
+"""
+DECOUPLED_WEIGHING = """
+pipeline: decoupled-features
+about: Weight by the circuit's inverse and the force law, area from the circle's radius
+conditions:
+  touched: footprint.count > 0
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  siemens: {step: decouple, in: frame, when: touched}
+  grams: {step: force, in: siemens}
+  measured: {step: features, in: {image: grams, mask: footprint}}
+  circle: {use: circle-3, in: frame}
+  features: {step: fitted_area, in: {features: measured, shape: circle}}
+outputs: [features]
+"""
+
+
+# -- readings --------------------------------------------------------------------------------
+
+
+@dataclass
+class Readings:
+    """Readings of one object in the order they were made."""
+
+    shape: str = ""
+    rows: list[Measurements] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
+
+    def learned(self, name: str, n: int | None = None) -> KnownObject:
+        """Return the object as its first ``n`` readings make it.
+
+        Parameters
+        ----------
+        name : str
+        n : int, optional
+        """
+        rows = np.array([m.values for m in self.rows[:n]])
+        sources = tuple(self.sources[:n])
+        return KnownObject(name, self.shape, rows, Statistics.of(rows), sources)
+
+
+def simulated(
+    pipeline: Any, scene: str | Mapping[str, Any], n_each: int, n_objects: int, seed: int,
+    pad: str = "thesis",
+) -> dict[str, Readings]:  # fmt: skip
+    """Return readings of each object of a scene that lays them down in turn, on one pad.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        Its first output measures.
+    scene : str or mapping
+    n_each, n_objects : int
+        Placements of each object, and how many objects there are.
+    seed : int
+    pad : str
+    """
+    output = next(iter(pipeline.outputs))
+    runs = pipeline.with_source("simulate", scene=scene, frames=n_each * n_objects, pad=pad)
+    found: dict[str, Readings] = {}
+    for result in runs.stream(seed=seed):
+        value = result.outcome(output)
+        measured = getattr(value, "measurements", value)
+        if not isinstance(measured, Measurements):
+            continue  # skipped or failed: nothing was measured, as on a real pad
+        readings = found.setdefault(true_name(result.frame), Readings())
+        readings.shape = true_shape(result.frame)
+        readings.rows.append(measured)
+        readings.sources.append(f"simulated, seed {seed}, frame {result.frame.index}")
+    return found
+
+
+def known_from(
+    readings: Mapping[str, Readings], n: int | None = None, pipeline: str = ""
+) -> Known:
+    """Return what the first ``n`` readings of each object make known.
+
+    Parameters
+    ----------
+    readings : mapping
+        By the objects' names.
+    n : int, optional
+        All if not given.
+    pipeline : str
+        Name of the pipeline that measured.
+    """
+    first = next(iter(readings.values())).rows[0]
+    objects = tuple(r.learned(name, n) for name, r in readings.items())
+    return Known("simulated", first.names, first.quantity, objects, pipeline)
+
+
+def learned_from(scenes: Sequence[str], n: int, seed: int) -> Known:
+    """Return the objects of scenes as ``n`` simulated readings each make them known.
+
+    Parameters
+    ----------
+    scenes : sequence of str
+        Each lays its objects down in turn.
+    n : int
+    seed : int
+    """
+    from tactile_graph import load
+    from tactile_graph_sources.scene import load_scene
+
+    pipeline = load("features")
+    readings: dict[str, Readings] = {}
+    for scene in scenes:
+        readings.update(simulated(pipeline, scene, n, len(load_scene(scene).in_turn), seed))
+    return known_from(readings, pipeline=pipeline.name)
+
+
+def as_database(known: Known) -> dict[str, Any]:
+    """Return known objects as the classifiers' setting ``database`` takes them.
+
+    Parameters
+    ----------
+    known : Known
+    """
+    from tactile_graph_classifiers.database.text import FORMAT, VERSION
+
+    objects = [
+        {"name": o.name, "shape": o.shape, "readings": o.readings.tolist()} for o in known.objects
+    ]
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "quantity": known.quantity,
+        "features": list(known.features),
+        "objects": objects,
+    }
+
+
+# -- table 4.9 -------------------------------------------------------------------------------
+
+
+class Confusion(NamedTuple):
+    """How often readings of one object were taken for which.
+
+    Parameters
+    ----------
+    names : tuple of str
+    nearest : mapping
+        (true name, nearest name) -> number of readings.
+    rejected : mapping
+        True name -> readings called unknown.
+    n : int
+        Readings tested.
+    """
+
+    names: tuple[str, ...]
+    nearest: Mapping[tuple[str, str], int]
+    rejected: Mapping[str, int]
+    n: int
+
+    @property
+    def share_right(self) -> float:
+        """Share of the readings whose nearest object is the true one."""
+        return sum(c for (true, got), c in self.nearest.items() if true == got) / self.n
+
+    @property
+    def share_rejected(self) -> float:
+        """Share of the readings called unknown."""
+        return sum(self.rejected.values()) / self.n
+
+
+def tested(classifier: Any, readings: Mapping[str, Readings], skip: int = 0) -> Confusion:
+    """Return how a classifier does on the readings after the first ``skip`` of each object.
+
+    Parameters
+    ----------
+    classifier : callable
+        From `Measurements` to `Identity`.
+    readings : mapping
+    skip : int
+    """
+    nearest: Counter[tuple[str, str]] = Counter()
+    rejected: Counter[str] = Counter()
+    for name, of_object in readings.items():
+        for row in of_object.rows[skip:]:
+            identity: Identity = classifier(row)
+            nearest[name, identity.nearest] += 1
+            rejected[name] += not identity.known
+    return Confusion(tuple(readings), nearest, rejected, nearest.total())
+
+
+def classifiers(known: Known) -> dict[str, Any]:
+    """Return each kind of classifier of weight and area, by the step's name.
+
+    Parameters
+    ----------
+    known : Known
+    """
+    from tactile_graph_classifiers.mahalanobis import Mahalanobis
+    from tactile_graph_classifiers.minimum_distance import MinimumDistance
+    from tactile_graph_classifiers.minimum_distance_normalised import MinimumDistanceNormalised
+
+    data = as_database(known)
+    return {
+        "minimum_distance": MinimumDistance(database=data),
+        "minimum_distance_normalised": MinimumDistanceNormalised(database=data),
+        "mahalanobis": Mahalanobis(database=data),
+    }
+
+
+def table_4_9(n: int = N_READINGS, seed: int = 0) -> dict[str, Confusion]:
+    """Return how each classifier tells the five objects of table 4.9 apart.
+
+    Parameters
+    ----------
+    n : int
+        Readings of each object to learn it, and as many others to test it.
+    seed : int
+
+    Notes
+    -----
+    Thesis section 4.4.2: all 25 readings of each object were identified.
+    """
+    from tactile_graph import load
+
+    readings = simulated(load("features"), "identify", 2 * n, 5, seed)
+    known = known_from(readings, n)
+    return {name: tested(one, readings, n) for name, one in classifiers(known).items()}
+
+
+# -- figures 4.38 to 4.43 --------------------------------------------------------------------
+
+
+class Pair(NamedTuple):
+    """Two discs to be told apart: one as it is, the other heavier by the difference.
+
+    Parameters
+    ----------
+    figure : str
+    base_g : float
+        Weight of the first disc.
+    radius_cm, other_radius_cm : float
+    """
+
+    figure: str
+    base_g: float
+    radius_cm: float
+    other_radius_cm: float
+
+
+PAIRS = (
+    Pair("4.38", 1860, 6.9, 6.9),
+    Pair("4.39", 1090, 6.1, 6.1),
+    Pair("4.40", 475, 4.3, 4.3),
+    Pair("4.41", 1860, 6.9, 6.1),
+    Pair("4.42", 1860, 6.9, 4.3),
+    Pair("4.43", 1090, 6.1, 4.3),
+)
+
+
+class Curve(NamedTuple):
+    """Identification error of a pair against its weight difference.
+
+    Parameters
+    ----------
+    pair : Pair
+    differences_g : ndarray, shape (n,)
+    error : mapping
+        Classifier -> share of readings taken for the wrong one of the two, shape (n,).
+    """
+
+    pair: Pair
+    differences_g: Array
+    error: Mapping[str, Array]
+
+
+def weighing(kind: str, seed: int = 0) -> Any:
+    """Return the pipeline that measures discs: ``curve`` as in the thesis, or ``decoupled``.
+
+    Parameters
+    ----------
+    kind : "curve" or "decoupled"
+    seed : int
+        Of the calibration's placements.
+    """
+    from tactile_graph import loads
+
+    if kind == "decoupled":
+        return loads(DECOUPLED_WEIGHING)
+    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed)})
+
+
+def calibration_curve(seed: int = 0, pad: str = "thesis", groups: int = 9) -> list[list[float]]:
+    """Return points (volts, grams) of an element, as the thesis calibrated the array.
+
+    Parameters
+    ----------
+    seed : int
+    pad : str
+    groups : int
+        Groups of four neighbours loaded at random places; their mean volts are taken.
+
+    Notes
+    -----
+    Thesis section 2.4.2 and figures 2.15 to 2.18. The mean of the groups is joined by straight
+    lines; the thesis smooths it by a polynomial of the fifth order. What reads more than the
+    heaviest load it was calibrated with counts as that load.
+    """
+    from tactile_graph_pads.pad import load_pad
+
+    bench, rng = load_pad(pad), np.random.default_rng(seed)
+    built = bench.built(rng)
+    fields = bench.unevenness.draw(bench.geometry, rng)
+    grams = np.geomspace(5.0, MOST_CALIBRATED_G, 40)
+    rows, columns = bench.geometry.shape
+    volts = np.zeros(grams.size)
+    for _ in range(groups):
+        i, j = int(rng.integers(rows - 1)), int(rng.integers(columns - 1))
+        gains = bench.unevenness.gains(fields, bench.unevenness.draw(bench.geometry, rng))
+        part = gains[i : i + 2, j : j + 2] + 1e-3  # four voids would bear nothing at all
+        for k, each in enumerate(grams):
+            load = np.zeros(bench.geometry.shape)
+            load[i : i + 2, j : j + 2] = 4.0 * each * part / part.sum()
+            read = bench.volts_of(bench.conductance_s(load, built))
+            volts[k] += read[i : i + 2, j : j + 2].mean() / groups
+    rising = np.flatnonzero(np.diff(np.maximum.accumulate(volts), prepend=0.0) > 1e-6)
+    curve = [[float(volts[k]), float(grams[k])] for k in rising]
+    return [*curve, [bench.circuit.supply_v, curve[-1][1]]]
+
+
+def error_curves(
+    kind: str = "curve",
+    pairs: Sequence[Pair] = PAIRS,
+    differences_g: Sequence[float] = DIFFERENCES_G,
+    n_learn: int = N_READINGS,
+    n_test: int = 50,
+    seed: int = 0,
+) -> list[Curve]:
+    """Return identification error against weight difference, for each pair of discs.
+
+    Parameters
+    ----------
+    kind : "curve" or "decoupled"
+        How weights are found, see `weighing`.
+    pairs : sequence of Pair
+    differences_g : sequence of float
+    n_learn, n_test : int
+        Readings of each disc and weight to learn it, and to test it.
+    seed : int
+
+    Notes
+    -----
+    Thesis section 4.4.3: heavier discs are made by piling weights on, a little off centre. Only
+    the two of a pair are known at a time, and the nearest counts, however far.
+    """
+    discs = _discs(pairs, differences_g)
+    scene = {"in_turn": [[_disc(*disc)] for disc in discs]}
+    readings = simulated(weighing(kind, seed), scene, n_learn + n_test, len(discs), seed)
+    curves = []
+    for pair in pairs:
+        errors: dict[str, list[float]] = {}
+        for difference in differences_g:
+            two = {name: readings[name] for name in _names(pair, difference)}
+            for step, one in classifiers(known_from(two, n_learn)).items():
+                errors.setdefault(step, []).append(1.0 - tested(one, two, n_learn).share_right)
+        found = {step: np.array(values) for step, values in errors.items()}
+        curves.append(Curve(pair, np.array(differences_g, dtype=np.float64), found))
+    return curves
+
+
+def _discs(
+    pairs: Sequence[Pair], differences_g: Sequence[float]
+) -> list[tuple[str, float, float, float]]:
+    """Return (name, radius, own weight, stacked weight) of every disc that is needed, once."""
+    discs: dict[str, tuple[str, float, float, float]] = {}
+    for pair in pairs:
+        for difference in differences_g:
+            first, second = _names(pair, difference)
+            discs[first] = (first, pair.radius_cm, pair.base_g, 0.0)
+            discs[second] = (second, pair.other_radius_cm, pair.base_g, float(difference))
+    return list(discs.values())
+
+
+def _names(pair: Pair, difference_g: float) -> tuple[str, str]:
+    first = f"{pair.radius_cm:g} cm, {pair.base_g:g} g"
+    return first, f"{pair.other_radius_cm:g} cm, {pair.base_g:g} + {difference_g:g} g"
+
+
+def _disc(name: str, radius_cm: float, weight_g: float, stacked_g: float) -> dict[str, Any]:
+    n = int(np.ceil(stacked_g / LARGEST_STACKED_G))
+    return {
+        "shape": "disc",
+        "name": name,
+        "radius_cm": radius_cm,
+        "weight_g": weight_g,
+        "stacked_g": [stacked_g / n] * n if n else [],
+        "stack_offset_cm": STACK_OFFSET_CM,
+    }

@@ -1,0 +1,223 @@
+"""A plugin can break; the rest goes on, and everything is told by name."""
+
+from __future__ import annotations
+
+import re
+import sys
+import types
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tactile_graph import Image, hookimpl
+from tactile_graph.errors import PluginError, UsageError
+from tactile_graph.plugins import registry as registry_module
+from tactile_graph.plugins.registry import Registry, Selection, installed, restrict
+
+
+def step(image: Image) -> Image:
+    return image
+
+
+def _returning(answer: Any) -> Callable[[], Any]:
+    return lambda: answer
+
+
+def plugin(**offers: Any) -> Callable[[], types.ModuleType]:
+    """Return a loader of a plugin whose hooks return what is given."""
+    module = types.ModuleType("plugin")
+    for kind, answer in offers.items():
+        setattr(module, f"tactile_graph_{kind}", hookimpl(_returning(answer)))
+    return lambda: module
+
+
+def broken(error: BaseException) -> Callable[[], types.ModuleType]:
+    def load() -> types.ModuleType:
+        raise error
+
+    return load
+
+
+def offered(*rows: tuple[str, Callable[[], types.ModuleType]], select: str = "") -> Registry:
+    return Registry(
+        [(name, f"{name}-package", "1.0", loader) for name, loader in rows], Selection.parse(select)
+    )
+
+
+GOOD = ("good", plugin(steps={"step": step}, pipelines={"p": Path("p.yaml")}))
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (ImportError("no module named 'torch'"), "ImportError: no module named 'torch'"),
+        (SyntaxError("bad"), "SyntaxError: bad"),
+        (SystemExit(2), "SystemExit: 2"),
+        (ZeroDivisionError("x"), "ZeroDivisionError: x"),
+    ],
+)
+def test_a_plugin_that_cannot_be_imported_is_reported_and_the_rest_works(
+    error: BaseException, message: str
+) -> None:
+    found = offered(("bad", broken(error)), GOOD)
+    bad, good = found.plugins
+    assert (bad.name, bad.package, bad.error) == ("bad", "bad-package", message)
+    assert bad.import_ms > 0
+    assert bad.label == "plugin 'bad' (package bad-package)"
+    assert good.error == ""
+    assert found.names("steps") == ["step"]
+    assert found.step("step").name == "step"
+
+
+def test_what_is_missing_is_told_with_the_plugins_that_are_down() -> None:
+    found = offered(("bad", broken(ImportError("x"))), GOOD)
+    with pytest.raises(UsageError, match=r"no step named 'stp'; did you mean 'step'\? \(plugins failed to "
+                                         r"load: bad\)"):  # fmt: skip
+        found.step("stp")
+    with pytest.raises(UsageError, match="no pipeline named 'zzz'; there are: p"):
+        found.path("pipelines", "zzz")
+
+
+def test_a_name_that_is_taken_is_refused_naming_both_packages() -> None:
+    found = offered(GOOD, ("late", plugin(steps={"step": "x:y", "more": step})))
+    assert found.clashes == [
+        "step 'step' of plugin 'late' (package late-package) is refused: "
+        "plugin 'good' (package good-package) has it already"
+    ]
+    assert found.load("steps", "step") is step
+    assert found.names("steps") == ["more", "step"]
+    assert found.plugins[1].offers["steps"] == {"more": step}
+
+
+def test_two_plugins_of_one_name_do_not_replace_each_other() -> None:
+    found = offered(GOOD, ("good", plugin(steps={"other": step})))
+    assert "another plugin of this name is already loaded" in found.plugins[1].error
+    assert found.names("steps") == ["step"]
+
+
+@pytest.mark.parametrize(
+    ("offers", "message"),
+    [
+        ({"steps": 3}, "PluginError: hook tactile_graph_steps must return a mapping, got 3"),
+        ({"steps": ["a"]}, r"must return a mapping, got \['a'\]"),
+        ({"steps": None}, "must return a mapping, got None"),
+        ({"steps": {1: step}}, "hook tactile_graph_steps: a name must be a text, got 1"),
+        ({"steps": {"": step}}, "a name must be a text, got ''"),
+        ({"steps": {"a": 3}}, "'a' is 3, an import string \"module:name\" is needed"),
+        ({"pipelines": {"a": 3}}, "hook tactile_graph_pipelines: 'a' is 3, a file's path is needed"),
+        ({"commands": {"a": step}}, "'a' is <function step.*, an import string"),
+    ],
+)
+def test_a_hook_that_returns_rubbish_is_reported(offers: Any, message: str) -> None:
+    found = offered(("bad", plugin(**offers)), GOOD)
+    assert re.search(message, found.plugins[0].error)
+    assert found.plugins[0].offers == {}
+    assert found.names("steps") == ["step"]
+
+
+def test_a_hook_that_raises_or_is_not_known_is_reported() -> None:
+    @hookimpl
+    def tactile_graph_steps() -> dict[str, Any]:
+        raise RuntimeError("later")
+
+    @hookimpl
+    def tactile_graph_stpes() -> dict[str, Any]:
+        return {}
+
+    raising, unknown = types.ModuleType("a"), types.ModuleType("b")
+    raising.tactile_graph_steps = tactile_graph_steps  # type: ignore[attr-defined]
+    unknown.tactile_graph_stpes = tactile_graph_stpes  # type: ignore[attr-defined]
+    found = offered(("a", lambda: raising), ("b", lambda: unknown), GOOD)
+    assert found.plugins[0].error == "RuntimeError: later"
+    assert "unknown hook 'tactile_graph_stpes'" in found.plugins[1].error
+    assert found.names("steps") == ["step"]
+
+
+def test_a_plugin_may_offer_nothing() -> None:
+    assert offered(("empty", lambda: types.ModuleType("empty"))).plugins[0].error == ""
+
+
+# -- steps by import string --------------------------------------------------------------------
+
+
+@pytest.fixture
+def lazy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Registry]:
+    (tmp_path / "lazily_loaded.py").write_text(
+        "from tactile_graph import Image\nnumber = 3\ndef double(image: Image) -> Image: return image\n"
+    )
+    (tmp_path / "lazily_broken.py").write_text("raise SystemExit('no licence')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    names = {"double": "lazily_loaded:double", "broken": "lazily_broken:x", "odd": "lazily_loaded",
+             "number": "lazily_loaded:number", "gone": "lazily_loaded:gone"}  # fmt: skip
+    yield offered(("lazy", plugin(steps=names)))
+    for name in ("lazily_loaded", "lazily_broken"):
+        sys.modules.pop(name, None)
+
+
+def test_a_step_is_imported_when_it_is_used(lazy: Registry) -> None:
+    assert lazy.names("steps") == ["broken", "double", "gone", "number", "odd"]
+    assert "lazily_loaded" not in sys.modules
+    assert lazy.step("double").ports[0].type is Image
+    assert "lazily_loaded" in sys.modules
+    assert lazy.step("double") is lazy.step("double")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("broken", "'broken' of plugin 'lazy' .*: cannot import lazily_broken: no licence"),
+        ("odd", "'lazily_loaded' is no import string 'module:name'"),
+        ("number", "step 'number': 3 is not a function or class"),
+        ("gone", r"'gone' of plugin 'lazy' \(package lazy-package\): lazily_loaded has no 'gone'"),
+    ],
+)
+def test_a_step_that_cannot_be_had_is_told(lazy: Registry, name: str, message: str) -> None:
+    with pytest.raises(PluginError, match=message):
+        lazy.step(name)
+
+
+# -- which plugins -----------------------------------------------------------------------------
+
+OTHER = ("other", plugin(steps={"more": step}))
+
+
+@pytest.mark.parametrize(
+    ("select", "names"),
+    [("", ["more", "step"]), ("good", ["step"]), ("-good", ["more"]), (" other , good ", ["more", "step"]),
+     ("good,-good", []), ("-good,-other", []), (",", ["more", "step"])],
+)  # fmt: skip
+def test_a_selection_names_the_plugins_to_load_or_to_block(select: str, names: list[str]) -> None:
+    assert offered(GOOD, OTHER, select=select).names("steps") == names
+
+
+def test_a_blocked_plugin_is_not_imported() -> None:
+    found = offered(("bad", broken(ImportError("x"))), GOOD, select="-bad")
+    assert (found.plugins[0].blocked, found.plugins[0].error) == (True, "")
+
+
+@pytest.fixture
+def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
+    monkeypatch.setattr(registry_module, "_override", None)
+    installed.cache_clear()
+    yield monkeypatch
+    installed.cache_clear()
+
+
+def test_the_environment_and_the_flag_restrict_plugins(fresh: pytest.MonkeyPatch) -> None:
+    fresh.setenv("TACTILE_GRAPH_PLUGINS", "filters")
+    assert {p.name for p in installed().plugins if not p.blocked} == {"filters"}
+    restrict("-filters")
+    left = {p.name: p.blocked for p in installed().plugins}
+    assert left["filters"]
+    assert not left["sources"]
+
+
+def test_the_installed_plugins_load_without_trouble(fresh: pytest.MonkeyPatch) -> None:
+    fresh.delenv("TACTILE_GRAPH_PLUGINS", raising=False)
+    found = installed()
+    ours = [p for p in found.plugins if p.package == "tactile-graph"]
+    assert [p.error for p in ours] == [""] * len(ours)
+    assert found.clashes == []
+    assert [p.name for p in ours] == sorted(p.name for p in ours)

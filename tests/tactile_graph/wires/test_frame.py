@@ -1,0 +1,104 @@
+"""Frames are made around copies, with broken cells masked, and are frozen."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_graph import Frame, Image, Mask, Points
+
+
+def test_values_are_copied_and_frozen() -> None:
+    values = np.arange(6, dtype=np.int16).reshape(2, 3)
+    frame = Frame.of(values, 1.3)
+    values[0, 0] = 99
+    assert frame.image.values[0, 0] == 0.0
+    assert frame.image.values.dtype == np.float64
+    assert values.flags.writeable
+    with pytest.raises(ValueError, match="read-only"):
+        frame.image.values[0, 0] = 1.0
+
+
+def test_cells_that_are_no_number_become_invalid_and_hold_zero() -> None:
+    frame = Frame.of(np.array([[1.0, np.nan], [np.inf, -np.inf]]))
+    assert frame.image.values.tolist() == [[1.0, 0.0], [0.0, 0.0]]
+    assert frame.image.valid is not None
+    assert frame.image.valid.tolist() == [[True, False], [False, False]]
+    assert not frame.image.valid.flags.writeable
+
+
+def test_a_frame_full_of_nan_is_all_invalid_without_a_warning() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        image = Frame.of(np.full((16, 16), np.nan)).image
+        assert image.valid is not None
+        assert not image.valid.any()
+        assert (image.total, image.peak) == (0.0, 0.0)
+
+
+def test_good_values_have_no_mask() -> None:
+    assert Frame.of(np.ones((2, 2))).image.valid is None
+
+
+@pytest.mark.parametrize("shape", [(), (4,), (2, 2, 2), (0, 3), (3, 0), (0, 0)])
+def test_values_that_are_no_matrix_are_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match=r"a frame takes values of shape \(rows, columns\), got \("):
+        Frame.of(np.zeros(shape))
+
+
+@pytest.mark.parametrize("pitch", [1.3, 1, np.float64(1.3), np.int64(2), (1.3, 0.9), [1.0, 2.0]])
+def test_a_pitch_may_be_one_number_or_two(pitch: Any) -> None:
+    x, y = Frame.of(np.ones((2, 2)), pitch).image.pitch_cm
+    assert (x, y) == tuple(np.broadcast_to(pitch, 2))
+    assert type(x) is float
+
+
+@pytest.mark.parametrize("pitch", [0, -1.0, np.nan, np.inf, (1.0, 0.0)])
+def test_a_pitch_that_is_no_length_is_refused(pitch: Any) -> None:
+    with pytest.raises(ValueError, match="a pitch must be > 0 cm, got "):
+        Frame.of(np.ones((2, 2)), pitch)
+
+
+def test_a_quantity_that_is_none_is_refused() -> None:
+    with pytest.raises(ValueError, match="unknown quantity 'volts'; did you mean 'volt'"):
+        Frame.of(np.ones((2, 2)), quantity="volts")
+
+
+def test_a_frame_carries_what_it_is_told() -> None:
+    frame = Frame.of([[1]], index=4, time_s=0.5, label="left")  # type: ignore[arg-type]
+    assert (frame.index, frame.time_s, frame.label, frame.truth) == (4, 0.5, "left", None)
+    assert (frame.with_index(7).index, frame.with_index(7).image) == (7, frame.image)
+
+
+@pytest.mark.parametrize(
+    "record",
+    [Image(np.ones((1, 1))), Mask(np.ones((1, 1), dtype=bool)), Points(np.ones((1, 2)))],
+    ids=lambda r: type(r).__name__,
+)
+def test_records_are_frozen(record: Any) -> None:
+    name = "xy_cm" if isinstance(record, Points) else "values"
+    with pytest.raises(AttributeError, match=f"is frozen: cannot set '{name}'"):
+        setattr(record, name, np.ones((1, 1)))
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(record, name)[0, 0] = 0
+    if not isinstance(record, Points):
+        with pytest.raises(AttributeError, match="is frozen: cannot delete 'values'"):
+            del record.values
+
+
+def test_places_follow_from_pitch_and_origin() -> None:
+    image = Image(np.zeros((2, 3)), (1.3, 2.0), (10.0, 20.0))
+    assert image.x_cm.tolist() == pytest.approx([10.65, 11.95, 13.25])
+    assert image.y_cm.tolist() == [21.0, 23.0]
+    assert image.extent_cm == pytest.approx((10.0, 13.9, 24.0, 20.0))
+    assert image.cell_area_cm2 == pytest.approx(2.6)
+    assert (image.rows, image.columns, image.shape) == (2, 3, (2, 3))
+
+
+def test_sums_leave_invalid_cells_out() -> None:
+    image = Image(np.array([[1.0, 5.0]]), valid=np.array([[True, False]]))
+    assert (image.total, image.peak) == (1.0, 1.0)
+    assert image.filled(-1.0).tolist() == [[1.0, -1.0]]
