@@ -106,6 +106,7 @@ class Kernel(Generic[P, R]):
             if mode() == "compiled":
                 raise
             self.call = self.reference
+            return self.reference(*args)  # type: ignore[call-arg]
         return self.call(*args)
 
     @property

@@ -25,9 +25,13 @@ def on_four(pad: Pad, weight_g: float, corner: tuple[int, int] = (3, 4)) -> NDAr
 
 
 def frame(
-    pad: Pad, weight_g: float, index: int = 0, corner: tuple[int, int] = (3, 4), truth: bool = False,
+    pad: Pad,
+    weight_g: float,
+    index: int = 0,
+    corner: tuple[int, int] = (3, 4),
+    truth: bool = False,
     quantity: str = "volt",
-) -> Frame:  # fmt: skip
+) -> Frame:
     """One reading of a weight on four elements."""
     volts = pad.forward(on_four(pad, weight_g, corner))
     values = pad.converter.counts(volts) if quantity == "counts" else volts

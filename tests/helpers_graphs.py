@@ -125,9 +125,24 @@ def _naive_picky(a: int, bad: int = 2) -> int:
 
 STEPS: dict[str, Callable[..., Any]] = {
     f.__name__.lower(): f
-    for f in (read, read_frame, constant, add1, add2, add3, optional, options, total, total_of,
-              pair, maybe, many, picky, Count)
-}  # fmt: skip
+    for f in (
+        read,
+        read_frame,
+        constant,
+        add1,
+        add2,
+        add3,
+        optional,
+        options,
+        total,
+        total_of,
+        pair,
+        maybe,
+        many,
+        picky,
+        Count,
+    )
+}
 
 NAIVE = {
     "read": NaiveStep(("image",), lambda image: int(image.image.values[0, 0])),
@@ -180,8 +195,26 @@ def shown(document: dict[str, Any]) -> str:
 
 # -- strategies ------------------------------------------------------------------------------
 
-INTS = ("add1", "add2", "add3", "optional", "options", "total", "total_of", "picky", "maybe",
-        "count", "read", "read_frame", "constant", "first_of", "pair", "many", "each", "use")  # fmt: skip
+INTS = (
+    "add1",
+    "add2",
+    "add3",
+    "optional",
+    "options",
+    "total",
+    "total_of",
+    "picky",
+    "maybe",
+    "count",
+    "read",
+    "read_frame",
+    "constant",
+    "first_of",
+    "pair",
+    "many",
+    "each",
+    "use",
+)
 
 
 class _Grower:
@@ -271,8 +304,11 @@ class _Grower:
         parts = []
         for _ in range(self.draw(st.integers(1, 2))):
             ref = self.some([*self.ints, *self.unsure])
-            form = self.draw(st.sampled_from(
-                ["{0} > 3", "{0} % 2 == 0", "not {0}", "{0}", "12 / {0} > 2", "{0} != 1"]))  # fmt: skip
+            form = self.draw(
+                st.sampled_from(
+                    ["{0} > 3", "{0} % 2 == 0", "not {0}", "{0}", "12 / {0} > 2", "{0} != 1"]
+                )
+            )
             parts.append(form.format(ref))
         text = self.draw(st.sampled_from([" and ", " or "])).join(parts)
         if self.draw(st.integers(0, 3)) == 0:
@@ -284,16 +320,19 @@ class _Grower:
 
 @st.composite
 def documents(
-    draw: Callable[..., Any], name: str = "random", library: dict[str, Any] | None = None,
+    draw: Callable[..., Any],
+    name: str = "random",
+    library: dict[str, Any] | None = None,
     most: int = 14,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Return a random valid pipeline file as plain data; what it can ``use`` is in the library."""
     grower = _Grower(draw, f"{name}:", library or {})
     for number in range(draw(st.integers(2, most))):
         grower.grow(number)
     every = grower.ints[1:] + (grower.lists if name == "random" else [])
-    outputs = draw(st.lists(st.sampled_from(every or ["frame.index"]), min_size=1, max_size=4,
-                            unique=True))  # fmt: skip
+    outputs = draw(
+        st.lists(st.sampled_from(every or ["frame.index"]), min_size=1, max_size=4, unique=True)
+    )
     order = draw(st.permutations(list(grower.nodes)))
     return {
         "pipeline": name,

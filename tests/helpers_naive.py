@@ -151,8 +151,11 @@ class Naive:
         if lacking is not None:
             return lacking
         arguments = {**step.optional, **arguments}
-        return self.each(step, body, arguments, at) if body.get("each") else (
-            self.call(step, body, arguments, at))  # fmt: skip
+        return (
+            self.each(step, body, arguments, at)
+            if body.get("each")
+            else (self.call(step, body, arguments, at))
+        )
 
     def wired(self, step: NaiveStep, body: Any) -> dict[str, Any]:
         wires = body.get("in")
@@ -188,8 +191,11 @@ class Naive:
         settings = dict(body.get("with", {}))
         self.ran[settings.pop("tag")] += 1
         if step.stateful:
-            arguments = {"state": self.states.setdefault(at, {}), "now": self.frame.time_s,
-                         **arguments}  # fmt: skip
+            arguments = {
+                "state": self.states.setdefault(at, {}),
+                "now": self.frame.time_s,
+                **arguments,
+            }
         try:
             return value(step.function(**arguments, **settings))
         except Exception:
@@ -214,8 +220,11 @@ class Naive:
             return False
         texts = [self.spelled(body.get("when", ""), document), *body.get("first_of", [])]
         wires = body.get("in", [])
-        for w in [wires] if isinstance(wires, str) else list(
-                wires.values() if isinstance(wires, dict) else wires):  # fmt: skip
+        for w in (
+            [wires]
+            if isinstance(wires, str)
+            else list(wires.values() if isinstance(wires, dict) else wires)
+        ):
             texts += [w] if isinstance(w, str) else w
         roots = {r.partition(".")[0] for t in texts for r in _REF.findall(t)} - _WORDS
         return "frame" not in roots and all(self.constant(r, document) for r in roots)

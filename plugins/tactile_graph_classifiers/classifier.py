@@ -31,16 +31,14 @@ class Lookup:
     features : sequence of str
     """
 
-    def __init__(
-        self, database: Path | dict[str, Any] | None, features: Sequence[str]
-    ) -> None:
+    def __init__(self, database: Path | dict[str, Any] | None, features: Sequence[str]) -> None:
         from tactile_graph_classifiers.database.opening import load_known
 
         self.known: Known = load_known(database, features)
         if not self.known.objects:
             raise DataError(self.known.where, "no object was learned yet")
-        self._names: tuple[str, ...] = ()
-        self._positions: NDArray[np.intp] = np.zeros(0, np.intp)
+        # One attribute for both: threads may share a classifier.
+        self._last: tuple[tuple[str, ...], NDArray[np.intp]] = ((), np.zeros(0, np.intp))
 
     def vector(self, features: Measurements) -> Array:
         """Return the chosen features of a reading, shape (F,).
@@ -54,12 +52,13 @@ class Lookup:
         DataError
             If a feature was not measured or is not finite, or the reading is in another unit.
         """
-        if features.names is not self._names:
-            self._positions = features.positions(self.known.features)
-            self._names = features.names
+        names, positions = self._last
+        if features.names is not names:
+            positions = features.positions(self.known.features)
+            self._last = (features.names, positions)
         if features.quantity != self.known.quantity:
             self.known.measured(features.quantity)
-        vector: Array = features.values[self._positions]
+        vector: Array = features.values[positions]
         if not math.isfinite(vector @ vector):
             self._refuse(vector)
         return vector

@@ -110,9 +110,7 @@ def simulated(
     return found
 
 
-def known_from(
-    readings: Mapping[str, Readings], n: int | None = None, pipeline: str = ""
-) -> Known:
+def known_from(readings: Mapping[str, Readings], n: int | None = None, pipeline: str = "") -> Known:
     """Return what the first ``n`` readings of each object make known.
 
     Parameters
@@ -203,7 +201,7 @@ class Confusion(NamedTuple):
         return sum(self.rejected.values()) / self.n
 
 
-def tested(classifier: Any, readings: Mapping[str, Readings], skip: int = 0) -> Confusion:
+def confusion(classifier: Any, readings: Mapping[str, Readings], skip: int) -> Confusion:
     """Return how a classifier does on the readings after the first ``skip`` of each object.
 
     Parameters
@@ -259,7 +257,32 @@ def table_4_9(n: int = N_READINGS, seed: int = 0) -> dict[str, Confusion]:
 
     readings = simulated(load("features"), "identify", 2 * n, 5, seed)
     known = known_from(readings, n)
-    return {name: tested(one, readings, n) for name, one in classifiers(known).items()}
+    return {name: confusion(one, readings, n) for name, one in classifiers(known).items()}
+
+
+def strangers_rejected(n: int = N_READINGS, seed: int = 0) -> dict[str, float]:
+    """Return the share of an object's readings called unknown where it was not learned.
+
+    Parameters
+    ----------
+    n : int
+        Readings to learn each of the other objects of table 4.9, and as many to test this one.
+    seed : int
+
+    Notes
+    -----
+    Each of the five is the stranger once; the thesis has no such test.
+    """
+    from tactile_graph import load
+
+    readings = simulated(load("features"), "identify", n, 5, seed)
+    shares: dict[str, list[float]] = {}
+    for stranger in readings:
+        others = {name: r for name, r in readings.items() if name != stranger}
+        for step, one in classifiers(known_from(others)).items():
+            found = confusion(one, {stranger: readings[stranger]}, 0)
+            shares.setdefault(step, []).append(found.share_rejected)
+    return {step: float(np.mean(values)) for step, values in shares.items()}
 
 
 # -- figures 4.38 to 4.43 --------------------------------------------------------------------
@@ -396,7 +419,7 @@ def error_curves(
         for difference in differences_g:
             two = {name: readings[name] for name in _names(pair, difference)}
             for step, one in classifiers(known_from(two, n_learn)).items():
-                errors.setdefault(step, []).append(1.0 - tested(one, two, n_learn).share_right)
+                errors.setdefault(step, []).append(1.0 - confusion(one, two, n_learn).share_right)
         found = {step: np.array(values) for step, values in errors.items()}
         curves.append(Curve(pair, np.array(differences_g, dtype=np.float64), found))
     return curves

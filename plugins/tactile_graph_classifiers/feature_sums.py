@@ -35,8 +35,6 @@ def _sums_plain(
         square about the mean load, peak, load centre x and y (of readings above 0); changes along
         rows, columns, falling and rising diagonals; holes.
     """
-    from scipy.ndimage import label
-
     y, x = np.nonzero(on)
     n = float(x.size)
     if n == 0.0:
@@ -45,16 +43,15 @@ def _sums_plain(
     dx, dy = x - mean_x, y - mean_y
     load = values[good]
     m = float(load.size)
-    total = float(load.sum())
-    square = float(((load - total / m) ** 2).mean()) if m else 0.0
+    with np.errstate(invalid="ignore", over="ignore"):  # NaN and infinity show in the sums
+        total = float(load.sum())
+        square = float(((load - total / m) ** 2).mean()) if m else 0.0
     v, u = np.nonzero(good)
     pressed = np.maximum(load, 0.0)
     positive = float(pressed.sum())
-    load_x, load_y = (
-        (float(u @ pressed) / positive, float(v @ pressed) / positive)
-        if positive > 0.0
-        else (mean_x, mean_y)
-    )
+    load_x, load_y = mean_x, mean_y
+    if 0.0 < positive < np.inf:
+        load_x, load_y = float(u @ pressed) / positive, float(v @ pressed) / positive
     p = np.pad(on, 1)
     changes = [
         float(np.count_nonzero(a != b))
@@ -65,12 +62,39 @@ def _sums_plain(
             (p[1:, :-1], p[:-1, 1:]),
         )
     ]
-    holes = float(label(~p)[1] - 1)
+    holes = float(_parts(~p) - 1)
     return (
         n, mean_x, mean_y, float(dx @ dx) / n, float(dy @ dy) / n, float(dx @ dy) / n,
         m, total, square, float(load.max()) if m else 0.0, load_x, load_y,
         changes[0], changes[1], changes[2], changes[3], holes,
     )  # fmt: skip
+
+
+def _parts(on: NDArray[np.bool_]) -> int:
+    """Return into how many parts, joined by sides, the cells that are on fall."""
+    parents: list[int] = []
+
+    def root(run: int) -> int:
+        while parents[run] != run:
+            run = parents[run]
+        return run
+
+    count = 0
+    above: list[tuple[int, int, int]] = []
+    for row in on:
+        ends = np.flatnonzero(np.diff(row.astype(np.int8), prepend=0, append=0)).tolist()
+        runs = []
+        for first, after in zip(ends[::2], ends[1::2], strict=True):
+            run = len(parents)
+            parents.append(run)
+            runs.append((first, after, run))
+            count += 1
+            for low, high, other in above:
+                if low < after and first < high and root(other) != root(run):
+                    parents[root(other)] = root(run)
+                    count -= 1
+        above = runs
+    return count
 
 
 @compiled_twin_of(_sums_plain)

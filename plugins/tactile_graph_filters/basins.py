@@ -47,11 +47,12 @@ def _basins_plain(
     for k, tap in enumerate(taps):
         smooth += tap * across[k : k + rows]
     walled = np.pad(smooth, 1, constant_values=-np.inf)
-    highest, to = smooth.copy(), np.arange(values.size).reshape(values.shape)
+    number_of = np.arange(values.size).reshape(values.shape)
+    highest, to = smooth, number_of
     for i in (-1, 0, 1):
         for j in (-1, 0, 1):
             there = walled[1 + i : 1 + i + rows, 1 + j : 1 + j + columns]
-            to = np.where(there > highest, to[0, 0] + _offsets(rows, columns, i, j), to)
+            to = np.where(there > highest, number_of + i * columns + j, to)
             highest = np.maximum(highest, there)
     flat = to.ravel()
     while not np.array_equal(flat, flat[flat]):
@@ -61,11 +62,6 @@ def _basins_plain(
     number[peaks[np.argsort(first)]] = np.arange(1, peaks.size + 1)
     labels[...] = np.where(on, number[flat].reshape(values.shape), 0)
     return int(peaks.size)
-
-
-def _offsets(rows: int, columns: int, i: int, j: int) -> NDArray[np.int64]:
-    """Return for each cell the number of the cell ``i`` rows and ``j`` columns on."""
-    return np.arange(rows * columns).reshape(rows, columns) + i * columns + j
 
 
 @compiled_twin_of(_basins_plain)

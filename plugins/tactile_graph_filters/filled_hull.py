@@ -22,9 +22,7 @@ def _misfit_plain(
     group: NDArray[np.int32],
     left: NDArray[np.int64],
     right: NDArray[np.int64],
-    voids: float,
-    weak: float,
-    usual_cells: float,
+    rules: NDArray[np.float64],
 ) -> float:
     """Return the misfit of the cells of up to three groups, taken as one convex object.
 
@@ -40,17 +38,16 @@ def _misfit_plain(
         The groups; one or two may be named twice.
     left, right : ndarray of int64, shape (rows,)
         First and last column of the groups' cells in each row; a ``right`` of -1: none there.
-    voids : float
-        Misfit a cell inside is expected to have, and is forgiven.
-    weak : float
-        Share of the groups' mean reading below which a cell inside counts as weak.
-    usual_cells : float
-        Number of cells from which on an object is not doubted for its size.
+    rules : ndarray of float64, shape (5,)
+        Of these the first three: misfit that a cell inside is expected to have, and is forgiven;
+        share of the groups' mean reading below which a cell inside counts as weak; number of
+        cells from which on an object is not doubted for its size.
 
     Returns
     -------
     float
     """
+    voids, weak, usual_cells = rules[:3].tolist()
     mine = np.isin(owner, group)
     n = int(np.count_nonzero(mine))
     misfit = DOUBT * max(0.0, 1.0 - n / usual_cells) if usual_cells > 0 else 0.0
@@ -94,8 +91,9 @@ def _hull_plain(left: NDArray[np.int64], right: NDArray[np.int64]) -> NDArray[np
 
 
 @compiled_twin_of(_misfit_plain)
-def misfit(owner, values, known, group, left, right, voids, weak, usual_cells):  # type: ignore[no-untyped-def]
+def misfit(owner, values, known, group, left, right, rules):  # type: ignore[no-untyped-def]
     """Return the misfit of the cells of up to three groups, taken as one convex object."""
+    voids, weak, usual_cells = rules[0], rules[1], rules[2]
     rows = owner.shape[0]
     x, y = np.empty(2 * rows), np.empty(2 * rows)
     ends = n = 0

@@ -8,27 +8,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
+from tactile_graph_filters.basin_groups import (
+    DIAGONAL,
+    GAIN,
+    REACH_CELLS,
+    best_pair,
+    best_three,
+    energy_of,
+    join,
+    surveyed,
+)
 from tactile_graph_filters.filled_hull import _misfit_plain, misfit
-
-REACH_CELLS = 3
-"""Groups whose boxes lie further apart are not joined."""
-DIAGONAL = 0.5
-"""What cells that touch at a corner count beside those that share an edge."""
-GAIN = 1e-9
-"""A smaller gain is rounding."""
 
 Array = NDArray[np.float64]
 
 
 def _joined_plain(
-    owner: NDArray[np.int32], count: int, values: Array, known: NDArray[np.bool_],
-    half: float, hold: float, voids: float, weak: float, usual_cells: float,
-) -> float:  # fmt: skip
+    owner: NDArray[np.int32], count: int, values: Array, known: NDArray[np.bool_], rules: Array
+) -> float:
     """Join groups in ``owner`` while that lowers the energy; return the energy.
 
-    The energy is the sum of the groups' misfits (see `misfit`) and ``hold`` for each pair of
-    neighbouring cells in different groups, less where one of them holds less than ``half``.
-    Best pair first; where no pair gains, the best chain of three groups that touch.
+    The energy is the sum of the groups' misfits (see `misfit`) and a price for each pair of
+    neighbouring cells in different groups, lower where one of them holds little. Best pair
+    first; where no pair gains, the best chain of three groups that touch.
 
     Parameters
     ----------
@@ -37,65 +39,74 @@ def _joined_plain(
     count : int
     values, known : ndarray, shape (rows, columns)
         See `misfit`.
-    half : float
-        Reading from which on a cell counts fully at a cut.
-    hold, voids, weak, usual_cells : float
-        See `split_contacts` and `misfit`.
+    rules : ndarray of float64, shape (5,)
+        The three of `misfit`, the price of a pair, and the reading from which on it is full.
 
     Returns
     -------
     float
     """
-
-    def cost(*groups: int) -> float:
-        mine = np.isin(owner, groups)
-        some = mine.any(axis=1)
-        left = np.where(some, mine.argmax(axis=1), 0)
-        right = np.where(some, mine.shape[1] - 1 - mine[:, ::-1].argmax(axis=1), -1)
-        named = np.array((groups * 3)[:3], np.int32)
-        return _misfit_plain(owner, values, known, named, left, right, voids, weak, usual_cells)
-
+    hold, half = rules[3:].tolist()
     alive = list(range(1, count + 1))
     cuts = _cuts_plain(owner, count, values, half)
-    costs = {a: cost(a) for a in alive}
+    costs = {a: _cost_plain(owner, (a,), values, known, rules) for a in alive}
     unions: dict[tuple[int, ...], float] = {}
 
     def gain(*groups: int) -> float:
         if groups not in unions:
-            unions[groups] = cost(*groups)
+            unions[groups] = _cost_plain(owner, groups, values, known, rules)
         cut = sum(cuts[a, b] for a, b in combinations(groups, 2))
         return float(hold * cut + sum(costs[a] for a in groups) - unions[groups])
 
     while True:
         pairs = [p for p in combinations(alive, 2) if _are_near(owner, *p)]
         best = _best([(gain(*p), p) for p in pairs])
-        if not best:
-            threes = [
-                (a, b, c)
-                for b in alive
-                for a, c in combinations(alive, 2)
-                if b not in (a, c) and cuts[a, b] > 0 and cuts[b, c] > 0
-            ]
-            best = _best([(gain(*t), t) for t in threes])
+        best = best or _best([(gain(*t), t) for t in _threes(alive, cuts)])
         if not best:
             break
-        costs[best[0]] = unions[best]
         for other in best[1:]:
             owner[owner == other] = best[0]
             cuts[best[0]] += cuts[other]
             cuts[:, best[0]] = cuts[best[0]]
             alive.remove(other)
         unions = {k: v for k, v in unions.items() if not {*k} & {*best}}
+        costs[best[0]] = _cost_plain(owner, best[:1], values, known, rules)
     rest = sum(cuts[a, b] for a, b in combinations(alive, 2))
     return float(sum(costs[a] for a in alive) + hold * rest)
 
 
+def _cost_plain(
+    owner: NDArray[np.int32],
+    groups: tuple[int, ...],
+    values: Array,
+    known: NDArray[np.bool_],
+    rules: Array,
+) -> float:
+    mine = np.isin(owner, groups)
+    some = mine.any(axis=1)
+    left = np.where(some, mine.argmax(axis=1), 0)
+    right = np.where(some, mine.shape[1] - 1 - mine[:, ::-1].argmax(axis=1), -1)
+    named = np.array((groups * 3)[:3], np.int32)
+    return _misfit_plain(owner, values, known, named, left, right, rules)
+
+
+def _threes(alive: list[int], cuts: Array) -> list[tuple[int, ...]]:
+    """Return the chains a-b-c of groups that touch, each once from either end."""
+    return [
+        (a, b, c)
+        for b in alive
+        for a, c in combinations(alive, 2)
+        if b not in (a, c) and cuts[a, b] > 0 and cuts[b, c] > 0
+    ]
+
+
 def _best(gains: list[tuple[float, tuple[int, ...]]]) -> tuple[int, ...]:
-    """Return the first groups of the largest gain above rounding; none: ()."""
-    best, found = GAIN, ()
+    """Return the first groups of the largest gain above rounding; () where there are none."""
+    best: float = GAIN
+    found: tuple[int, ...] = ()
     for gain, groups in gains:
         if gain > best + GAIN:
-            best, found = gain, groups  # type: ignore[assignment]
+            best, found = gain, groups
     return found
 
 
@@ -123,116 +134,29 @@ def _cuts_plain(owner: NDArray[np.int32], count: int, values: Array, half: float
 
 
 @compiled_twin_of(_joined_plain)
-def joined(owner, count, values, known, half, hold, voids, weak, usual_cells):  # type: ignore[no-untyped-def]
+def joined(owner, count, values, known, rules):  # type: ignore[no-untyped-def]
     """Join groups in ``owner`` while that lowers the energy; return the energy."""
-    rows, columns = owner.shape
-    size = count + 1
-    left = np.full((size, rows), columns, np.int64)
-    right = np.full((size, rows), -1, np.int64)
-    cuts = np.zeros((size, size))
-    box = np.empty((size, 4), np.int64)
-    box[:, 0], box[:, 1], box[:, 2], box[:, 3] = rows, -1, columns, -1
-    for i in range(rows):
-        for j in range(columns):
-            a = owner[i, j]
-            if a == 0:
-                continue
-            left[a, i], right[a, i] = min(left[a, i], j), max(right[a, i], j)
-            box[a, 0], box[a, 1] = min(box[a, 0], i), max(box[a, 1], i)
-            box[a, 2], box[a, 3] = min(box[a, 2], j), max(box[a, 3], j)
-            for way in range(4):
-                y, x = (i, j + 1) if way == 0 else (i + 1, j + 2 - way)
-                if y >= rows or x < 0 or x >= columns:
-                    continue
-                b = owner[y, x]
-                if b > 0 and b != a:
-                    lower = min(values[i, j], values[y, x])
-                    share = min(1.0, lower / half) if half > 0 else 1.0
-                    share *= 1.0 if way == 0 or way == 2 else DIAGONAL  # noqa: PLR1714
-                    cuts[a, b] += share
-                    cuts[b, a] += share
-    alive = np.ones(size, np.bool_)
+    left, right, box, cuts = surveyed(owner, count, values, rules[4])
+    alive = np.ones(count + 1, np.bool_)
+    cost = np.zeros(count + 1)
+    union = np.full((count + 1, count + 1), np.nan)
     group = np.empty(3, np.int32)
-    low, high = np.empty(rows, np.int64), np.empty(rows, np.int64)
-    cost = np.zeros(size)
-    union = np.full((size, size), np.nan)
-    for a in range(1, size):
+    for a in range(1, count + 1):
         group[:] = a
-        cost[a] = misfit(
-            owner, values, known, group, left[a], right[a], voids, weak, usual_cells
-        )
+        cost[a] = misfit(owner, values, known, group, left[a], right[a], rules)
     while True:
-        best, one, two, three = GAIN, 0, 0, 0
-        for a in range(1, size):
-            if not alive[a]:
-                continue
-            for b in range(a + 1, size):
-                if not alive[b]:
-                    continue
-                apart = max(box[a, 0], box[b, 0]) - min(box[a, 1], box[b, 1])
-                aside = max(box[a, 2], box[b, 2]) - min(box[a, 3], box[b, 3])
-                if max(apart, aside) > REACH_CELLS:
-                    continue
-                if np.isnan(union[a, b]):
-                    group[0], group[1], group[2] = a, b, a
-                    for i in range(rows):
-                        low[i] = min(left[a, i], left[b, i])
-                        high[i] = max(right[a, i], right[b, i])
-                    union[a, b] = misfit(
-                        owner, values, known, group, low, high, voids, weak, usual_cells
-                    )
-                gain = hold * cuts[a, b] + cost[a] + cost[b] - union[a, b]
-                if gain > best + GAIN:
-                    best, one, two = gain, a, b
-        if one == 0:
-            for b in range(1, size):
-                if not alive[b]:
-                    continue
-                for a in range(1, size):
-                    if not alive[a] or a == b or cuts[a, b] <= 0:
-                        continue
-                    for c in range(a + 1, size):
-                        if not alive[c] or c == b or cuts[b, c] <= 0:
-                            continue
-                        group[0], group[1], group[2] = a, b, c
-                        for i in range(rows):
-                            low[i] = min(left[a, i], left[b, i], left[c, i])
-                            high[i] = max(right[a, i], right[b, i], right[c, i])
-                        gain = hold * (cuts[a, b] + cuts[a, c] + cuts[b, c])
-                        gain += cost[a] + cost[b] + cost[c] - misfit(
-                            owner, values, known, group, low, high, voids, weak, usual_cells
-                        )
-                        if gain > best + GAIN:
-                            best, one, two, three = gain, a, b, c
-        if one == 0:
-            break
-        for other in (two, three):
-            if other == 0:
-                continue
-            for i in range(box[other, 0], box[other, 1] + 1):
-                for j in range(box[other, 2], box[other, 3] + 1):
-                    if owner[i, j] == other:
-                        owner[i, j] = one
-            for i in range(rows):
-                left[one, i] = min(left[one, i], left[other, i])
-                right[one, i] = max(right[one, i], right[other, i])
-            box[one, 0], box[one, 1] = min(box[one, 0], box[other, 0]), max(box[one, 1], box[other, 1])
-            box[one, 2], box[one, 3] = min(box[one, 2], box[other, 2]), max(box[one, 3], box[other, 3])
-            for k in range(size):
-                cuts[one, k] += cuts[other, k]
-                cuts[k, one] = cuts[one, k]
-            alive[other] = False
-        for k in range(size):
-            union[one, k] = union[k, one] = np.nan
-        group[:] = one
-        cost[one] = misfit(
-            owner, values, known, group, left[one], right[one], voids, weak, usual_cells
-        )
-    energy = 0.0
-    for a in range(1, size):
-        if alive[a]:
-            energy += cost[a]
-            for b in range(a + 1, size):
-                if alive[b]:
-                    energy += hold * cuts[a, b]
-    return energy
+        a, b = best_pair(owner, values, known, left, right, box, cuts, alive, cost, union, rules)
+        c = 0
+        if a == 0:
+            a, b, c = best_three(
+                owner, values, known, left, right, cuts, alive, cost, rules
+            )
+        if a == 0:
+            return energy_of(cuts, alive, cost, rules[3])
+        join(owner, a, b, left, right, box, cuts, alive)
+        if c > 0:
+            join(owner, a, c, left, right, box, cuts, alive)
+        union[a, :] = np.nan
+        union[:, a] = np.nan
+        group[:] = a
+        cost[a] = misfit(owner, values, known, group, left[a], right[a], rules)

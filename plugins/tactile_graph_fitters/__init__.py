@@ -7,12 +7,17 @@ from tactile_graph import hookimpl
 
 @hookimpl
 def tactile_graph_steps() -> Mapping[str, str]:
-    """Offer the circle fits."""
+    """Offer the fits of circles, ellipses, rectangles and polygons, and orientation."""
     names = (
         "fit_circle",
         "fit_circle_hyper",
         "fit_circle_kasa",
         "fit_circle_taubin",
         "fit_circle_thesis",
+        "fit_ellipse_origin",
+        "orientation",
+        "rectangle_from_ellipse",
+        "rotate_mask",
+        "rotate_points",
     )
     return {name: f"tactile_graph_fitters.{name}:{name}" for name in names}

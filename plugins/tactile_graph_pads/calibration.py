@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
@@ -17,6 +16,7 @@ from annotated_types import Ge, Gt, Len
 from numpy.typing import NDArray
 from pydantic import Field
 
+from tactile_graph_pads.calibration_curves import Isotonic, Polynomial, PowerLaw
 from tactile_graph_pads.pad import read_file
 from tactile_graph_pads.records import inline, read_record
 
@@ -31,80 +31,6 @@ class Grams(NamedTuple):
 
     load_g: Array
     valid: NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Polynomial:
-    """Grams as a polynomial of the reading; the thesis' is of the fifth order (figure 2.18).
-
-    Parameters
-    ----------
-    kind : "polynomial"
-    coefficients : tuple of float
-        Grams for each power of the reading, constant first; the constant is 0.
-    """
-
-    kind: Literal["polynomial"]
-    coefficients: Annotated[tuple[float, ...], Len(2)]
-    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
-
-    def grams(self, readings: Array) -> Array:
-        """Return the grams behind readings within the calibrated range."""
-        return np.asarray(np.polyval(self.coefficients[::-1], readings))
-
-
-@dataclass(frozen=True)
-class Isotonic:
-    """Straight lines between points that rise: monotone, and nothing else is assumed.
-
-    Parameters
-    ----------
-    kind : "isotonic"
-    points : tuple of (float, float)
-        Reading and grams, rising, from (0, 0) on.
-    """
-
-    kind: Literal["isotonic"]
-    points: Annotated[tuple[tuple[float, float], ...], Len(2)]
-    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
-
-    def __post_init__(self) -> None:
-        for (r0, g0), (r1, g1) in pairwise(self.points):
-            if not (r0 < r1 and g0 <= g1):
-                raise ValueError(
-                    f"points (reading, grams) must rise, got ({r1:g}, {g1:g}) "
-                    f"after ({r0:g}, {g0:g})"
-                )
-
-    def grams(self, readings: Array) -> Array:
-        """Return the grams behind readings within the calibrated range."""
-        of, grams = np.array(self.points).T
-        return np.asarray(np.interp(readings, of, grams))
-
-
-@dataclass(frozen=True)
-class PowerLaw:
-    """Grams as ``scale_g * (reading / unit) ** exponent``; true of conductance, not of volts.
-
-    Parameters
-    ----------
-    kind : "power"
-    scale_g : float
-        Grams at the reading ``unit``.
-    exponent : float
-    unit : float
-        Keeps the scale a number that can be read, where readings are microsiemens.
-    """
-
-    kind: Literal["power"]
-    scale_g: Annotated[float, Gt(0)]
-    exponent: Annotated[float, Gt(0)]
-    unit: Annotated[float, Gt(0)] = 1.0
-    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
-
-    def grams(self, readings: Array) -> Array:
-        """Return the grams behind readings within the calibrated range."""
-        return np.asarray(self.scale_g * (readings / self.unit) ** self.exponent)
 
 
 @dataclass(frozen=True)
@@ -286,7 +212,7 @@ class Calibration:
         if isinstance(self.fit, Polynomial):
             return {"polynomial": list(self.fit.coefficients), "up_to": self.up_to}
         if isinstance(self.fit, Isotonic):
-            return {"curve": [list(p) for p in self.fit.points]}
+            return {"curve": [list(p) for p in self.fit.points[1:]]}  # from (0, 0) on by itself
         low = min(self.from_reading, 0.01 * self.up_to) or 1e-3 * self.up_to
         of = np.geomspace(low, self.up_to, _CURVE_POINTS)
         of[-1] = self.up_to

@@ -13,14 +13,12 @@ from tactile_graph_pads.calibration import (
     FORMAT,
     UNITS,
     Calibration,
-    Isotonic,
     Point,
-    Polynomial,
-    PowerLaw,
     Provenance,
     Quality,
     Units,
 )
+from tactile_graph_pads.calibration_curves import Isotonic, Polynomial, PowerLaw
 from tactile_graph_pads.calibration_points import Observation
 
 Array = NDArray[np.float64]
@@ -163,7 +161,8 @@ def fit_isotonic(
     blocks: list[tuple[float, float, float]] = []  # reading, load, weight
     for block in zip(reading.tolist(), load_g.tolist(), weights.tolist(), strict=True):
         blocks.append(block)
-        while len(blocks) > 1 and blocks[-1][0] <= blocks[-2][0]:
+        # a pooled mean of equals may come out a rounding apart
+        while len(blocks) > 1 and blocks[-1][0] <= blocks[-2][0] * (1.0 + 1e-12):
             (r1, g1, w1), (r0, g0, w0) = blocks.pop(), blocks.pop()
             w = w0 + w1
             blocks.append(((r0 * w0 + r1 * w1) / w, (g0 * w0 + g1 * w1) / w, w))
@@ -200,7 +199,7 @@ def fit_sums(
     if not observations:
         raise ValueError("the fit by sums needs the observations")
     largest = max(float(o.readings.max()) for o in observations)
-    levels = np.unique(np.append(reading, largest))
+    levels = np.unique(np.append(reading, max(largest, float(reading.max()))))
     if len(levels) > MOST_LINES:
         levels = np.quantile(levels, np.linspace(0.0, 1.0, MOST_LINES))
     nodes = np.append(0.0, levels)

@@ -140,7 +140,7 @@ def _straighten(
         for above, key, below in wires[number]:
             top = -math.inf if above is None else middles[above] + _apart(above, key, heights)
             bottom = math.inf if below is None else middles[below] - _apart(key, below, heights)
-            if max(low, top) > min(high, bottom):
+            if run and max(low, top) > min(high, bottom):
                 _level(run, low, high, middles)
                 run, low, high = [], -math.inf, math.inf
             run.append(key)

@@ -16,6 +16,7 @@ from tactile_graph.steps.signature import list_item, type_name
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
 LONGEST = 2_000
 LONGEST_SPELLED = 4_000
+DEEPEST = 100
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -53,6 +54,11 @@ class Guard:
         return f"when {self.text} is false" + (f" ({read})" if read else "")
 
 
+def _one_line(text: str) -> str:
+    """Return the text as one line: a YAML block keeps its line ends, Python minds them."""
+    return text.strip().replace("\n", " ")
+
+
 def _short(value: Any) -> str:
     if isinstance(value, bool | int | str | np.generic):
         return f"{value.item() if isinstance(value, np.generic) else value!r}"
@@ -62,7 +68,7 @@ def _short(value: Any) -> str:
 def names_in(text: str) -> set[str]:
     """Return the names at the root of a condition's references; empty if it cannot be parsed."""
     try:
-        tree = ast.parse(text.strip(), mode="eval")
+        tree = ast.parse(_one_line(text), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
     called = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
@@ -93,9 +99,18 @@ def compile_condition(
         tree = compiler.parse(text, ())
         if not compiler.is_truth(tree):
             raise ConditionError(compiler.not_truth(tree))
+        _check_depth(tree)
         return Guard(" ".join(text.split()), tuple(compiler.refs), _function(compiler, tree))
     except (RecursionError, MemoryError):
-        raise ConditionError("nested too deeply") from None
+        raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
+
+
+def _check_depth(tree: ast.AST) -> None:
+    level: list[ast.AST] = [tree]
+    for _ in range(DEEPEST):
+        level = [child for node in level for child in ast.iter_child_nodes(node)]
+    if level:
+        raise ConditionError(f"nested deeper than {DEEPEST} levels")
 
 
 def _function(compiler: _Compiler, tree: ast.expr) -> Callable[..., Any]:
@@ -120,11 +135,12 @@ class _Compiler:
             # Conditions that name each other twice over double with each name.
             raise ConditionError(f"longer than {LONGEST} characters")
         try:
-            tree = ast.parse(text.strip(), mode="eval")
+            tree = ast.parse(_one_line(text), mode="eval")
         except SyntaxError as error:
             raise ConditionError(f"{error.msg}", max(0, (error.offset or 1) - 1)) from None
         except ValueError as error:
             raise ConditionError(f"cannot be read: {error}") from None
+        _check_depth(tree)
         for node in ast.walk(tree):
             if not isinstance(node, _ALLOWED):
                 raise ConditionError(

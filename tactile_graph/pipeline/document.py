@@ -74,7 +74,7 @@ def read_document(text: str, file: str) -> Document:
         document.problem_at(Mark(file, 1, 1), f"the file is too long: {len(text)} characters, "
                             f"allowed are {MOST_CHARACTERS}")  # fmt: skip
         return document
-    loader = yaml.SafeLoader(text) if _clean(document) else None
+    loader = _Loader(text) if _clean(document) else None
     if loader is None:
         return document
     try:
@@ -90,9 +90,6 @@ def read_document(text: str, file: str) -> Document:
         document.problem_at(place, f"this is not YAML: {error.problem or error.context}")
     except (yaml.YAMLError, _TooMuch) as error:
         document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
-    except RecursionError:
-        text = f"this is not YAML that can be read: deeper than {DEEPEST} levels"
-        document.problem_at(Mark(file, 1, 1), text)
     finally:
         loader.dispose()
     return document
@@ -113,6 +110,20 @@ class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
     pass
 
 
+class _Loader(yaml.SafeLoader):
+    """Counts levels: PyYAML descends as deep as Python's stack, however deep that is."""
+
+    depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise _TooMuch(f"deeper than {DEEPEST} levels")
+        node: yaml.Node | None = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+
 def _measure(node: yaml.Node, document: Document) -> None:
     """Refuse documents that aliases make endless or huge, before anything is built."""
     count = 0
@@ -129,10 +140,7 @@ def _measure(node: yaml.Node, document: Document) -> None:
             for child in _children(node):
                 visit(child, depth + 1, inner)
 
-    try:
-        visit(node, 0, ())
-    except RecursionError:
-        raise _TooMuch(f"deeper than {DEEPEST} levels") from None
+    visit(node, 0, ())
 
 
 def _children(node: yaml.CollectionNode) -> Iterable[yaml.Node]:

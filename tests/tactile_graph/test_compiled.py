@@ -69,8 +69,11 @@ def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, mode: str, ans
 
 def test_a_mode_that_is_none_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TACTILE_GRAPH_KERNELS", "plane")
-    with pytest.raises(UsageError, match="TACTILE_GRAPH_KERNELS='plane': must be one of auto, plain, "
-                                         "compiled; did you mean 'plain'"):  # fmt: skip
+    with pytest.raises(
+        UsageError,
+        match="TACTILE_GRAPH_KERNELS='plane': must be one of auto, plain, "
+        "compiled; did you mean 'plain'",
+    ):
         Twin(plain, plain)
 
 

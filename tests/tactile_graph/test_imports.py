@@ -11,8 +11,14 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PUBLIC = ("tactile_graph", "tactile_graph.wires", "tactile_graph.steps", "tactile_graph.errors",
-          "tactile_graph.compiled", "tactile_graph.plugins.hookspecs")  # fmt: skip
+PUBLIC = (
+    "tactile_graph",
+    "tactile_graph.wires",
+    "tactile_graph.steps",
+    "tactile_graph.errors",
+    "tactile_graph.compiled",
+    "tactile_graph.plugins.hookspecs",
+)
 SHARED = ("tactile_graph.plugins.registry", "tactile_graph.pipeline.document")
 """Also to be had by plugins: where pads, presets and steps are looked up by name, and YAML whose
 mistakes are told with their places."""

@@ -98,6 +98,6 @@ def test_a_pads_counts_weigh_what_lies_on_it_and_an_empty_pad_nothing(scene, wei
 
 
 def test_loads_below_the_floor_are_none_at_all():
-    image = Image(np.array([[0.004, 0.006, 0.02]]), quantity="volt")
+    image = image_of([[0.004, 0.006, 0.02]], "volt")
     step = Force(polynomial=[0.0, 1000.0], floor_g=5.0)
-    assert step(image).values.tolist() == [[0.0, 6.0, 20.0]]
+    assert step(image).values == pytest.approx(np.array([[0.0, 6.0, 20.0]]))

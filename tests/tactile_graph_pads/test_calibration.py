@@ -17,13 +17,11 @@ from tactile_graph.wires import Image
 from tactile_graph_filters.force import Force
 from tactile_graph_pads.calibration import (
     Calibration,
-    Isotonic,
-    Polynomial,
-    PowerLaw,
     calibration_text,
     load_calibration,
     write_calibration,
 )
+from tactile_graph_pads.calibration_curves import Isotonic, Polynomial, PowerLaw
 from tactile_graph_pads.calibration_fit import calibrated
 from tactile_graph_pads.calibration_points import Observation, points_of
 from tactile_graph_pads.records import RecordError
@@ -138,6 +136,13 @@ def test_points_that_fall_are_refused() -> None:
     data = as_data(made("isotonic"))
     data["fit"] = {"kind": "isotonic", "points": [[0, 0], [1, 5], [1, 6]]}
     with pytest.raises(RecordError, match=r"must rise, got \(1, 6\) after \(1, 5\)"):
+        load_calibration(data)
+
+
+def test_points_start_at_nothing() -> None:
+    data = as_data(made("isotonic"))
+    data["fit"] = {"kind": "isotonic", "points": [[1, 5], [2, 6]]}
+    with pytest.raises(RecordError, match=r"must start at \(0, 0\), got \(1.0, 5.0\)"):
         load_calibration(data)
 
 

@@ -66,9 +66,8 @@ def test_sums_see_through_unevenness_where_means_do_not() -> None:
     rng = np.random.default_rng(0)
     seen = []
     for _ in range(60):
-        share = rng.lognormal(0.0, 0.5, 4)
-        for g in LOADS:
-            seen.append(Observation(float(g), (g * 4 * share / share.sum()) ** 1.46))
+        share = rng.lognormal(0.0, 0.9, 4)
+        seen += [Observation(float(g), (g * 4 * share / share.sum()) ** 1.46) for g in LOADS]
     points = points_of(seen)
     load = np.array([60.0, 160.0, 400.0])
     by_sums = calibrated(points, "sums", "siemens", observations=seen)

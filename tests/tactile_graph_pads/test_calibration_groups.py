@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers_calibration import counting_pad, frame, on_four
 
+from helpers_calibration import counting_pad, frame, on_four
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Circle, Frame, Image, TrueObject
 from tactile_graph_pads.calibration_groups import GroupReader
@@ -58,7 +58,7 @@ def test_the_empty_pad_is_taken_off() -> None:
     (seen,) = GroupReader(empty=empty).observations([raised], 400.0, "a")
     (plain,) = GroupReader().observations([frame(PAD, 400.0)], 400.0, "a")
     np.testing.assert_allclose(seen.readings, plain.readings)
-    with pytest.raises(DataError, match="on one group.* take off what the empty pad reads"):
+    with pytest.raises(DataError, match=r"on one group.* take off what the empty pad reads"):
         list(GroupReader().observations([raised], 400.0, "a"))
 
 
@@ -96,7 +96,9 @@ def test_saturated_readings_are_refused_by_the_pads_converter() -> None:
     pad = counting_pad()
     counts = np.full((16, 16), 2048.0)
     counts[3:5, 4:6] = 4094.8  # the mean of samples that noise cut off
-    with pytest.raises(DataError, match=r"saturated: under 100 g an element reads 4094.8, and 4095"):
+    with pytest.raises(
+        DataError, match=r"saturated: under 100 g an element reads 4094.8, and 4095"
+    ):
         refused(GroupReader(pad=pad), Frame(pad.image(counts, "counts")))
 
 

@@ -23,7 +23,7 @@ LISTED = ("weight", "area_cm2")
 @click.option("--export", "exported", metavar="FILE",
               help="Write everything as YAML to FILE, or - for stdout.")  # fmt: skip
 @click.option("--import", "imported", type=click.Path(path_type=Path), metavar="FILE",
-              help="Add the objects of an export, all or none; made if there is no database.")  # fmt: skip
+              help="Add the objects of an export, all or none.")  # fmt: skip
 def objects(
     name: str | None, database: Path, timeout_s: float, exported: str | None, imported: Path | None
 ) -> None:

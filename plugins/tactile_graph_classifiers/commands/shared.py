@@ -51,10 +51,12 @@ def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]
 
     from tactile_graph.cli.terminal import console
 
-    table = Table(title=Text(title, "bold"), title_justify="left", box=None, pad_edge=False)
+    table = Table(box=None, pad_edge=False)
     for i, name in enumerate(columns):
         right = i > 0 and not name.endswith(" ")
         table.add_column(Text(name.strip()), justify="right" if right else "left", no_wrap=True)
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
-    console().print(table)
+    out = console()
+    out.print(Text(title, "bold"), soft_wrap=True)
+    out.print(table)

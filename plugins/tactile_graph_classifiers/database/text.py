@@ -47,9 +47,14 @@ def to_text(known: Known, about: str = "") -> str:
             for it in known.objects
         ],
     }
-    options = {"sort_keys": False, "allow_unicode": True, "width": 2**20}
-    text: str = yaml.dump(data, Dumper=_Dumper, default_flow_style=None, **options)
-    return text
+    return yaml.dump(
+        data,
+        Dumper=_Dumper,
+        default_flow_style=None,
+        sort_keys=False,
+        allow_unicode=True,
+        width=2**20,  # a reading a line
+    )
 
 
 def from_text(text: str, where: str) -> tuple[Setting, list[Lesson]]:
@@ -67,7 +72,7 @@ def from_text(text: str, where: str) -> tuple[Setting, list[Lesson]]:
         If it is no export of an object database, or of a newer version.
     """
     try:
-        data = yaml.load(text, Loader=_Loader)  # noqa: S506 -- a safe loader
+        data = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         at = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
@@ -95,8 +100,9 @@ def from_data(data: Any, where: str) -> tuple[Setting, list[Lesson]]:
         raise DataError(where, f"is an export of version {got}, version {VERSION} can be read")
     _only(data, _KEYS, where, "")
     features = data.get("features")
-    if not _texts(features) or len(set(features)) != len(features) or not features:
-        raise DataError(where, f"features: must be a list of different names, got {shown(features)}")
+    if not isinstance(features, list) or not _texts(features) or not _all_differ(features):
+        got = shown(features)
+        raise DataError(where, f"features: must be a list of different names, got {got}")
     objects = data.get("objects")
     if not isinstance(objects, list):
         raise DataError(where, f"objects: must be a list, got {shown(objects)}")
@@ -120,6 +126,10 @@ def _only(data: Mapping[str, Any], allowed: set[str], where: str, what: str) -> 
 
 def _texts(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(v, str) for v in value)
+
+
+def _all_differ(names: list[Any]) -> bool:
+    return 0 < len(names) == len(set(names))
 
 
 def _lesson(data: Any, n_features: int, where: str, what: str) -> Lesson:

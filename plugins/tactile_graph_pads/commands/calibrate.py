@@ -5,23 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
 if TYPE_CHECKING:
     from tactile_graph_pads.calibration import Calibration, Origin
     from tactile_graph_pads.calibration_groups import GroupReader
+    from tactile_graph_pads.calibration_lists import Loaded
     from tactile_graph_pads.calibration_points import Observation
 
 FITS = ("polynomial", "isotonic", "sums", "power")
-
-
-class Loaded(NamedTuple):
-    """A recording and the weight that lay on its group; None where the frames' truth says it."""
-
-    path: Path
-    load_g: float | None
 
 
 class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
@@ -84,6 +78,7 @@ def calibrate(
     from tactile_graph.errors import UsageError
     from tactile_graph_pads.calibration import Provenance, write_calibration
     from tactile_graph_pads.calibration_fit import calibrated, fitted_g
+    from tactile_graph_pads.calibration_lists import parse_loaded, read_loads
     from tactile_graph_pads.calibration_plot import check_picture, save_calibration_plot
     from tactile_graph_pads.calibration_points import points_of
 
@@ -117,93 +112,6 @@ def calibrate(
     if plot is not None:
         save_calibration_plot(plot, made)
         click.echo(f"wrote {plot}")
-
-
-# -- what is given ---------------------------------------------------------------------------
-
-
-def parse_loaded(text: str) -> Loaded:
-    """Return the recording and load of ``FILE=GRAMS`` or ``FILE``.
-
-    Parameters
-    ----------
-    text : str
-
-    Raises
-    ------
-    UsageError
-        If what follows ``=`` is no weight above 0.
-    """
-    path, sign, weight = text.rpartition("=")
-    if not sign or Path(text).exists():
-        return Loaded(Path(text), None)
-    return Loaded(Path(path), _grams(weight, text))
-
-
-def _grams(value: object, where: str) -> float:
-    import math
-
-    from tactile_graph.errors import UsageError
-
-    try:
-        grams = float(str(value))
-    except ValueError:
-        grams = math.nan
-    if isinstance(value, bool) or not (math.isfinite(grams) and grams > 0.0):
-        raise UsageError(f"{where}: a load is a number of grams above 0, got {value!r}")
-    return grams
-
-
-def read_loads(path: Path) -> list[Loaded]:
-    """Return the recordings and loads that a YAML or CSV list names, relative to its folder.
-
-    Parameters
-    ----------
-    path : Path
-        YAML: a mapping of recording to grams, or a list of such mappings where a recording
-        stands several times. CSV: columns ``recording`` and ``load_g``.
-
-    Raises
-    ------
-    DataError
-        If it is neither.
-    """
-    rows = _csv_rows(path) if path.suffix.lower() == ".csv" else _yaml_rows(path)
-    return [Loaded(path.parent / name, _grams(load, where)) for name, load, where in rows]
-
-
-def _csv_rows(path: Path) -> list[tuple[str, object, str]]:
-    import csv
-
-    from tactile_graph.errors import DataError
-
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        table = csv.DictReader(file, skipinitialspace=True)
-        missing = {"recording", "load_g"} - set(table.fieldnames or ())
-        if missing:
-            raise DataError(
-                f"{path}:1", f"needs the columns recording and load_g, got {table.fieldnames}"
-            )
-        return [
-            (str(row["recording"]).strip(), row["load_g"], f"{path}:{table.line_num}")
-            for row in table
-        ]
-
-
-def _yaml_rows(path: Path) -> list[tuple[str, object, str]]:
-    from tactile_graph.errors import DataError, PipelineError
-    from tactile_graph_pads.pad import read_file
-
-    document = read_file(path, "list of loads")
-    if document.problems:
-        raise PipelineError(document.problems)
-    parts = document.data if isinstance(document.data, list) else [document.data]
-    rows: list[tuple[str, object, str]] = []
-    for part in parts:
-        if not isinstance(part, dict):
-            raise DataError(str(path), f"must map recordings to grams, got {part!r}")
-        rows += [(str(name), load, str(path)) for name, load in part.items()]
-    return rows
 
 
 # -- reading it ------------------------------------------------------------------------------

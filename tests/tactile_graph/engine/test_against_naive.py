@@ -31,9 +31,11 @@ def seen(outcome: Any) -> Outcome:
 
 
 @settings(
-    max_examples=600, deadline=None, derandomize=True,
+    max_examples=400,
+    deadline=None,
+    derandomize=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)  # fmt: skip
+)
 @given(case=cases())
 def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
     case: tuple[dict[str, Any], dict[str, Any]], folder: Path
@@ -63,8 +65,13 @@ def test_the_generator_covers_what_it_should(folder: Path) -> None:
     """Every kind of node, guard and outcome comes up in the graphs the property is tested on."""
     kinds: Counter[str] = Counter()
 
-    @settings(max_examples=150, deadline=None, derandomize=True, database=None,
-              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @settings(
+        max_examples=150,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
     @given(case=cases())
     def look(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
         document, library = case
@@ -80,6 +87,16 @@ def test_the_generator_covers_what_it_should(folder: Path) -> None:
         kinds["named condition"] += len(document["conditions"])
 
     look()
-    wanted = {*STEPS, "first_of", "use", "when", "each", "value", "skipped", "failed",
-              "nested use", "named condition"}  # fmt: skip
+    wanted = {
+        *STEPS,
+        "first_of",
+        "use",
+        "when",
+        "each",
+        "value",
+        "skipped",
+        "failed",
+        "nested use",
+        "named condition",
+    }
     assert {k for k in wanted if kinds[k] < 3} == set()

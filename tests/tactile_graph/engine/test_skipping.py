@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from helpers_graphs import CALLS, STEPS, frame, registry
 
+from helpers_graphs import CALLS, STEPS, frame, registry
 from tactile_graph import Degenerate, Frame, Image, loads
 from tactile_graph.engine.outcome import DONE, Failed, Skipped
 from tactile_graph.engine.result import NoResult
@@ -87,9 +87,18 @@ def images(image: Image) -> list[Image]:
 
 
 MORE = {
-    **STEPS, "write": write, "noise": noise, "dice": dice, "throw": throw, "walk": Walk,
-    "since": Since, "table": Table, "arrays": arrays, "nothing": nothing, "images": images,
-}  # fmt: skip
+    **STEPS,
+    "write": write,
+    "noise": noise,
+    "dice": dice,
+    "throw": throw,
+    "walk": Walk,
+    "since": Since,
+    "table": Table,
+    "arrays": arrays,
+    "nothing": nothing,
+    "images": images,
+}
 
 
 def make(nodes: str, outputs: str, more: str = "") -> Any:
@@ -187,8 +196,10 @@ def test_a_guard_that_reads_something_skipped_skips_with_its_origin() -> None:
 
 
 def test_a_guard_that_reads_something_failed_fails_with_its_origin() -> None:
-    p = make(f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\n"
-             "h: {step: add1, in: v, when: f > 1}", "h")  # fmt: skip
+    p = make(
+        f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\nh: {{step: add1, in: v, when: f > 1}}",
+        "h",
+    )
     outcome = run(p).outcome("h")
     assert isinstance(outcome, Failed)
     assert outcome.origin == "f"
@@ -209,8 +220,11 @@ def test_a_guard_over_an_unknown_field_skips() -> None:
 
 
 def test_named_conditions_may_name_others() -> None:
-    p = make(f"{V}\nh: {{step: add1, in: v, when: big and not huge}}", "h",
-             "conditions: {big: v > 3, huge: big and v > 9}")  # fmt: skip
+    p = make(
+        f"{V}\nh: {{step: add1, in: v, when: big and not huge}}",
+        "h",
+        "conditions: {big: v > 3, huge: big and v > 9}",
+    )
     assert [run(p, n).ok for n in (3, 4, 10)] == [False, True, False]
 
 
@@ -236,7 +250,9 @@ def test_the_second_choice_runs_only_where_the_first_has_no_value() -> None:
 
 
 def test_first_of_recovers_from_a_failure_that_is_still_reported() -> None:
-    p = make(f"{V}\nf: {{step: picky, in: v, with: {{bad: 3}}}}\nbest: {{first_of: [f, v]}}", "best")
+    p = make(
+        f"{V}\nf: {{step: picky, in: v, with: {{bad: 3}}}}\nbest: {{first_of: [f, v]}}", "best"
+    )
     result = run(p)
     assert result["best"] == 3
     assert [f.origin for f in result.failures] == ["f"]
@@ -266,14 +282,17 @@ def test_first_of_can_be_guarded_itself() -> None:
 
 
 def test_a_skip_and_its_origin_travel_down_the_required_ports() -> None:
-    p = make(f"{GUARDED}\nh: {{step: add1, in: g, with: {{tag: h}}}}\ni: {{step: add1, in: h}}", "i")
+    p = make(
+        f"{GUARDED}\nh: {{step: add1, in: g, with: {{tag: h}}}}\ni: {{step: add1, in: h}}", "i"
+    )
     assert run(p).outcome("i").origin == "g"
     assert CALLS == ["v"]
 
 
 def test_ports_after_a_skipped_one_are_not_computed() -> None:
-    p = make(f"{GUARDED}\nx: {{step: add1, in: v, with: {{tag: x}}}}\n"
-             "h: {step: add2, in: [g, x]}", "h")  # fmt: skip
+    p = make(
+        f"{GUARDED}\nx: {{step: add1, in: v, with: {{tag: x}}}}\nh: {{step: add2, in: [g, x]}}", "h"
+    )
     run(p)
     assert CALLS == ["v"]
     assert run(p, 4)["h"] == 16
@@ -286,13 +305,16 @@ def test_an_optional_port_takes_its_default_where_it_is_skipped() -> None:
 
 
 def test_an_optional_port_fails_where_what_it_reads_failed() -> None:
-    p = make(f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\n"
-             "h: {step: optional, in: [v, f]}", "h")  # fmt: skip
+    p = make(
+        f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\nh: {{step: optional, in: [v, f]}}", "h"
+    )
     assert run(p).outcome("h").origin == "f"
 
 
 def test_a_list_port_drops_skipped_items_and_skips_where_none_is_left() -> None:
-    p = make(f"{GUARDED}\nh: {{step: total, in: [v, g, v]}}\nk: {{step: total, in: [g, g]}}", "h, k")
+    p = make(
+        f"{GUARDED}\nh: {{step: total, in: [v, g, v]}}\nk: {{step: total, in: [g, g]}}", "h, k"
+    )
     result = run(p)
     assert result["h"] == 6
     assert result.outcome("k").origin == "g"
@@ -300,7 +322,9 @@ def test_a_list_port_drops_skipped_items_and_skips_where_none_is_left() -> None:
 
 
 def test_a_failed_item_fails_the_list() -> None:
-    p = make(f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\nh: {{step: total, in: [v, f]}}", "h")
+    p = make(
+        f"{V}\nf: {{step: picky, in: v, with: {{bad: 1}}}}\nh: {{step: total, in: [v, f]}}", "h"
+    )
     assert isinstance(run(p).outcome("h"), Failed)
 
 
@@ -388,8 +412,10 @@ def test_each_runs_a_step_over_the_items_of_a_list() -> None:
 
 
 def test_items_that_fail_are_left_out_but_reported() -> None:
-    p = make(f"{V}\nm: {{step: many, in: v}}\n"
-             "e: {step: picky, in: m, each: true, with: {bad: 2}}", "e")  # fmt: skip
+    p = make(
+        f"{V}\nm: {{step: many, in: v}}\ne: {{step: picky, in: m, each: true, with: {{bad: 2}}}}",
+        "e",
+    )
     result = run(p)
     assert result["e"] == (3, 5)
     assert [f.reason for f in result.failures] == ["ValueError: 4!"]
@@ -397,8 +423,10 @@ def test_items_that_fail_are_left_out_but_reported() -> None:
 
 
 def test_each_over_no_items_skips_and_over_failures_only_fails() -> None:
-    p = make(f"{V}\nm: {{step: many, in: v}}\n"
-             "e: {step: picky, in: m, each: true, with: {bad: 1}}", "e")  # fmt: skip
+    p = make(
+        f"{V}\nm: {{step: many, in: v}}\ne: {{step: picky, in: m, each: true, with: {{bad: 1}}}}",
+        "e",
+    )
     assert run(p, 4).outcome("e").reason == "no items to run for"
     assert isinstance(run(p, 3).outcome("e"), Failed)
 
@@ -484,7 +512,9 @@ def test_work_that_depends_on_no_frame_is_done_once() -> None:
 
 
 def test_a_constant_behind_a_guard_is_only_made_when_it_is_needed() -> None:
-    nodes = f"{V}\nc: {{step: constant, with: {{tag: c}}}}\ne: {{step: add2, in: [v, c], when: v > 3,"
+    nodes = (
+        f"{V}\nc: {{step: constant, with: {{tag: c}}}}\ne: {{step: add2, in: [v, c], when: v > 3,"
+    )
     runner = make(f"{nodes} with: {{tag: e}}}}", "e").runner()
     CALLS.clear()
     for n in (1, 4, 2, 5):
@@ -553,8 +583,11 @@ def test_a_frame_that_was_interrupted_is_not_taken_for_done() -> None:
         return int(image.values[0, 0])
 
     stopped: list[bool] = []
-    runner = loads("{pipeline: p, nodes: {x: {step: stop, in: frame}}, outputs: [x]}", "p",
-                   registry({"stop": stop})).runner()  # fmt: skip
+    runner = loads(
+        "{pipeline: p, nodes: {x: {step: stop, in: frame}}, outputs: [x]}",
+        "p",
+        registry({"stop": stop}),
+    ).runner()
     assert runner(frame(1))["x"] == 1
     with pytest.raises(KeyboardInterrupt):
         runner(frame(2))
@@ -582,8 +615,10 @@ def test_an_array_made_by_a_property_is_frozen_too() -> None:
 
 def test_a_stateful_step_that_is_skipped_keeps_its_state_and_learns_the_true_gap() -> None:
     runner = make(f"{V}\ns: {{step: since, in: frame, when: v > 3}}", "s").runner()
-    out = [runner(frame(n, i, t)).get("s") for i, (n, t) in
-           enumerate([(4, 1.0), (3, 1.5), (3, 4.0), (5, 4.5)])]  # fmt: skip
+    out = [
+        runner(frame(n, i, t)).get("s")
+        for i, (n, t) in enumerate([(4, 1.0), (3, 1.5), (3, 4.0), (5, 4.5)])
+    ]
     assert out == [(1, -1.0), None, None, (2, 3.5)]
 
 
@@ -602,8 +637,10 @@ def test_a_stateless_class_is_made_once_however_often_it_runs() -> None:
 
 
 def test_the_same_seed_gives_the_same_bits_whatever_else_is_asked_for() -> None:
-    p = make(f"{V}\na: {{step: noise, in: frame}}\nb: {{step: noise, in: frame, with: {{tag: x}}}}",
-             "a, b")  # fmt: skip
+    p = make(
+        f"{V}\na: {{step: noise, in: frame}}\nb: {{step: noise, in: frame, with: {{tag: x}}}}",
+        "a, b",
+    )
     both = [r["a"] for r in p.stream([frame(1, i) for i in range(4)], seed=5)]
     alone = [r["a"] for r in p.stream([frame(1, i) for i in range(4)], only=["a"], seed=5)]
     late = p.run(frame(1, 3), seed=5)["a"]
@@ -677,18 +714,25 @@ def test_a_resolved_pipeline_spells_everything_out() -> None:
         "source": None,
         "nodes": {
             "v": {"step": "read", "in": {"image": "frame.image"}, "with": {"tag": "v"}},
-            "cheap": {"step": "add1", "in": {"a": "v"}, "with": {"k": 1, "tag": "cheap"},
-                      "when": "v > 3"},
+            "cheap": {
+                "step": "add1",
+                "in": {"a": "v"},
+                "with": {"k": 1, "tag": "cheap"},
+                "when": "v > 3",
+            },
             "dear": {"step": "add1", "in": {"a": "v"}, "with": {"k": 7, "tag": "dear"}},
             "best": {"first_of": ["cheap", "dear"]},
         },
         "outputs": {"best": "best"},
-    }  # fmt: skip
+    }
 
 
 def test_equal_nodes_have_equal_keys() -> None:
-    p = make(f"{V}\na: {{step: add1, in: v}}\nb: {{step: add1, in: v, with: {{k: 1}}}}\n"
-             "c: {step: add1, in: v, with: {k: 2}}", "a, b, c")  # fmt: skip
+    p = make(
+        f"{V}\na: {{step: add1, in: v}}\nb: {{step: add1, in: v, with: {{k: 1}}}}\n"
+        "c: {step: add1, in: v, with: {k: 2}}",
+        "a, b, c",
+    )
     keys = {n: node.key for n, node in p.nodes.items()}
     assert keys["a"] == keys["b"] != keys["c"]
 
@@ -702,8 +746,11 @@ def test_the_modules_of_steps_are_named_in_failures_even_for_classes() -> None:
         def __call__(self, image: Image) -> int:
             raise RuntimeError("no")
 
-    p = loads("{pipeline: p, nodes: {x: {step: broken, in: frame}}, outputs: [x]}", "p",
-              registry({"broken": Broken}))  # fmt: skip
+    p = loads(
+        "{pipeline: p, nodes: {x: {step: broken, in: frame}}, outputs: [x]}",
+        "p",
+        registry({"broken": Broken}),
+    )
     failed = p.run(frame(1)).outcome("x")
     assert failed.step == f"step broken of {Broken.__module__}"
     assert isinstance(failed.error, RuntimeError)

@@ -73,8 +73,11 @@ def test_a_plugin_that_cannot_be_imported_is_reported_and_the_rest_works(
 
 def test_what_is_missing_is_told_with_the_plugins_that_are_down() -> None:
     found = offered(("bad", broken(ImportError("x"))), GOOD)
-    with pytest.raises(UsageError, match=r"no step named 'stp'; did you mean 'step'\? \(plugins failed to "
-                                         r"load: bad\)"):  # fmt: skip
+    with pytest.raises(
+        UsageError,
+        match=r"no step named 'stp'; did you mean 'step'\? \(plugins failed to "
+        r"load: bad\)",
+    ):
         found.step("stp")
     with pytest.raises(UsageError, match="no pipeline named 'zzz'; there are: p"):
         found.path("pipelines", "zzz")
@@ -106,7 +109,10 @@ def test_two_plugins_of_one_name_do_not_replace_each_other() -> None:
         ({"steps": {1: step}}, "hook tactile_graph_steps: a name must be a text, got 1"),
         ({"steps": {"": step}}, "a name must be a text, got ''"),
         ({"steps": {"a": 3}}, "'a' is 3, an import string \"module:name\" is needed"),
-        ({"pipelines": {"a": 3}}, "hook tactile_graph_pipelines: 'a' is 3, a file's path is needed"),
+        (
+            {"pipelines": {"a": 3}},
+            "hook tactile_graph_pipelines: 'a' is 3, a file's path is needed",
+        ),
         ({"commands": {"a": step}}, "'a' is <function step.*, an import string"),
     ],
 )
@@ -145,12 +151,18 @@ def test_a_plugin_may_offer_nothing() -> None:
 @pytest.fixture
 def lazy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Registry]:
     (tmp_path / "lazily_loaded.py").write_text(
-        "from tactile_graph import Image\nnumber = 3\ndef double(image: Image) -> Image: return image\n"
+        "from tactile_graph import Image\nnumber = 3\n"
+        "def double(image: Image) -> Image: return image\n"
     )
     (tmp_path / "lazily_broken.py").write_text("raise SystemExit('no licence')\n")
     monkeypatch.syspath_prepend(tmp_path)
-    names = {"double": "lazily_loaded:double", "broken": "lazily_broken:x", "odd": "lazily_loaded",
-             "number": "lazily_loaded:number", "gone": "lazily_loaded:gone"}  # fmt: skip
+    names = {
+        "double": "lazily_loaded:double",
+        "broken": "lazily_broken:x",
+        "odd": "lazily_loaded",
+        "number": "lazily_loaded:number",
+        "gone": "lazily_loaded:gone",
+    }
     yield offered(("lazy", plugin(steps=names)))
     for name in ("lazily_loaded", "lazily_broken"):
         sys.modules.pop(name, None)
@@ -185,9 +197,16 @@ OTHER = ("other", plugin(steps={"more": step}))
 
 @pytest.mark.parametrize(
     ("select", "names"),
-    [("", ["more", "step"]), ("good", ["step"]), ("-good", ["more"]), (" other , good ", ["more", "step"]),
-     ("good,-good", []), ("-good,-other", []), (",", ["more", "step"])],
-)  # fmt: skip
+    [
+        ("", ["more", "step"]),
+        ("good", ["step"]),
+        ("-good", ["more"]),
+        (" other , good ", ["more", "step"]),
+        ("good,-good", []),
+        ("-good,-other", []),
+        (",", ["more", "step"]),
+    ],
+)
 def test_a_selection_names_the_plugins_to_load_or_to_block(select: str, names: list[str]) -> None:
     assert offered(GOOD, OTHER, select=select).names("steps") == names
 

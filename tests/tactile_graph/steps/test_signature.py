@@ -46,7 +46,10 @@ def test_a_functions_ports_settings_and_output_are_read() -> None:
     s = read_signature("function", function)
     assert (s.kind, s.stateful, s.rng, s.report, s.gap) == (Kind.FUNCTION, False, "rng", "", "")
     assert [(p.name, p.required, p.item) for p in s.ports] == [
-        ("image", True, None), ("masks", True, Mask), ("other", False, None)]  # fmt: skip
+        ("image", True, None),
+        ("masks", True, Mask),
+        ("other", False, None),
+    ]
     assert s.ports[0].type is Image
     assert s.ports[0].quantity == Quantity("volt")
     assert s.ports[0].grid == Grid(min_rows=3)
@@ -81,7 +84,13 @@ def test_a_class_takes_settings_at_init_and_ports_at_call() -> None:
             return image
 
     s = read_signature("smooth", Smooth)
-    assert (s.kind, s.stateful, s.gap, s.rng, s.rng_at_init) == (Kind.CLASS, True, "gap", "rng", True)
+    assert (s.kind, s.stateful, s.gap, s.rng, s.rng_at_init) == (
+        Kind.CLASS,
+        True,
+        "gap",
+        "rng",
+        True,
+    )
     assert [p.name for p in s.ports] == ["image"]
     assert [x.name for x in s.settings] == ["n"]
     assert s.output is Image
@@ -268,23 +277,42 @@ def test_what_is_no_step_is_told_why(target: Any, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "item"),
-    [(list[Mask], Mask), (tuple[Mask, ...], Mask), (Sequence[Mask], Mask), (list[Mask] | None, Mask),
-     (tuple[Mask, int], None), (Mask, None), (dict[str, Mask], None), (Two, None), (list, None)],
-)  # fmt: skip
+    [
+        (list[Mask], Mask),
+        (tuple[Mask, ...], Mask),
+        (Sequence[Mask], Mask),
+        (list[Mask] | None, Mask),
+        (tuple[Mask, int], None),
+        (Mask, None),
+        (dict[str, Mask], None),
+        (Two, None),
+        (list, None),
+    ],
+)
 def test_list_ports_are_told_by_their_item(kind: Any, item: Any) -> None:
     assert list_item(kind) is item
 
 
 @pytest.mark.parametrize(
     ("kind", "name"),
-    [(list[Circle], "list[Circle]"), (Image | Mask, "Image | Mask"), (Optional[int], "int | None"),  # noqa: UP045
-     (Literal["a", 1], "'a' | 1"), (Annotated[float, Gt(0)], "float"), (tuple[int, ...], "tuple[int, ...]"),
-     (dict[str, list[int]], "dict[str, list[int]]"), (type(None), "None"), (Any, "Any")],
-)  # fmt: skip
+    [
+        (list[Circle], "list[Circle]"),
+        (Image | Mask, "Image | Mask"),
+        (Optional[int], "int | None"),  # noqa: UP045
+        (Literal["a", 1], "'a' | 1"),
+        (Annotated[float, Gt(0)], "float"),
+        (tuple[int, ...], "tuple[int, ...]"),
+        (dict[str, list[int]], "dict[str, list[int]]"),
+        (type(None), "None"),
+        (Any, "Any"),
+    ],
+)
 def test_types_are_named_as_a_person_would(kind: Any, name: str) -> None:
     assert type_name(kind) == name
 
 
 def test_a_rule_about_a_quantity_that_is_none_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"unknown quantity \['volts'\], allowed: counts, volt, si"):
+    with pytest.raises(
+        ValueError, match=r"unknown quantity \['volts'\], allowed: counts, volt, si"
+    ):
         Quantity("volts")

@@ -45,7 +45,9 @@ def test_good_values_have_no_mask() -> None:
 
 @pytest.mark.parametrize("shape", [(), (4,), (2, 2, 2), (0, 3), (3, 0), (0, 0)])
 def test_values_that_are_no_matrix_are_refused(shape: tuple[int, ...]) -> None:
-    with pytest.raises(ValueError, match=r"a frame takes values of shape \(rows, columns\), got \("):
+    with pytest.raises(
+        ValueError, match=r"a frame takes values of shape \(rows, columns\), got \("
+    ):
         Frame.of(np.zeros(shape))
 
 

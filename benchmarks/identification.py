@@ -1,0 +1,107 @@
+"""Thesis section 4.4 again: table 4.9 and figures 4.38 to 4.43, as tables and plots.
+
+Run ``python benchmarks/identification.py [FOLDER]``; plots go into the folder, if one is named.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from tactile_graph_classifiers.experiments import Curve, error_curves, strangers_rejected, table_4_9
+
+SEEDS = range(4)
+THESIS_BEYOND_G = 1000.0
+THESIS_AT_MOST = 0.05
+WEIGHINGS = {"curve": "calibration curve alone, as in the thesis", "decoupled": "circuit inverted"}
+
+
+def show_table_4_9() -> None:
+    print("Table 4.9: five objects, 25 readings each to learn, 25 others to test, 10 pads")
+    print("thesis: 100 % identified")
+    results = [table_4_9(seed=seed) for seed in range(10)]
+    for step in results[0]:
+        right = np.mean([r[step].share_right for r in results])
+        rejected = np.mean([r[step].share_rejected for r in results])
+        n = sum(r[step].n for r in results)
+        print(f"  {step:<28} {100 * right:6.2f} % right, {100 * rejected:.2f} % rejected, of {n}")
+    print("One of the five not learned: its readings rejected as unknown")
+    shares = [strangers_rejected(seed=seed) for seed in range(4)]
+    for step in shares[0]:
+        print(f"  {step:<28} {100 * np.mean([s[step] for s in shares]):6.2f} %")
+
+
+def mean_curves(kind: str) -> list[Curve]:
+    """Return the curves averaged over pads."""
+    runs = [error_curves(kind, seed=seed) for seed in SEEDS]
+    return [
+        Curve(
+            same[0].pair,
+            same[0].differences_g,
+            {s: np.mean([c.error[s] for c in same], axis=0) for s in same[0].error},
+        )
+        for same in zip(*runs, strict=True)
+    ]
+
+
+def show(curves: list[Curve], kind: str) -> None:
+    print(f"\nFigures 4.38 to 4.43, weight by {WEIGHINGS[kind]}: error in % over difference in g")
+    print("thesis: below 5 % beyond 1000 g in all six")
+    grams = curves[0].differences_g
+    print(
+        f"  {'fig.':<5} {'radii/cm':<9} {'classifier':<28}", *(f"{g:5.0f}" for g in grams), " worst"
+    )
+    for curve in curves:
+        pair = curve.pair
+        for step, error in curve.error.items():
+            worst = error[grams > THESIS_BEYOND_G].max()
+            verdict = "ok" if worst < THESIS_AT_MOST else "ABOVE"
+            print(
+                f"  {pair.figure:<5} {pair.radius_cm}/{pair.other_radius_cm:<5} {step:<28}",
+                *(f"{100 * e:5.1f}" for e in error),
+                f" {verdict}",
+            )
+
+
+def plot(curves: list[Curve], kind: str, folder: Path) -> None:
+    """Draw the six figures side by side."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    figure, axes = plt.subplots(2, 3, figsize=(13, 7), sharex=True, sharey=True)
+    for one, curve in zip(axes.flat, curves, strict=True):
+        for step, error in curve.error.items():
+            one.plot(curve.differences_g, 100 * error, "o-", ms=3, label=step)
+        one.axhline(100 * THESIS_AT_MOST, color="0.6", ls=":", label="5 %")
+        pair = curve.pair
+        one.set_title(f"figure {pair.figure}: {pair.radius_cm} and {pair.other_radius_cm} cm")
+        one.grid(alpha=0.3)
+    axes[0, 0].legend()
+    figure.supxlabel("difference in weight / g")
+    figure.supylabel("readings taken for the wrong disc / %")
+    figure.suptitle(f"Identification error, weight by {WEIGHINGS[kind]}")
+    figure.tight_layout()
+    path = folder / f"identification-{kind}.png"
+    figure.savefig(path, dpi=120)
+    print(f"{path} written")
+
+
+def main() -> None:
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else None
+    start = time.perf_counter()
+    show_table_4_9()
+    for kind in WEIGHINGS:
+        curves = mean_curves(kind)
+        show(curves, kind)
+        if folder is not None:
+            plot(curves, kind, folder)
+    print(f"\n{time.perf_counter() - start:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

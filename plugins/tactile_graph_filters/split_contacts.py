@@ -1,0 +1,121 @@
+"""Step ``split_contacts``: one contact for each object, touching or torn apart by voids."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt, Le, MinLen
+from numpy.typing import NDArray
+
+from tactile_graph.steps.rules import Grid
+from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.basins import basins, taps_of
+from tactile_graph_filters.contacts import Contacts
+from tactile_graph_filters.joined_basins import joined
+from tactile_graph_filters.labelled import contacts_of
+from tactile_graph_filters.nan import refuse_nan
+
+
+class SplitContacts:
+    """Tell the objects in a footprint apart by how well each fills its own convex hull.
+
+    The readings are smoothed and cut into the basins of their peaks (a watershed). Basins are
+    then joined while that lowers an energy: what each object lacks in its hull, and a price for
+    every cut between cells in contact. Voids inside an object are forgiven, gaps between objects
+    are not; a neck is cheap to cut, a wide disc is not, and pieces that a row of voids has torn
+    off are joined again.
+
+    Parameters
+    ----------
+    voids : float
+        Misfit that each cell inside an object is expected to have: about the share of elements
+        that make no or hardly any contact, and half as much again. Higher: fewer objects.
+    hold : float
+        Price of a cut between two cells in contact, where a void costs 1. Higher: fewer objects.
+    weak : float
+        A cell counts as partly void below this share of its object's mean reading.
+    usual_cells : float
+        Objects of fewer cells are doubted, the more the smaller they are.
+    min_cells : int
+        Smaller contacts are left out in the end.
+    smooth_cells : list of float
+        Standard deviations, in cells, of the smoothing before the cut into basins. Each is
+        tried; the one that ends in the lowest energy is taken.
+    margin : int
+        How many more cells each contact's own image and mask have on each side.
+
+    Notes
+    -----
+    Objects are taken to be convex, 3 to 14 cells wide, with cells in contact counted as they
+    come: a mask subdivided first needs ``usual_cells`` and ``min_cells`` to match. The settings
+    were chosen on simulated scenes of the thesis pad (``benchmarks/objects.py`` measures on
+    others). The energy is a description length: Leclerc 1989, 10.1007/BF00054839.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        voids: Annotated[float, Ge(0), Le(1)] = 0.3,
+        hold: Annotated[float, Ge(0)] = 0.5,
+        weak: Annotated[float, Ge(0), Le(1)] = 0.5,
+        usual_cells: Annotated[float, Ge(0)] = 8.0,
+        min_cells: Annotated[int, Ge(1)] = 4,
+        smooth_cells: Annotated[list[Annotated[float, Gt(0)]], MinLen(1)] = [0.6, 0.9],  # noqa: B006
+        margin: Annotated[int, Ge(0)] = 0,
+    ) -> None:
+        self._rules = np.array([voids, weak, usual_cells, hold, 0.0])
+        self._weak = weak
+        self._taps = [taps_of(sigma) for sigma in smooth_cells]
+        self._min_cells, self._margin = min_cells, margin
+
+    def __call__(self, image: Image, mask: Annotated[Mask, Grid.like("image")]) -> Contacts:
+        """Return a contact for each object.
+
+        Parameters
+        ----------
+        image : Image
+            Readings: low ones hint at a gap, and load and centre are theirs.
+        mask : Mask
+            Which cells are in contact, on the same grid.
+
+        Raises
+        ------
+        ValueError
+            If image and mask differ in shape.
+        DataError
+            If a cell of the mask holds NaN or infinity.
+        """
+        if image.shape != mask.shape:
+            raise ValueError(
+                f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
+            )
+        on = mask.values
+        readings = image.values[on]
+        if not readings.size:
+            return Contacts((), 0)
+        if not np.isfinite(readings).all():
+            refuse_nan(image, infinite=True)
+        return contacts_of(self._labels(image, on, readings), image, self._min_cells, self._margin)
+
+    def _labels(
+        self, image: Image, on: NDArray[np.bool_], readings: NDArray[np.float64]
+    ) -> NDArray[np.int32]:
+        """Return the number of each cell's object, 0 where the cell is off."""
+        values = np.where(on, np.maximum(image.values, 0.0), 0.0)
+        known = on | True if image.valid is None else image.valid | on
+        middle = float(np.median(np.maximum(readings, 0.0)))
+        rules = self._rules.copy()
+        rules[4] = self._weak * middle
+        # One strong element is no object of its own: readings above the middle count as it.
+        flat = np.minimum(values, middle) if middle > 0 else on.astype(np.float64)
+        best, energy = np.zeros(on.shape, np.int32), np.inf
+        for taps in self._taps:
+            owner = np.empty(on.shape, np.int32)
+            count = basins(flat, on, taps, owner)
+            reached = joined(owner, count, values, known, rules)
+            if reached < energy - 1e-9:
+                best, energy = owner, reached
+        return best

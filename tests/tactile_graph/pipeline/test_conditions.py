@@ -1,0 +1,83 @@
+"""Conditions give what Python would, read only what they name, and say what they read."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tactile_graph.pipeline.conditions import compile_condition, names_in
+from tactile_graph.pipeline.wiring import Ref
+
+
+class Found(NamedTuple):
+    count: int
+    names: list[str]
+    any: Any
+
+
+TYPES = {"a": int, "b": float, "found": Found, "text": str, "frame": int}
+VALUES = {"a": 3, "b": 0.5, "found.count": 2, "found.names": ("x", "y"), "text": "on"}
+
+
+def holds(text: str, named: dict[str, str] | None = None) -> bool:
+    guard = compile_condition(text, TYPES, named)
+    return bool(guard.function(*[VALUES[str(r)] for r in guard.refs]))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a > 2 and b < 1", True),
+        ("not a", False),
+        ("a in (1, 2, 3)", True),
+        ("a not in [3]", False),
+        ("text == 'on' or text == 'off'", True),
+        ("1 < a <= 3", True),
+        ("a // 2 + a % 2 - -1 == 3", True),
+        ("max(a, b) / min(a, 2) >= 1.5", True),
+        ("len(found.names) == found.count", True),
+        ("abs(b - a) > 2.4", True),
+        ("found.names", True),
+        (" a\n  > 2 ", True),
+    ],
+)
+def test_a_condition_gives_what_python_would(text: str, expected: bool) -> None:
+    assert holds(text) is expected
+
+
+def test_each_value_is_read_once_in_order() -> None:
+    guard = compile_condition("found.count > a and a > b and found.count > 1", TYPES)
+    assert guard.refs == (Ref("found", ("count",)), Ref("a"), Ref("b"))
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(3, "3"), (0.1234567891, "0.123457"), (np.int64(3), "3"), (np.bool_(False), "False"),
+     (True, "True"), ("x", "'x'"), (("x", "y"), "2 items"), (object(), "a object")],
+)  # fmt: skip
+def test_a_reason_shows_what_was_read(value: Any, shown: str) -> None:
+    guard = compile_condition("found.any == 9", TYPES)
+    assert guard.reason((value,)) == f"when found.any == 9 is false (found.any = {shown})"
+
+
+def test_names_are_those_of_nodes_not_of_functions() -> None:
+    assert names_in("max(max, len(x.y)) > z") == {"max", "x", "z"}
+    assert names_in("a >") == set()
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(text=st.text(st.sampled_from("ab.()[]<>=!+-*/%'\", 01notandri\n"), max_size=30))
+def test_any_text_is_a_condition_or_told_to_be_none(text: str) -> None:
+    from tactile_graph.pipeline.conditions import ConditionError
+
+    try:
+        guard = compile_condition(text, TYPES)
+    except ConditionError as error:
+        message = error.message
+    else:
+        message = guard.text
+    assert isinstance(message, str)
