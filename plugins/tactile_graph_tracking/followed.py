@@ -8,52 +8,57 @@ from typing import Any, Literal
 State = Literal["appears", "moves", "rests", "leaves"]
 
 
-@dataclass
+@dataclass(eq=False)
 class Followed:
-    """An object being followed, with a constant-velocity Kalman filter.
+    """An object being followed, by a Kalman filter of constant velocity.
 
     Parameters
     ----------
-    number : int
-        Its id, never given again.
-    born_s, seen_s : float
-        When it was first and last seen, on the tracker's clock.
-    x_cm, y_cm, vx_cm_s, vy_cm_s : float
-        Estimated place and velocity.
-    place, both, speed : float
-        Variance of the place, covariance, variance of the velocity; the same along x and y.
     contact : contact or shape
         As it was last seen.
-    n_seen : int
-    state : str
+    x_cm, y_cm : float
+        Estimated place.
+    now_s : float
+        When it is first seen, on the tracker's clock.
+    call : int
+        In which call of the tracker.
+    noise_cm : float
+        Standard deviation of a contact's centre along x and along y.
+    fastest_cm_s : float
+        Standard deviation of the velocity of an object just met.
     """
 
-    number: int
-    born_s: float
-    seen_s: float
+    contact: Any
     x_cm: float
     y_cm: float
-    contact: Any
-    place: float
-    speed: float
-    both: float = 0.0
-    vx_cm_s: float = 0.0
-    vy_cm_s: float = 0.0
-    n_seen: int = 1
-    state: State = "appears"
+    now_s: float
+    call: int
+    noise_cm: float
+    fastest_cm_s: float
+
+    def __post_init__(self) -> None:
+        self.number = 0
+        """Its id; 0 until it is told of."""
+        self.state: State = "appears"
+        self.born_s = self.seen_s = self.now_s
+        self.seen_x_cm, self.seen_y_cm = self.x_cm, self.y_cm
+        self.n_seen = 1
+        self.vx_cm_s = self.vy_cm_s = 0.0
+        # Variances of place and velocity and their covariance, the same along x and y.
+        self.place, self.both, self.speed = self.noise_cm**2, 0.0, self.fastest_cm_s**2
 
     def go_on(self, dt_s: float, agility_cm_s2: float) -> None:
         """Move on by a time, growing unsure by what an acceleration could have done."""
+        push = agility_cm_s2**2
         self.x_cm += self.vx_cm_s * dt_s
         self.y_cm += self.vy_cm_s * dt_s
-        push = agility_cm_s2**2
         self.place += 2.0 * dt_s * self.both + dt_s**2 * self.speed + push * dt_s**4 / 4.0
         self.both += dt_s * self.speed + push * dt_s**3 / 2.0
         self.speed += push * dt_s**2
 
-    def see(self, contact: Any, x_cm: float, y_cm: float, noise_cm: float, now_s: float) -> None:
+    def see(self, contact: Any, x_cm: float, y_cm: float, now_s: float, call: int) -> None:
         """Take in where it was seen."""
-        spread = self.place + noise_cm**2
+        spread = self.place + self.noise_cm**2
         at, along = self.place / spread, self.both / spread
         off_x, off_y = x_cm - self.x_cm, y_cm - self.y_cm
         self.x_cm += at * off_x
@@ -63,5 +68,6 @@ class Followed:
         self.speed -= along * self.both
         self.both *= 1.0 - at
         self.place *= 1.0 - at
-        self.contact, self.seen_s = contact, now_s
+        self.contact, self.seen_s, self.call = contact, now_s, call
+        self.seen_x_cm, self.seen_y_cm = x_cm, y_cm
         self.n_seen += 1

@@ -3,113 +3,60 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
 from tactile_graph.steps import TimeGap
-from tactile_graph.wires import Image, Mask
 from tactile_graph_tracking.followed import Followed, State
 from tactile_graph_tracking.pairing import paired
 from tactile_graph_tracking.places import places_cm
+from tactile_graph_tracking.tracked_object import TrackedObject
 
 STIR = 1.5
 """A resting object moves once it is this many times faster than a moving one comes to rest."""
+ALONE = 2.0
+"""What staying alone costs: as much as a pair at the gate whose areas have nothing in common."""
 
-
-@dataclass(frozen=True, eq=False)
-class TrackedObject:
-    """An object on the pad, known since it appeared; taken as the image or mask of its contact.
-
-    Parameters
-    ----------
-    id : int
-        From 1, never given again.
-    state : str
-        ``appears`` in its first frame, then ``moves`` or ``rests``, and ``leaves`` once, when it
-        is given up.
-    age_s : float
-        Time since it appeared.
-    x_cm, y_cm : float
-        Centre of its contact; where it was last seen when it leaves.
-    vx_cm_s, vy_cm_s : float
-        Estimated velocity, x right and y down.
-    area_cm2 : float
-        Of its contact.
-    contact : contact or shape
-        What the step was given.
-    """
-
-    id: int
-    state: State
-    age_s: float
-    x_cm: float
-    y_cm: float
-    vx_cm_s: float
-    vy_cm_s: float
-    area_cm2: float
-    contact: Any = field(repr=False)
-    columns_shown: ClassVar[tuple[str, ...]] = (
-        "id", "state", "age_s", "x_cm", "y_cm", "vx_cm_s", "vy_cm_s", "area_cm2",
-    )  # fmt: skip
-    provides: ClassVar[Mapping[type, str]] = {Image: "image", Mask: "mask"}
-
-    @property
-    def image(self) -> Image:
-        """Its contact's own image."""
-        image: Image = self.contact.image
-        return image
-
-    @property
-    def mask(self) -> Mask:
-        """Its contact's own mask."""
-        mask: Mask = self.contact.mask
-        return mask
-
-    @property
-    def speed_cm_s(self) -> float:
-        """Length of the velocity."""
-        return math.hypot(self.vx_cm_s, self.vy_cm_s)
+Reals = NDArray[np.float64]
 
 
 class Tracks(NamedTuple):
-    """The objects followed, by id."""
+    """The objects that are followed, by id."""
 
     tracks: tuple[TrackedObject, ...]
     """Those on the pad, and those that leave just now."""
     count: int  # type: ignore[assignment]  # hides tuple.count, which nobody asks a record for
     """How many are on the pad."""
-    n_seen: int
-    """How many there have been so far."""
+    n_so_far: int
+    """How many there have been since the start."""
 
 
 class Track:
     """Give each contact the id of the object it was in the frames before.
 
-    Each object is expected where its velocity takes it in the true time since the last frame,
-    and contacts and objects are paired so that the sum of the costs is least: squared distance
-    over what is expected of it, and a squared log ratio of areas, which keeps objects apart that
-    cross. An object not seen for ``patience_s`` leaves; until then it may come back under its id.
+    Each object is expected where its velocity takes it in the true time since the last frame.
+    Contacts and objects are paired so that the sum of costs is least: squared distance, and a
+    squared log ratio of areas, which helps to tell objects apart that cross. An object not seen
+    for ``patience_s`` leaves; until then it may come back under its id.
 
     Parameters
     ----------
     gate_cm : float
         Farthest from where it is expected that an object is still recognised.
     patience_s : float
-        How long an object may go unseen; longer, and it leaves. A gap in the recording makes
-        nobody leave who is there after it.
+        How long an object may go unseen; after longer it leaves. One that is there again right
+        after a gap in the recording stays, however long the gap was.
     noise_cm : float
         Standard deviation of a contact's centre along x and along y.
     agility_cm_s2 : float
-        Acceleration objects are expected to undergo. Lower: steadier velocities.
+        Acceleration that objects are expected to undergo. Lower: steadier velocities.
     rest_cm_s : float
         Slower objects rest.
     confirm_frames : int
-        An object is told of from the so many-th frame on in which it was seen.
+        An object is told of from the so many-th frame on in which it is seen.
     frame_s : float
         Time from frame to frame where the source keeps none.
     most : int
@@ -118,7 +65,7 @@ class Track:
     Notes
     -----
     Global nearest neighbour (Blackman and Popoli 1999, Design and Analysis of Modern Tracking
-    Systems, section 6.4) on a filter of constant velocity with random accelerations. The order
+    Systems, chapter 6) over a filter of constant velocity with random accelerations. The order
     of the contacts within a frame has no influence.
     """
 
@@ -138,9 +85,7 @@ class Track:
         self._noise_cm, self._agility_cm_s2 = noise_cm, agility_cm_s2
         self._rest_cm_s, self._confirm_frames = rest_cm_s, confirm_frames
         self._frame_s, self._most = frame_s, most
-        self._now_s = 0.0
-        self._last_id = 0
-        self._n_confirmed = 0
+        self._now_s, self._call, self._last_id = 0.0, 0, 0
         self._all: list[Followed] = []
 
     def __call__(self, contacts: list[Any], *, gap_s: TimeGap = None) -> Tracks:
@@ -161,33 +106,92 @@ class Track:
         xy = places_cm(contacts, "track")
         areas = np.array([float(getattr(c, "area_cm2", 0.0)) for c in contacts])
         order = np.lexsort((areas, xy[:, 0], xy[:, 1]))
-        given, xy, areas = [contacts[i] for i in order], xy[order], areas[order]
-        # A clock set back must not make objects run backwards.
+        self._go_on(gap_s)
+        self._see([contacts[i] for i in order], xy[order], areas[order])
+        gone = self._given_up()
+        told = [self._told(one) for one in self._all if one.call == self._call]
+        here = [one for one in told if one is not None]
+        left = [_record(one, "leaves", self._now_s) for one in gone if one.number]
+        return Tracks(tuple(sorted([*here, *left], key=_id)), len(here), self._last_id)
+
+    def _go_on(self, gap_s: float | None) -> None:
+        """Let the time since the last call pass."""
+        # A clock that was set back must not make objects run backwards.
         dt_s = max(0.0, self._frame_s if gap_s is None else gap_s)
         self._now_s += dt_s
+        self._call += 1
         for one in self._all:
             one.go_on(min(dt_s, self._patience_s), self._agility_cm_s2)
-        pairs = paired(self._costs(xy, areas), self._limit)
+
+    def _see(self, contacts: list[Any], xy: Reals, areas: Reals) -> None:
+        """Tell each object which contact it is, and follow those that are nobody's."""
+        pairs = paired(self._costs(xy, areas), ALONE)
         for k, i in pairs:
             x_cm, y_cm = xy[i].tolist()
-            self._all[k].see(given[i], x_cm, y_cm, self._noise_cm, self._now_s)
-        matched = {i for _, i in pairs}
-        for i in range(len(given)):
-            if i not in matched:
-                self._meet(given[i], *xy[i].tolist())
-        gone = self._gone()
-        told = [self._told(one) for one in self._all if one.seen_s == self._now_s and self._is_confirmed(one)]
-        count = len(told)
-        told += [self._leaving(one) for one in gone if self._is_confirmed(one)]
-        return Tracks(tuple(sorted(told, key=lambda t: t.id)), count, self._n_confirmed)
+            self._all[k].see(contacts[i], x_cm, y_cm, self._now_s, self._call)
+        known = {i for _, i in pairs}
+        fastest_cm_s = self._gate_cm / self._frame_s
+        self._all += [
+            Followed(c, *xy[i].tolist(), self._now_s, self._call, self._noise_cm, fastest_cm_s)
+            for i, c in enumerate(contacts)
+            if i not in known
+        ]
 
-    @property
-    def _limit(self) -> float:
-        return 1.0
+    def _costs(self, xy: Reals, areas: Reals) -> Reals:
+        """Return what each object and contact cost as a pair: up to 2, infinite past the gate."""
+        expected = np.array([(one.x_cm, one.y_cm) for one in self._all]).reshape(-1, 2)
+        was = np.array([float(getattr(one.contact, "area_cm2", 0.0)) for one in self._all])
+        off = expected[:, None] - xy[None]
+        near = (off**2).sum(axis=2) / self._gate_cm**2
+        both = (was[:, None] > 0) & (areas > 0)
+        ratio = np.divide(was[:, None], areas, out=np.ones(both.shape), where=both)
+        return np.where(near <= 1.0, near + np.minimum(1.0, np.log(ratio) ** 2), np.inf)
 
-    def _costs(self, xy: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what each pair of an object and a contact costs; infinite beyond the gate."""
-        raise NotImplementedError
+    def _given_up(self) -> list[Followed]:
+        """Forget those unseen for too long, and those too many; return them."""
+        kept = [one for one in self._all if self._now_s - one.seen_s <= self._patience_s]
+        if len(kept) > self._most:
+            longest_seen = sorted(kept, key=lambda one: (-one.seen_s, one.number or math.inf))
+            chosen = {id(one) for one in longest_seen[: self._most]}
+            kept = [one for one in kept if id(one) in chosen]
+        stays = {id(one) for one in kept}
+        gone = [one for one in self._all if id(one) not in stays]
+        self._all = kept
+        return gone
 
-    def _meet(self, contact: Any, x_cm: float, y_cm: float) -> None:
-        raise NotImplementedError
+    def _told(self, one: Followed) -> TrackedObject | None:
+        """Return the record of an object just seen; None while it is not confirmed."""
+        if one.n_seen < self._confirm_frames:
+            return None
+        if one.number == 0:
+            self._last_id += 1
+            one.number = self._last_id
+        elif one.state == "appears":
+            one.state = "moves" if _speed(one) >= self._rest_cm_s else "rests"
+        else:
+            limit = self._rest_cm_s * (STIR if one.state == "rests" else 1.0)
+            one.state = "moves" if _speed(one) >= limit else "rests"
+        return _record(one, one.state, self._now_s)
+
+
+def _speed(one: Followed) -> float:
+    return math.hypot(one.vx_cm_s, one.vy_cm_s)
+
+
+def _record(one: Followed, state: State, now_s: float) -> TrackedObject:
+    area_cm2 = float(getattr(one.contact, "area_cm2", 0.0))
+    return TrackedObject(
+        one.number,
+        state,
+        now_s - one.born_s,
+        one.seen_x_cm,
+        one.seen_y_cm,
+        one.vx_cm_s,
+        one.vy_cm_s,
+        area_cm2,
+        one.contact,
+    )
+
+
+def _id(track: TrackedObject) -> int:
+    return track.id
