@@ -8,8 +8,8 @@ import numpy as np
 
 from tactile_graph_classifiers.database.opening import SAMPLE
 from tactile_graph_classifiers.database.text import to_text
-from tactile_graph_classifiers.experiments import N_READINGS, SCENES_OF_THE_THESIS, learned_from
 from tactile_graph_classifiers.known import Known, KnownObject
+from tactile_graph_classifiers.simulated import N_READINGS, SCENES_OF_THE_THESIS, learned_from
 from tactile_graph_classifiers.statistics import Statistics
 
 SEED = 44

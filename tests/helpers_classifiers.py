@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph import Image, Mask
-from tactile_graph_classifiers.database.store import Lesson, Setting
+from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.text import FORMAT, VERSION
 from tactile_graph_classifiers.measurements import Measurements
 

@@ -4,168 +4,26 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_classifiers.identity import Identity
-from tactile_graph_classifiers.known import Known, KnownObject
-from tactile_graph_classifiers.measurements import Measurements
-from tactile_graph_classifiers.shapes import true_name, true_shape
-from tactile_graph_classifiers.statistics import Statistics
+from tactile_graph_classifiers.known import Known
+from tactile_graph_classifiers.simulated import (
+    N_READINGS,
+    Readings,
+    as_database,
+    known_from,
+    simulated,
+)
+from tactile_graph_classifiers.weighing import weighing
 
 Array = NDArray[np.float64]
-SCENES_OF_THE_THESIS = ("identify", "rectangles")
-N_READINGS = 25
-"""Of each object in the thesis, to learn it and to test it."""
 STACK_OFFSET_CM = 1.0
 LARGEST_STACKED_G = 500.0
-MOST_CALIBRATED_G = 750.0
-"""On each of four elements: figure 2.15 ends at 3000 g."""
 DIFFERENCES_G = (0, 50, 100, 200, 300, 400, 600, 800, 1000, 1250, 1500, 2000)
-
-THESIS_WEIGHING = """
-pipeline: thesis-features
-about: Weight by the calibration curve alone, area from the circle's radius (section 4.4.3)
-conditions:
-  touched: footprint.count > 0
-nodes:
-  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
-  grams: {step: force, in: frame, with: {curve: [[5, 1000]]}, when: touched}
-  measured: {step: features, in: {image: grams, mask: footprint}}
-  circle: {use: circle-3, in: frame}
-  features: {step: fitted_area, in: {features: measured, shape: circle}}
-outputs: [features]
-"""
-DECOUPLED_WEIGHING = """
-pipeline: decoupled-features
-about: Weight by the circuit's inverse and the force law, area from the circle's radius
-conditions:
-  touched: footprint.count > 0
-nodes:
-  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
-  siemens: {step: decouple, in: frame, when: touched}
-  grams: {step: force, in: siemens}
-  measured: {step: features, in: {image: grams, mask: footprint}}
-  circle: {use: circle-3, in: frame}
-  features: {step: fitted_area, in: {features: measured, shape: circle}}
-outputs: [features]
-"""
-
-
-# -- readings --------------------------------------------------------------------------------
-
-
-@dataclass
-class Readings:
-    """Readings of one object in the order they were made."""
-
-    shape: str = ""
-    rows: list[Measurements] = field(default_factory=list)
-    sources: list[str] = field(default_factory=list)
-
-    def learned(self, name: str, n: int | None = None) -> KnownObject:
-        """Return the object as its first ``n`` readings make it.
-
-        Parameters
-        ----------
-        name : str
-        n : int, optional
-        """
-        rows = np.array([m.values for m in self.rows[:n]])
-        sources = tuple(self.sources[:n])
-        return KnownObject(name, self.shape, rows, Statistics.of(rows), sources)
-
-
-def simulated(
-    pipeline: Any, scene: str | Mapping[str, Any], n_each: int, n_objects: int, seed: int,
-    pad: str = "thesis",
-) -> dict[str, Readings]:  # fmt: skip
-    """Return readings of each object of a scene that lays them down in turn, on one pad.
-
-    Parameters
-    ----------
-    pipeline : Pipeline
-        Its first output measures.
-    scene : str or mapping
-    n_each, n_objects : int
-        Placements of each object, and how many objects there are.
-    seed : int
-    pad : str
-    """
-    output = next(iter(pipeline.outputs))
-    runs = pipeline.with_source("simulate", scene=scene, frames=n_each * n_objects, pad=pad)
-    found: dict[str, Readings] = {}
-    for result in runs.stream(seed=seed):
-        value = result.outcome(output)
-        measured = getattr(value, "measurements", value)
-        if not isinstance(measured, Measurements):
-            continue  # skipped or failed: nothing was measured, as on a real pad
-        readings = found.setdefault(true_name(result.frame), Readings())
-        readings.shape = true_shape(result.frame)
-        readings.rows.append(measured)
-        readings.sources.append(f"simulated, seed {seed}, frame {result.frame.index}")
-    return found
-
-
-def known_from(readings: Mapping[str, Readings], n: int | None = None, pipeline: str = "") -> Known:
-    """Return what the first ``n`` readings of each object make known.
-
-    Parameters
-    ----------
-    readings : mapping
-        By the objects' names.
-    n : int, optional
-        All if not given.
-    pipeline : str
-        Name of the pipeline that measured.
-    """
-    first = next(iter(readings.values())).rows[0]
-    objects = tuple(r.learned(name, n) for name, r in readings.items())
-    return Known("simulated", first.names, first.quantity, objects, pipeline)
-
-
-def learned_from(scenes: Sequence[str], n: int, seed: int) -> Known:
-    """Return the objects of scenes as ``n`` simulated readings each make them known.
-
-    Parameters
-    ----------
-    scenes : sequence of str
-        Each lays its objects down in turn.
-    n : int
-    seed : int
-    """
-    from tactile_graph import load
-    from tactile_graph_sources.scene import load_scene
-
-    pipeline = load("features")
-    readings: dict[str, Readings] = {}
-    for scene in scenes:
-        readings.update(simulated(pipeline, scene, n, len(load_scene(scene).in_turn), seed))
-    return known_from(readings, pipeline=pipeline.name)
-
-
-def as_database(known: Known) -> dict[str, Any]:
-    """Return known objects as the classifiers' setting ``database`` takes them.
-
-    Parameters
-    ----------
-    known : Known
-    """
-    from tactile_graph_classifiers.database.text import FORMAT, VERSION
-
-    objects = [
-        {"name": o.name, "shape": o.shape, "readings": o.readings.tolist()} for o in known.objects
-    ]
-    return {
-        "format": FORMAT,
-        "version": VERSION,
-        "quantity": known.quantity,
-        "features": list(known.features),
-        "objects": objects,
-    }
 
 
 # -- table 4.9 -------------------------------------------------------------------------------
@@ -329,60 +187,6 @@ class Curve(NamedTuple):
     pair: Pair
     differences_g: Array
     error: Mapping[str, Array]
-
-
-def weighing(kind: str, seed: int = 0) -> Any:
-    """Return the pipeline that measures discs: ``curve`` as in the thesis, or ``decoupled``.
-
-    Parameters
-    ----------
-    kind : "curve" or "decoupled"
-    seed : int
-        Of the calibration's placements.
-    """
-    from tactile_graph import loads
-
-    if kind == "decoupled":
-        return loads(DECOUPLED_WEIGHING)
-    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed)})
-
-
-def calibration_curve(seed: int = 0, pad: str = "thesis", groups: int = 9) -> list[list[float]]:
-    """Return points (volts, grams) of an element, as the thesis calibrated the array.
-
-    Parameters
-    ----------
-    seed : int
-    pad : str
-    groups : int
-        Groups of four neighbours loaded at random places; their mean volts are taken.
-
-    Notes
-    -----
-    Thesis section 2.4.2 and figures 2.15 to 2.18. The mean of the groups is joined by straight
-    lines; the thesis smooths it by a polynomial of the fifth order. What reads more than the
-    heaviest load it was calibrated with counts as that load.
-    """
-    from tactile_graph_pads.pad import load_pad
-
-    bench, rng = load_pad(pad), np.random.default_rng(seed)
-    built = bench.built(rng)
-    fields = bench.unevenness.draw(bench.geometry, rng)
-    grams = np.geomspace(5.0, MOST_CALIBRATED_G, 40)
-    rows, columns = bench.geometry.shape
-    volts = np.zeros(grams.size)
-    for _ in range(groups):
-        i, j = int(rng.integers(rows - 1)), int(rng.integers(columns - 1))
-        gains = bench.unevenness.gains(fields, bench.unevenness.draw(bench.geometry, rng))
-        part = gains[i : i + 2, j : j + 2] + 1e-3  # four voids would bear nothing at all
-        for k, each in enumerate(grams):
-            load = np.zeros(bench.geometry.shape)
-            load[i : i + 2, j : j + 2] = 4.0 * each * part / part.sum()
-            read = bench.volts_of(bench.conductance_s(load, built))
-            volts[k] += read[i : i + 2, j : j + 2].mean() / groups
-    rising = np.flatnonzero(np.diff(np.maximum.accumulate(volts), prepend=0.0) > 1e-6)
-    curve = [[float(volts[k]), float(grams[k])] for k in rising]
-    return [*curve, [bench.circuit.supply_v, curve[-1][1]]]
 
 
 def error_curves(

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
+    "align_contacts": "align_contacts:AlignContacts",
     "and_compare": "and_compare:and_compare",
     "close": "close:Close",
     "contacts": "contacts:contacts",
@@ -21,7 +22,10 @@ _STEPS = {
     "low_pass": "low_pass:LowPass",
     "mask_bad": "mask_bad:mask_bad",
     "open": "open:Open",
+    "sharpen_contacts": "sharpen_contacts:sharpen_contacts",
     "skeleton": "skeleton:skeleton",
+    "split_contacts": "split_contacts:SplitContacts",
+    "split_watershed": "split_watershed:split_watershed",
     "subdivide": "subdivide:subdivide",
     "subdivide_image": "subdivide_image:subdivide_image",
     "tare": "tare:Tare",

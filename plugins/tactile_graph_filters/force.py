@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
@@ -34,6 +35,21 @@ def _rising(curve: list[tuple[float, float]] | None) -> list[tuple[float, float]
 Curve = Annotated[list[tuple[float, float]] | None, AfterValidator(_rising)]
 
 
+Calibrated = tuple[list[tuple[float, float]] | None, list[float] | None, float | None, str]
+"""Curve, polynomial, largest reading of the polynomial, and the quantity they read."""
+
+
+def load_calibrated(path: Path) -> Calibrated:
+    """Return what a calibration file says, as this step's own settings."""
+    from tactile_graph_pads.calibration import load_calibration
+
+    calibration = load_calibration(path)
+    settings = calibration.force_settings()
+    curve = settings.get("curve")
+    points = None if curve is None else [(float(r), float(g)) for r, g in curve]
+    return points, settings.get("polynomial"), settings.get("up_to"), calibration.reading
+
+
 class Force:
     """Return the grams on each element.
 
@@ -49,6 +65,8 @@ class Force:
         the fifth order to volts (section 2.4).
     up_to : float, optional
         Largest reading that the polynomial was fitted to; readings above become invalid.
+    calibration : Path, optional
+        Instead: a file that ``tactile-graph calibrate`` has written.
     floor_g : float, optional
         Loads below this are 0 g. Half the turn-on load of a pad's law if nothing is given: there
         the element's conductance is lost in the converter's noise, and without a floor an empty
@@ -57,8 +75,8 @@ class Force:
     Raises
     ------
     ValueError
-        If more than one of ``pad``, ``curve`` and ``polynomial`` is given, or ``curve`` does
-        not rise, or ``polynomial`` is empty.
+        If more than one of ``pad``, ``curve``, ``polynomial`` and ``calibration`` is given, or
+        ``curve`` does not rise, or ``polynomial`` is empty.
 
     Notes
     -----
@@ -75,12 +93,17 @@ class Force:
         curve: Curve = None,
         polynomial: list[float] | None = None,
         up_to: float | None = None,
+        calibration: Path | None = None,
         floor_g: Annotated[float | None, Ge(0)] = None,
     ) -> None:
-        kinds = {"pad": pad, "curve": curve, "polynomial": polynomial}
+        kinds = {"pad": pad, "curve": curve, "polynomial": polynomial, "calibration": calibration}
         given = [name for name, setting in kinds.items() if setting is not None]
         if len(given) > 1:
-            raise ValueError(f"at most one of pad, curve and polynomial, got {' and '.join(given)}")
+            raise ValueError(f"at most one of {', '.join(kinds)}, got {' and '.join(given)}")
+        self._quantity = ""
+        if calibration is not None:
+            found = load_calibrated(calibration)
+            curve, polynomial, up_to, self._quantity = found
         if polynomial is not None and not polynomial:
             raise ValueError("polynomial: needs at least one coefficient, got none")
         if up_to is not None and polynomial is None:
@@ -107,8 +130,11 @@ class Force:
         Raises
         ------
         ValueError
-            If a force law is asked to read anything but siemens.
+            If a force law is asked to read anything but siemens, or a calibration anything but
+            what it was made of.
         """
+        if self._quantity not in ("", image.quantity):
+            raise ValueError(f"the calibration reads {self._quantity}, got {image.quantity}")
         if self._law is not None and image.quantity != "siemens":
             raise ValueError(
                 f"a force law reads siemens, got {image.quantity}; decouple the image first,"

@@ -39,7 +39,7 @@ class SplitContacts:
         Objects of fewer cells are doubted, the more the smaller they are.
     min_cells : int
         Smaller contacts are left out in the end.
-    smooth_cells : list of float
+    smooth_cells : tuple of float
         Standard deviations, in cells, of the smoothing before the cut into basins. Each is
         tried; the one that ends in the lowest energy is taken.
     margin : int
@@ -63,7 +63,7 @@ class SplitContacts:
         weak: Annotated[float, Ge(0), Le(1)] = 0.5,
         usual_cells: Annotated[float, Ge(0)] = 8.0,
         min_cells: Annotated[int, Ge(1)] = 4,
-        smooth_cells: Annotated[list[Annotated[float, Gt(0)]], MinLen(1)] = [0.6, 0.9],  # noqa: B006
+        smooth_cells: Annotated[tuple[Annotated[float, Gt(0)], ...], MinLen(1)] = (0.6, 0.9),
         margin: Annotated[int, Ge(0)] = 0,
     ) -> None:
         self._rules = np.array([voids, weak, usual_cells, hold, 0.0])

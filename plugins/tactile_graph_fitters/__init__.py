@@ -20,4 +20,7 @@ def tactile_graph_steps() -> Mapping[str, str]:
         "rotate_mask",
         "rotate_points",
     )
-    return {name: f"tactile_graph_fitters.{name}:{name}" for name in names}
+    return {
+        **{name: f"tactile_graph_fitters.{name}:{name}" for name in names},
+        "fit_rectangle_load": "tactile_graph_fitters.fit_rectangle_load:FitRectangleLoad",
+    }

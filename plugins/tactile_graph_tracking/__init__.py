@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
-    "align": "align:align",
     "score_objects": "score_objects:score_objects",
     "track": "track:Track",
 }

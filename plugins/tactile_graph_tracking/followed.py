@@ -42,6 +42,7 @@ class Followed:
         self.state: State = "appears"
         self.born_s = self.seen_s = self.now_s
         self.seen_x_cm, self.seen_y_cm = self.x_cm, self.y_cm
+        self.expected_x_cm, self.expected_y_cm = self.x_cm, self.y_cm
         self.n_seen = 1
         self.vx_cm_s = self.vy_cm_s = 0.0
         # Variances of place and velocity and their covariance, the same along x and y.
@@ -50,6 +51,12 @@ class Followed:
     def go_on(self, dt_s: float, agility_cm_s2: float) -> None:
         """Move on by a time, growing unsure by what an acceleration could have done."""
         push = agility_cm_s2**2
+        # After two frames a velocity is mostly noise: what it says is believed as far as it
+        # stands out of that, or a gap would carry a resting object out of its own gate.
+        swift = self.vx_cm_s**2 + self.vy_cm_s**2
+        trust = swift / (swift + 2.0 * self.speed) if swift > 0.0 else 0.0
+        self.expected_x_cm = self.x_cm + trust * self.vx_cm_s * dt_s
+        self.expected_y_cm = self.y_cm + trust * self.vy_cm_s * dt_s
         self.x_cm += self.vx_cm_s * dt_s
         self.y_cm += self.vy_cm_s * dt_s
         self.place += 2.0 * dt_s * self.both + dt_s**2 * self.speed + push * dt_s**4 / 4.0

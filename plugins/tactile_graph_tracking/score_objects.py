@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ class ObjectScore(NamedTuple):
 
 
 def score_objects(
-    frame: Frame, found: list[Any] = [], *, gate_cm: Annotated[float, Gt(0)] = 2.0  # noqa: B006
+    frame: Frame, found: Sequence[Any] = (), *, gate_cm: Annotated[float, Gt(0)] = 2.0
 ) -> ObjectScore:
     """Return how the objects found pair with the true ones.
 

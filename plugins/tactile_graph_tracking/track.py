@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -88,7 +89,7 @@ class Track:
         self._now_s, self._call, self._last_id = 0.0, 0, 0
         self._all: list[Followed] = []
 
-    def __call__(self, contacts: list[Any], *, gap_s: TimeGap = None) -> Tracks:
+    def __call__(self, contacts: Sequence[Any], *, gap_s: TimeGap = None) -> Tracks:
         """Return the objects on the pad, and those that leave.
 
         Parameters
@@ -139,7 +140,7 @@ class Track:
 
     def _costs(self, xy: Reals, areas: Reals) -> Reals:
         """Return what each object and contact cost as a pair: up to 2, infinite past the gate."""
-        expected = np.array([(one.x_cm, one.y_cm) for one in self._all]).reshape(-1, 2)
+        expected = np.array([(one.expected_x_cm, one.expected_y_cm) for one in self._all]).reshape(-1, 2)
         was = np.array([float(getattr(one.contact, "area_cm2", 0.0)) for one in self._all])
         off = expected[:, None] - xy[None]
         near = (off**2).sum(axis=2) / self._gate_cm**2

@@ -30,9 +30,9 @@ def test_every_distance_agrees_with_the_formula_written_out():
 def test_normalised_distances_are_those_of_the_thesis():
     means = np.array([[100.0, 10.0], [300.0, 10.0], [100.0, 50.0]])
     ones = np.ones(means.shape)
-    found = nearest_normalised.reference(np.array([150.0, 20.0]), means, ones, np.ones(2))
-    # weight: 50, 150, 50 over 150; area: 10, 10, 30 over 30
-    assert found == (0, 2, pytest.approx(1 / 9 + 1 / 9), pytest.approx(1 / 9 + 1.0))
+    found = nearest_normalised.reference(np.array([140.0, 20.0]), means, ones, np.ones(2))
+    # weight: 40, 160, 40 over 160; area: 10, 10, 30 over 30
+    assert found == (0, 2, pytest.approx(1 / 16 + 1 / 9), pytest.approx(1 / 16 + 1.0))
 
 
 def test_a_feature_in_which_all_objects_agree_has_no_share():

@@ -157,3 +157,19 @@ def test_each_fit_is_what_it_is_called() -> None:
     kinds = (Polynomial, Isotonic, Isotonic, PowerLaw)
     for kind, cls in zip(KINDS, kinds, strict=True):
         assert isinstance(made(kind).fit, cls)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_step_force_reads_the_file_itself(kind: str, tmp_path: Path) -> None:
+    curve = made(kind)
+    write_calibration(tmp_path / "c.yaml", curve)
+    image = Image(np.linspace(0.0, curve.up_to, 64).reshape(8, 8), quantity="volt")
+    by_file = Force(calibration=tmp_path / "c.yaml")(image)
+    assert np.array_equal(by_file.values, Force(**curve.force_settings())(image).values)
+
+
+def test_the_step_force_refuses_another_quantity_than_the_file_was_made_of(tmp_path: Path) -> None:
+    write_calibration(tmp_path / "c.yaml", made("isotonic"))
+    step = Force(calibration=tmp_path / "c.yaml")
+    with pytest.raises(ValueError, match="the calibration reads volt, got counts"):
+        step(Image(np.ones((2, 2)), quantity="counts"))

@@ -48,7 +48,8 @@ def learn(
     Each frame is a reading. Readings of an object that is known are added to it; all are learned
     or none. What the pipeline calls an empty pad is left out.
     """
-    from tactile_graph_classifiers.database.store import Lesson, ObjectDatabase, Setting
+    from tactile_graph_classifiers.database.rows import Lesson, Setting
+    from tactile_graph_classifiers.database.store import ObjectDatabase
 
     if not recordings and source is None:
         raise UsageError("name the recordings to learn from, or a --source")
@@ -91,7 +92,7 @@ class _Read:
         for frame in span.of(pipeline.frames(seed, report)):
             outcome: Any = runner(frame).outcome(output)
             if isinstance(outcome, Failed | Skipped):
-                self.left_out[outcome.reason] += 1
+                self.left_out[_why(outcome.reason)] += 1
                 self.n_failed += isinstance(outcome, Failed)
                 continue
             self.rows.append(getattr(outcome, "measurements", outcome))
@@ -102,6 +103,12 @@ class _Read:
         if not self.rows:
             why = "; ".join(f"{n} frames: {what}" for what, n in self.left_out.most_common(3))
             raise UsageError(f"nothing to learn: no frame gave a reading ({why or 'no frames'})")
+
+
+def _why(reason: str) -> str:
+    """Return a reason without what was read in this one frame, so that like ones are counted."""
+    condition, is_false, _ = reason.partition(" is false (")
+    return condition + " is false" if is_false else reason
 
 
 def _source(pipeline: Pipeline, frame: Any) -> str:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterable, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
 from tactile_graph_classifiers.database.connection import reading, writing
+from tactile_graph_classifiers.database.rows import Lesson, Setting, add, objects_of, setting_of
 from tactile_graph_classifiers.identity import UNKNOWN
-from tactile_graph_classifiers.known import Known, KnownObject
-from tactile_graph_classifiers.statistics import Statistics
+from tactile_graph_classifiers.known import Known
 
-Array = NDArray[np.float64]
 DEFAULT_PATH = "tactile-objects.sqlite"
 
 
@@ -28,40 +25,6 @@ class Summary(NamedTuple):
     shape: str
     n_readings: int
     learned_at: str
-
-
-class Lesson(NamedTuple):
-    """Readings of one object to be learned.
-
-    Parameters
-    ----------
-    name : str
-    shape : str
-        Empty leaves the shape as it is.
-    readings : ndarray, shape (n, F)
-    sources : sequence of str
-        Where each reading comes from.
-    """
-
-    name: str
-    shape: str
-    readings: Array
-    sources: Sequence[str]
-
-
-class Setting(NamedTuple):
-    """What all readings of a database have in common.
-
-    Parameters
-    ----------
-    features : tuple of str
-    quantity : str
-    pipeline : str
-    """
-
-    features: tuple[str, ...]
-    quantity: str
-    pipeline: str = ""
 
 
 class ObjectDatabase:
@@ -104,7 +67,7 @@ class ObjectDatabase:
             if new:
                 self._none_there([lesson.name for lesson in checked], connection)
             for lesson in checked:
-                _add(connection, lesson)
+                add(connection, lesson)
 
     def forget(self, name: str) -> int:
         """Remove an object with all its readings; return how many these were.
@@ -138,7 +101,7 @@ class ObjectDatabase:
         return UsageError(f"{self.path}: no object named {name!r}{hint}")
 
     def _same_setting(self, connection: sqlite3.Connection, setting: Setting) -> None:
-        there = _setting(connection)
+        there = setting_of(connection)
         if not there.features:
             rows = list(enumerate(setting.features))
             connection.executemany("INSERT INTO features VALUES (?, ?)", rows)
@@ -180,8 +143,8 @@ class ObjectDatabase:
             If there is no such database, or none that can be read.
         """
         with reading(self.path, self.timeout_s) as connection:
-            setting = _setting(connection)
-            objects = _objects(connection, len(setting.features))
+            setting = setting_of(connection)
+            objects = objects_of(connection, len(setting.features))
         return Known(
             str(self.path), setting.features, setting.quantity, tuple(objects), setting.pipeline
         )
@@ -214,90 +177,3 @@ def _difference(what: str, got: str | tuple[str, ...], had: str | tuple[str, ...
     parts = [f"lack {one_of(lacking)}"] if lacking else []
     parts += [f"have {one_of(extra)} besides"] if extra else []
     return f"the new readings {' and '.join(parts)}"
-
-
-# -- rows ------------------------------------------------------------------------------------
-
-
-def _setting(connection: sqlite3.Connection) -> Setting:
-    features = tuple(r[0] for r in connection.execute("SELECT name FROM features ORDER BY id"))
-    about = dict(connection.execute("SELECT key, value FROM about"))
-    return Setting(features, about.get("quantity", ""), about.get("pipeline", ""))
-
-
-def _add(connection: sqlite3.Connection, lesson: Lesson) -> None:
-    n, n_features = lesson.readings.shape
-    row = connection.execute("SELECT id FROM objects WHERE name = ?", (lesson.name,)).fetchone()
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    if row is None:
-        row = (_insert(connection, "INSERT INTO objects (name, shape, learned_at, n_readings)"
-                       " VALUES (?, ?, ?, 0)", (lesson.name, lesson.shape, now)),)  # fmt: skip
-    number = int(row[0])
-    old = _statistics(connection, number, n_features)
-    for values, source in zip(lesson.readings.tolist(), lesson.sources, strict=True):
-        of_reading = _insert(
-            connection, "INSERT INTO readings (object_id, source) VALUES (?, ?)", (number, source)
-        )
-        cells = [(of_reading, k, v) for k, v in enumerate(values)]
-        connection.executemany("INSERT INTO reading_values VALUES (?, ?, ?)", cells)
-    _keep(connection, number, old.joined(Statistics.of(lesson.readings)))
-    connection.execute(
-        "UPDATE objects SET n_readings = n_readings + ?, learned_at = ?,"
-        " shape = coalesce(nullif(?, ''), shape) WHERE id = ?",
-        (n, now, lesson.shape, number),
-    )
-
-
-def _insert(connection: sqlite3.Connection, statement: str, values: tuple[object, ...]) -> int:
-    number = connection.execute(statement, values).lastrowid
-    assert number is not None
-    return number
-
-
-def _statistics(connection: sqlite3.Connection, number: int, n_features: int) -> Statistics:
-    (n,) = connection.execute("SELECT n_readings FROM objects WHERE id = ?", (number,)).fetchone()
-    none = Statistics.none(n_features)
-    for k, mean in connection.execute(
-        "SELECT feature_id, mean FROM means WHERE object_id = ?", (number,)
-    ):
-        none.mean[k] = mean
-    for a, b, scatter in connection.execute(
-        "SELECT feature_a, feature_b, scatter FROM scatters WHERE object_id = ?", (number,)
-    ):
-        none.scatter[a, b] = none.scatter[b, a] = scatter
-    return Statistics(int(n), none.mean, none.scatter)
-
-
-def _keep(connection: sqlite3.Connection, number: int, statistics: Statistics) -> None:
-    means = [(number, k, mean) for k, mean in enumerate(statistics.mean.tolist())]
-    connection.executemany("INSERT OR REPLACE INTO means VALUES (?, ?, ?)", means)
-    scatters = [
-        (number, a, b, value)
-        for a, row in enumerate(statistics.scatter.tolist())
-        for b, value in enumerate(row)
-        if a <= b
-    ]
-    connection.executemany("INSERT OR REPLACE INTO scatters VALUES (?, ?, ?, ?)", scatters)
-
-
-def _objects(connection: sqlite3.Connection, n_features: int) -> list[KnownObject]:
-    cells: dict[int, list[float]] = {}
-    sources: dict[int, list[str]] = {}
-    for number, source in connection.execute("SELECT object_id, source FROM readings ORDER BY id"):
-        sources.setdefault(number, []).append(source)
-    for number, value in connection.execute(
-        "SELECT r.object_id, v.value FROM readings r JOIN reading_values v ON v.reading_id = r.id"
-        " ORDER BY r.id, v.feature_id"
-    ):
-        cells.setdefault(number, []).append(value)
-    query = "SELECT id, name, shape FROM objects ORDER BY id"
-    return [
-        KnownObject(
-            name,
-            shape,
-            np.array(cells.get(number, []), dtype=np.float64).reshape(-1, n_features),
-            _statistics(connection, number, n_features),
-            tuple(sources.get(number, [])),
-        )
-        for number, name, shape in connection.execute(query).fetchall()
-    ]

@@ -1,0 +1,92 @@
+"""How the experiments measure discs: by the calibration curve alone, or decoupled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+MOST_CALIBRATED_G = 750.0
+"""On each of four elements: figure 2.15 ends at 3000 g."""
+
+THESIS_WEIGHING = """
+pipeline: thesis-features
+about: Weight by the calibration curve alone, area from the circle's radius (section 4.4.3)
+conditions:
+  touched: footprint.count > 0
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  grams: {step: force, in: frame, with: {curve: [[5, 1000]]}, when: touched}
+  measured: {step: features, in: {image: grams, mask: footprint}}
+  circle: {use: circle-3, in: frame}
+  features: {step: fitted_area, in: {features: measured, shape: circle}}
+outputs: [features]
+"""
+DECOUPLED_WEIGHING = """
+pipeline: decoupled-features
+about: Weight by the circuit's inverse and the force law, area from the circle's radius
+conditions:
+  touched: footprint.count > 0
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  siemens: {step: decouple, in: frame, when: touched}
+  grams: {step: force, in: siemens}
+  measured: {step: features, in: {image: grams, mask: footprint}}
+  circle: {use: circle-3, in: frame}
+  features: {step: fitted_area, in: {features: measured, shape: circle}}
+outputs: [features]
+"""
+
+
+def weighing(kind: str, seed: int = 0) -> Any:
+    """Return the pipeline that measures discs: ``curve`` as in the thesis, or ``decoupled``.
+
+    Parameters
+    ----------
+    kind : "curve" or "decoupled"
+    seed : int
+        Of the calibration's placements.
+    """
+    from tactile_graph import loads
+
+    if kind == "decoupled":
+        return loads(DECOUPLED_WEIGHING)
+    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed)})
+
+
+def calibration_curve(seed: int = 0, pad: str = "thesis", groups: int = 9) -> list[list[float]]:
+    """Return points (volts, grams) of an element, as the thesis calibrated the array.
+
+    Parameters
+    ----------
+    seed : int
+    pad : str
+    groups : int
+        Groups of four neighbours loaded at random places; their mean volts are taken.
+
+    Notes
+    -----
+    Thesis section 2.4.2 and figures 2.15 to 2.18. The mean of the groups is joined by straight
+    lines; the thesis smooths it by a polynomial of the fifth order. What reads more than the
+    heaviest load it was calibrated with counts as that load.
+    """
+    from tactile_graph_pads.pad import load_pad
+
+    bench, rng = load_pad(pad), np.random.default_rng(seed)
+    built = bench.built(rng)
+    fields = bench.unevenness.draw(bench.geometry, rng)
+    grams = np.geomspace(5.0, MOST_CALIBRATED_G, 40)
+    rows, columns = bench.geometry.shape
+    volts = np.zeros(grams.size)
+    for _ in range(groups):
+        i, j = int(rng.integers(rows - 1)), int(rng.integers(columns - 1))
+        gains = bench.unevenness.gains(fields, bench.unevenness.draw(bench.geometry, rng))
+        part = gains[i : i + 2, j : j + 2] + 1e-3  # four voids would bear nothing at all
+        for k, each in enumerate(grams):
+            load = np.zeros(bench.geometry.shape)
+            load[i : i + 2, j : j + 2] = 4.0 * each * part / part.sum()
+            read = bench.volts_of(bench.conductance_s(load, built))
+            volts[k] += read[i : i + 2, j : j + 2].mean() / groups
+    rising = np.flatnonzero(np.diff(np.maximum.accumulate(volts), prepend=0.0) > 1e-6)
+    curve = [[float(volts[k]), float(grams[k])] for k in rising]
+    return [*curve, [bench.circuit.supply_v, curve[-1][1]]]

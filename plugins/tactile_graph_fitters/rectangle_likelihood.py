@@ -1,0 +1,149 @@
+"""How likely a load, cell by cell, is under a rectangle: cost and gradient over its five unknowns.
+
+A cell's expected load is its coverage by the rectangle. On a pad with bumps and voids a covered
+cell reads its coverage times a lognormal gain, or nothing; a bare cell reads nothing but for
+strays. What a cell adds to the cost is the negative logarithm of that likelihood.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_twin_of
+
+OFF, ON, UNKNOWN = range(3)
+"""State of a cell: not touched, touched, not known (broken)."""
+
+Values: TypeAlias = NDArray[np.float64]
+States: TypeAlias = NDArray[np.uint8]
+
+SQRT_HALF = math.sqrt(0.5)
+DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
+
+
+def _cost(
+    p: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, slope: Values
+) -> float:
+    """Return the cost of a rectangle; write its gradient into ``slope``.
+
+    Parameters
+    ----------
+    p : ndarray, shape (5,)
+        Centre x and y, half length, half breadth in cm, angle in radians as seen.
+    logs : ndarray, shape (rows, columns)
+        Logarithm of each touched cell's load over a fully covered cell's.
+    states : ndarray of uint8, shape (rows, columns)
+        `OFF`, `ON` or `UNKNOWN`.
+    xs, ys : ndarray
+        Cell centres along x and down y, in cm.
+    law : ndarray, shape (6,)
+        Standard deviation of the gains' logarithms; share of voids; log of a full cell's load
+        over the least that shows; likelihood of a stray; width in cm over which a cell's coverage
+        rises from 0 to 1; 1 where the loads are to be used and 0 where only the states are.
+    slope : ndarray, shape (5,)
+        Written: the gradient.
+
+    Returns
+    -------
+    float
+    """
+    sigma, voids, full, stray, width, use = law.tolist()
+    x, y, half, other, angle = p.tolist()
+    cos, sin = math.cos(angle), math.sin(angle)
+    dx, dy = xs[None, :] - x, y - ys[:, None]
+    u, v = dx * cos + dy * sin, dy * cos - dx * sin
+    along = np.clip(0.5 + (half - np.abs(u)) / width, 0.0, 1.0)
+    across = np.clip(0.5 + (other - np.abs(v)) / width, 0.0, 1.0)
+    covered = along * across
+    known = np.log(covered, out=np.full(covered.shape, -np.inf), where=covered > 0.0)
+    safe = np.where(covered > 0.0, covered, 1.0)
+    z = (known + full) / sigma
+    tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in row] for row in z.tolist()])
+    density = DENSITY * np.exp(-0.5 * z * z)
+    if use > 0.0:
+        d = (logs - known) / sigma
+        likely = np.exp(-0.5 * d * d)
+        d_likely = likely * np.where(covered > 0.0, d, 0.0) / (sigma * safe)
+    else:
+        likely, d_likely = (1.0 - voids) * tail, (1.0 - voids) * density / (sigma * safe)
+    bare = 1.0 - (1.0 - voids) * tail
+    on, off = states == ON, states == OFF
+    total = -np.log(np.where(on, likely + stray, np.where(off, bare, 1.0))).sum()
+    d_cost = np.where(
+        on,
+        -d_likely / (likely + stray),
+        np.where(off, (1.0 - voids) * density / (sigma * safe) / bare, 0.0),
+    )
+    d_cost[covered <= 0.0] = 0.0
+    g_along = d_cost * across / width * (along < 1.0)
+    g_across = d_cost * along / width * (across < 1.0)
+    g_u, g_v = -g_along * np.sign(u), -g_across * np.sign(v)
+    slope[0] = (g_v * sin - g_u * cos).sum()
+    slope[1] = (g_u * sin + g_v * cos).sum()
+    slope[2], slope[3] = g_along.sum(), g_across.sum()
+    slope[4] = (g_u * v - g_v * u).sum()
+    return float(total)
+
+
+@compiled_twin_of(_cost)
+def cost(
+    p: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, slope: Values
+) -> float:
+    """Do the same in loops; most cells are fully covered or bare, and cheap."""
+    sigma, voids, full, stray, width = law[0], law[1], law[2], law[3], law[4]
+    use = law[5] > 0.0
+    x, y, half, other = p[0], p[1], p[2], p[3]
+    cos, sin = math.cos(p[4]), math.sin(p[4])
+    present = 1.0 - voids
+    at_full = present * 0.5 * math.erfc(-SQRT_HALF * full / sigma)
+    cost_stray, cost_void = -math.log(stray), -math.log(1.0 - at_full)
+    cost_full = -math.log(at_full + stray)
+    total = g_x = g_y = g_half = g_other = g_angle = 0.0
+    for i in range(ys.shape[0]):
+        dy = y - ys[i]
+        for j in range(xs.shape[0]):
+            state = states[i, j]
+            if state == UNKNOWN:
+                continue
+            dx = xs[j] - x
+            u, v = dx * cos + dy * sin, dy * cos - dx * sin
+            along, across = 0.5 + (half - abs(u)) / width, 0.5 + (other - abs(v)) / width
+            if along <= 0.0 or across <= 0.0:
+                if state == ON:
+                    total += cost_stray
+                continue
+            if along >= 1.0 and across >= 1.0 and (state == OFF or not use):
+                total += cost_void if state == OFF else cost_full
+                continue
+            covered = min(along, 1.0) * min(across, 1.0)
+            known = math.log(covered)
+            if state == ON and use:
+                d = (logs[i, j] - known) / sigma
+                likely = math.exp(-0.5 * d * d)
+                total -= math.log(likely + stray)
+                slope_here = -likely * d / (sigma * covered * (likely + stray))
+            else:
+                z = (known + full) / sigma
+                shows = present * 0.5 * math.erfc(-SQRT_HALF * z)
+                d_shows = present * DENSITY * math.exp(-0.5 * z * z) / (sigma * covered)
+                if state == ON:
+                    total -= math.log(shows + stray)
+                    slope_here = -d_shows / (shows + stray)
+                else:
+                    total -= math.log(1.0 - shows)
+                    slope_here = d_shows / (1.0 - shows)
+            g_u = slope_here * min(across, 1.0) / width if along < 1.0 else 0.0
+            g_v = slope_here * min(along, 1.0) / width if across < 1.0 else 0.0
+            g_half += g_u
+            g_other += g_v
+            g_u = -g_u if u > 0.0 else g_u if u < 0.0 else 0.0
+            g_v = -g_v if v > 0.0 else g_v if v < 0.0 else 0.0
+            g_x += g_v * sin - g_u * cos
+            g_y += g_u * sin + g_v * cos
+            g_angle += g_u * v - g_v * u
+    slope[0], slope[1], slope[2], slope[3], slope[4] = g_x, g_y, g_half, g_other, g_angle
+    return total

@@ -1,0 +1,188 @@
+"""The commands learn, forget, objects and identify, from the command line as people call them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from tactile_graph.cli import cli
+from tactile_graph.cli.endings import ending
+from tactile_graph.pipeline.load import load
+from tactile_graph_sources.write_npz import write_npz
+
+DISCS = {"small": (500.0, 3.8), "large": (2500.0, 6.9), "strange": (5000.0, 5.0)}
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("recordings")
+    paths = {}
+    for seed, (name, (grams, radius)) in enumerate(DISCS.items()):
+        scene = {"objects": [{"shape": "disc", "name": name, "weight_g": grams,
+                              "radius_cm": radius}]}  # fmt: skip
+        pipeline = load("features").with_source("simulate", scene=scene, frames=12)
+        paths[name] = folder / f"{name}.npz"
+        write_npz(paths[name], pipeline.frames(seed))
+    return paths
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def call(*args: object) -> tuple[int, str]:
+    runner = CliRunner()
+    codes = []
+
+    def run() -> None:
+        with runner.isolation() as (out, err, _):
+            try:
+                codes.append(ending(lambda: cli.main([*map(str, args)], standalone_mode=False),
+                                    False))  # fmt: skip
+            finally:
+                texts.extend((out.getvalue().decode(), err.getvalue().decode()))
+
+    texts: list[str] = []
+    run()
+    return codes[0], "".join(texts)
+
+
+def learned(recordings: dict[str, Path]) -> None:
+    for name in ("small", "large"):
+        assert call("learn", name, recordings[name])[0] == 0
+
+
+def test_objects_are_learned_listed_described_and_forgotten(recordings):
+    code, text = call("learn", "small", recordings["small"], "--frames", 5)
+    assert (code, text.strip()) == (
+        0, "tactile-objects.sqlite: small (disc): 5 readings learned, 5 in all"
+    )  # fmt: skip
+    assert "7 readings learned, 12 in all" in call(
+        "learn", "small", recordings["small"], "--frames", "5:"
+    )[1]  # fmt: skip
+    code, text = call("objects")
+    assert code == 0
+    assert "measured by features, readings in gram" in text
+    assert [line.split()[:3] for line in text.splitlines()[2:]] == [["small", "disc", "12"]]
+    code, text = call("objects", "small")
+    assert code == 0
+    assert "load_offset_cm" in text
+    assert call("forget", "small") == (
+        0, "tactile-objects.sqlite: small forgotten, with 12 readings\n"
+    )  # fmt: skip
+    assert call("objects") == (0, "tactile-objects.sqlite: no objects\n")
+
+
+def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(recordings):
+    learned(recordings)
+    code, text = call("identify", recordings["large"], recordings["strange"], "--frames", "11:14")
+    lines = text.splitlines()
+    assert code == 0
+    assert lines[0].split() == ["frame", "object", "distance", "runner-up", "margin"]
+    assert lines[1].split()[:2] == ["11", "large"]
+    assert lines[1].split()[3] == "small"
+    assert lines[2].split()[:2] == ["12", "unknown"]
+    assert "nearest: large, accepted up to" in lines[2]
+    assert lines[2].endswith("(truly strange)")
+    assert lines[4:] == ["unknown: 2, large: 1", "right: 1 of 3"]
+
+
+def test_export_and_import_move_objects_between_databases(recordings):
+    learned(recordings)
+    assert call("objects", "--export", "o.yaml")[1] == "o.yaml: 2 objects exported\n"
+    assert call("objects", "--import", "o.yaml", "--database", "b.sqlite") == (
+        0, "b.sqlite: 2 objects imported\n"
+    )  # fmt: skip
+    assert call("objects", "--export", "-")[1] == Path("o.yaml").read_text(encoding="utf-8")
+    assert call("objects", "--export", "-", "--database", "b.sqlite")[1] == Path(
+        "o.yaml"
+    ).read_text(encoding="utf-8")
+    code, text = call("objects", "--import", "o.yaml")
+    assert code == 2
+    assert "there already: large, small; forget them first" in text
+    assert call("objects", "--export", "nowhere/o.yaml")[0] == 2
+
+
+def test_frames_that_fail_or_are_empty_are_left_out_and_counted(tmp_path, recordings):
+    Path("p.yaml").write_text(
+        "pipeline: p\nnodes:\n"
+        "  load: {step: load, in: frame}\n"
+        "  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}\n"
+        "  features: {step: features, in: {image: frame, mask: footprint},"
+        " when: load.total > 8}\n"
+        "outputs: [features]\n"
+    )
+    code, text = call("learn", "small", recordings["small"], "--pipeline", "p.yaml")
+    assert code == 2
+    assert "nothing to learn: no frame gave a reading (12 frames: when load.total > 8" in text
+    code, text = call(
+        "learn", "both", recordings["small"], recordings["large"], "--pipeline", "p.yaml"
+    )
+    assert code == 0
+    assert "12 readings learned" in text
+    assert "left out: 12 frames: when load.total > 8 is false\n" in text
+
+
+UNGUARDED = """
+pipeline: p
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  features: {step: features, in: {image: frame, mask: footprint}}
+  identity: {step: mahalanobis, in: features}
+outputs: [features, identity]
+"""
+
+
+def test_frames_that_fail_make_the_exit_code_1_and_the_others_count():
+    Path("p.yaml").write_text(UNGUARDED)
+    scene = "scene={in_turn: [[{shape: disc, weight_g: 900, radius_cm: 4}], []]}"
+    source = ("--source", "simulate", "--with", scene, "--frames", 8, "--pipeline", "p.yaml")
+    code, text = call("learn", "disc", *source)
+    assert code == 1
+    assert "disc (disc): 4 readings learned, 4 in all" in text
+    assert "left out: 4 frames: the footprint is empty" in text
+    code, text = call("identify", *source)
+    assert code == 1
+    assert text.count("failed: the footprint is empty") == 4
+    assert "(failed): 4" in text
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (("learn", "x"), "name the recordings to learn from, or a --source"),
+        (("identify",), "name the recordings to identify, or a --source"),
+        (("objects",), "no such object database; 'tactile-graph learn' makes one"),
+        (("forget", "x"), "no such object database"),
+        (("identify", "--source", "simulate"), "no such object database"),
+        (("objects", "x", "--export", "-"), "give one of NAME, --export and --import"),
+        (("learn", "x", "--source", "simulate", "--pipeline", "circle-3"),
+         "pipeline 'circle-3' gives no measurements, but circle"),
+        (("learn", "x", "--source", "simulate", "--pipeline", "feature"),
+         "did you mean 'features'"),
+        (("learn", "unknown", "--source", "simulate", "--frames", "1"), "must be printable text"),
+        (("learn", "x", "--source", "simulate", "--shape", "disk"), "'disk' is not one of"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_done_is_said_with_exit_code_2(args, message):
+    code, text = call(*args)
+    assert code == 2
+    assert message in " ".join(text.split())
+
+
+def test_names_that_are_not_known_come_with_the_nearest(recordings):
+    learned(recordings)
+    for command in (("forget", "smal"), ("objects", "smal")):
+        code, text = call(*command)
+        assert code == 2
+        assert "no object named 'smal'; did you mean 'small'?" in text
+
+
+def test_a_pipeline_that_does_not_identify_is_refused(recordings):
+    learned(recordings)
+    code, text = call("identify", recordings["small"], "--pipeline", "features")
+    assert code == 2
+    assert "pipeline 'features' has no such node; name one with --only" in text

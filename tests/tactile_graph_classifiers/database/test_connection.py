@@ -1,0 +1,248 @@
+"""A database that others read and write at the same time, that is killed, or is none."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_classifiers import SETTING, lesson
+from tactile_graph.errors import DataError
+from tactile_graph_classifiers.database.rows import Lesson
+from tactile_graph_classifiers.database.store import ObjectDatabase
+from tactile_graph_classifiers.statistics import Statistics
+
+LESSON = 40
+
+WRITER = """
+import sys
+import numpy as np
+from tactile_graph_classifiers.database import rows as table
+from tactile_graph_classifiers.database.rows import Lesson, Setting
+from tactile_graph_classifiers.database.store import ObjectDatabase
+
+keep = table.keep
+def slow(connection, number, statistics):
+    # all rows but the statistics are written by now: half a lesson is on the disc
+    keep(connection, number, statistics)
+    if statistics.n > 80:
+        connection.execute("PRAGMA cache_spill = 1")
+        connection.execute("PRAGMA cache_size = 1")
+        rows = [(number, "filler") for _ in range(4000)]
+        connection.executemany("INSERT INTO readings (object_id, source) VALUES (?, ?)", rows)
+        print("within", flush=True)
+        sys.stdin.read()
+table.keep = slow
+rng = np.random.default_rng(0)
+database = ObjectDatabase(sys.argv[1])
+for k in range(3):
+    rows = rng.normal(1000.0, 10.0, (40, 2))
+    database.learn(Setting(("weight", "area_cm2"), "gram", "features"),
+                   [Lesson("x", "", rows, [""] * 40)])
+    print("learned", k, flush=True)
+"""
+
+LOOP = """
+import sys
+import numpy as np
+from tactile_graph_classifiers.database.rows import Lesson, Setting
+from tactile_graph_classifiers.database.store import ObjectDatabase
+rng = np.random.default_rng(0)
+database = ObjectDatabase(sys.argv[1])
+while True:
+    rows = rng.normal(1000.0, 10.0, (40, 2))
+    database.learn(Setting(("weight", "area_cm2"), "gram", "features"),
+                   [Lesson("x", "", rows, [""] * 40)])
+    print("learned", flush=True)
+"""
+
+
+def whole(path: Path) -> int:
+    """Check that the database is whole and its statistics fit; return its number of readings."""
+    it = ObjectDatabase(path).known().objects[0]
+    connection = sqlite3.connect(path)
+    assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert connection.execute("PRAGMA foreign_key_check").fetchall() == []
+    connection.close()
+    wanted = Statistics.of(it.readings)
+    assert it.statistics.n == len(it.readings)
+    np.testing.assert_allclose(it.statistics.mean, wanted.mean)
+    np.testing.assert_allclose(it.statistics.covariance, wanted.covariance)
+    return it.statistics.n
+
+
+def started(script: str, path: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", script, str(path)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def killed(process: subprocess.Popen[str]) -> None:
+    os.kill(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+def test_a_writer_killed_within_a_lesson_leaves_the_lessons_before_it(tmp_path):
+    path = tmp_path / "objects.sqlite"
+    process = started(WRITER, path)
+    assert process.stdout is not None
+    lines = [process.stdout.readline().strip() for _ in range(3)]
+    killed(process)
+    assert lines == ["learned 0", "learned 1", "within"]
+    # the journal of the unfinished lesson is there, and pages of it are in the file already
+    assert path.with_name(path.name + "-journal").stat().st_size > 0
+    assert whole(path) == 2 * LESSON
+    ObjectDatabase(path).learn(SETTING, [lesson("x", (1, 1))])
+    assert whole(path) == 2 * LESSON + 1
+
+
+def test_a_writer_killed_at_any_moment_leaves_whole_lessons(tmp_path):
+    path = tmp_path / "objects.sqlite"
+    process = started(LOOP, path)
+    assert process.stdout is not None
+    for _ in range(5):
+        process.stdout.readline()
+    killed(process)
+    n = whole(path)
+    assert n >= 5 * LESSON
+    assert n % LESSON == 0
+
+
+def test_readers_see_whole_lessons_while_a_writer_learns(tmp_path):
+    path = tmp_path / "objects.sqlite"
+    rng = np.random.default_rng(0)
+    database = ObjectDatabase(path)
+    learn = lambda: database.learn(  # noqa: E731
+        SETTING, [Lesson("x", "", rng.normal(size=(LESSON, 2)), [""] * LESSON)]
+    )
+    learn()
+    seen: list[int] = []
+    troubles: list[BaseException] = []
+    done = threading.Event()
+
+    def read() -> None:
+        try:
+            while not done.is_set():
+                it = ObjectDatabase(path).known().objects[0]
+                assert len(it.readings) == it.statistics.n
+                seen.append(it.statistics.n)
+        except BaseException as error:
+            troubles.append(error)
+
+    readers = [threading.Thread(target=read) for _ in range(3)]
+    for reader in readers:
+        reader.start()
+    for _ in range(12):
+        learn()
+    done.set()
+    for reader in readers:
+        reader.join()
+    assert not troubles
+    assert all(n % LESSON == 0 for n in seen)
+    assert whole(path) == 13 * LESSON
+
+
+def test_two_writers_that_make_the_database_at_once_both_succeed(tmp_path):
+    path = tmp_path / "objects.sqlite"
+    troubles: list[BaseException] = []
+
+    def write(name: str) -> None:
+        try:
+            ObjectDatabase(path).learn(SETTING, [lesson(name, (1, 2), (3, 4))])
+        except BaseException as error:
+            troubles.append(error)
+
+    writers = [threading.Thread(target=write, args=(f"object {i}",)) for i in range(6)]
+    for writer in writers:
+        writer.start()
+    for writer in writers:
+        writer.join()
+    assert not troubles
+    assert {s.name for s in ObjectDatabase(path).summaries()} == {f"object {i}" for i in range(6)}
+
+
+def test_a_locked_database_says_so_after_the_wait(tmp_path):
+    database = ObjectDatabase(tmp_path / "o.sqlite", timeout_s=0.05)
+    database.learn(SETTING, [lesson("a", (1, 1))])
+    other = sqlite3.connect(database.path, isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    assert database.summaries()[0].name == "a"  # who has not begun to commit hinders no reader
+    with pytest.raises(DataError, match=r"o.sqlite: is locked by another program since 0.05 s"):
+        database.learn(SETTING, [lesson("b", (1, 1))])
+    other.execute("ROLLBACK")
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(DataError, match="is locked by another program"):
+        database.summaries()
+    other.close()
+
+
+def test_a_missing_database_is_an_error_with_the_nearest_name(tmp_path):
+    ObjectDatabase(tmp_path / "objects.sqlite").learn(SETTING, [lesson("a", (1, 1))])
+    with pytest.raises(DataError, match=r"no such object database; did you mean 'objects.sqlite'"):
+        ObjectDatabase(tmp_path / "object.sqlite").summaries()
+    with pytest.raises(DataError, match="is a folder, not an object database"):
+        ObjectDatabase(tmp_path).summaries()
+    with pytest.raises(DataError, match="there is no folder"):
+        ObjectDatabase(tmp_path / "x" / "o.sqlite").learn(SETTING, [lesson("a", (1, 1))])
+    assert not (tmp_path / "object.sqlite").exists()
+
+
+def test_a_file_that_is_no_database_is_left_alone(tmp_path):
+    path = tmp_path / "notes.txt"
+    path.write_text("not a database at all, but long enough to be taken for one\n" * 20)
+    for use in (
+        ObjectDatabase(path).summaries,
+        lambda: ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))]),
+    ):
+        with pytest.raises(DataError, match="is no object database: not an SQLite file"):
+            use()
+    assert path.read_text().startswith("not a database")
+
+
+def test_an_empty_file_holds_no_object_but_can_be_learned_into(tmp_path):
+    path = tmp_path / "o.sqlite"
+    path.touch()
+    with pytest.raises(DataError, match="is empty: no object was learned yet"):
+        ObjectDatabase(path).summaries()
+    with pytest.raises(DataError, match="is empty: no object was learned yet"):
+        ObjectDatabase(path).forget("a")
+    ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
+    assert ObjectDatabase(path).summaries()[0].name == "a"
+
+
+def test_another_programs_database_is_left_alone(tmp_path):
+    path = tmp_path / "o.sqlite"
+    with sqlite3.connect(path) as other:
+        other.execute("CREATE TABLE songs (name TEXT)")
+    other.close()
+    with pytest.raises(DataError, match="is an SQLite database, but not one of objects"):
+        ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
+
+
+def test_a_newer_schema_is_refused_and_says_what_to_do(tmp_path):
+    path = tmp_path / "o.sqlite"
+    ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
+    with sqlite3.connect(path) as newer:
+        newer.execute("PRAGMA user_version = 7")
+    newer.close()
+    with pytest.raises(DataError, match=r"has schema 7, .* reads schema 1; update tactile-graph"):
+        ObjectDatabase(path).summaries()
+
+
+def test_a_damaged_database_is_an_error_in_words(tmp_path):
+    path = tmp_path / "o.sqlite"
+    rows = np.ones((500, 2))
+    ObjectDatabase(path).learn(SETTING, [Lesson("a", "", rows, ["somewhere"] * 500)])
+    data = bytearray(path.read_bytes())
+    data[4096:] = b"\xff" * (len(data) - 4096)
+    path.write_bytes(data)
+    with pytest.raises(DataError, match="is damaged"):
+        ObjectDatabase(path).known()

@@ -1,0 +1,116 @@
+from __future__ import annotations
+
+import sqlite3
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from helpers_classifiers import PAIR, SETTING, lesson, three_objects
+from tactile_graph.errors import DataError, UsageError
+from tactile_graph_classifiers.database.rows import Lesson, Setting
+from tactile_graph_classifiers.database.store import ObjectDatabase
+from tactile_graph_classifiers.statistics import Statistics
+
+
+@pytest.fixture
+def database(tmp_path):
+    return ObjectDatabase(tmp_path / "objects.sqlite", timeout_s=0.1)
+
+
+def test_what_was_learned_is_known_with_readings_sources_and_shape(database):
+    database.learn(
+        SETTING, [lesson("a", (1.0, 2.0), (3.0, 5.0), shape="disc"), lesson("b", (9, 9))]
+    )
+    known = database.known()
+    assert (known.features, known.quantity, known.pipeline) == (PAIR, "gram", "features")
+    assert known.names == ("a", "b")
+    assert known.objects[0].readings.tolist() == [[1.0, 2.0], [3.0, 5.0]]
+    assert known.objects[0].sources == ("a 0", "a 1")
+    assert known.objects[0].shape == "disc"
+    assert known.counts.tolist() == [2.0, 1.0]
+
+
+def test_statistics_kept_as_readings_come_are_those_of_all_readings_at_once(database):
+    rows = three_objects()["heavy"]
+    for part in np.array_split(rows, [1, 2, 9, 9]):
+        database.learn(SETTING, [Lesson("x", "", part, [""] * len(part))])
+    it = database.known().objects[0]
+    wanted = Statistics.of(rows)
+    np.testing.assert_allclose(it.statistics.mean, wanted.mean)
+    np.testing.assert_allclose(it.statistics.covariance, wanted.covariance)
+    np.testing.assert_array_equal(it.readings, rows)
+    assert it.statistics.n == 25
+
+
+def test_every_order_of_learning_gives_the_same_statistics(tmp_path):
+    rows = [(1.0, 5.0), (2.0, -1.0), (4.0, 0.5)]
+    for k, order in enumerate(permutations(range(3))):
+        database = ObjectDatabase(tmp_path / f"{k}.sqlite")
+        for i in order:
+            database.learn(SETTING, [lesson("x", rows[i])])
+        found = database.known().objects[0].statistics
+        np.testing.assert_allclose(found.covariance, np.cov(np.array(rows).T))
+
+
+def test_more_readings_keep_the_shape_unless_another_is_given(database):
+    database.learn(SETTING, [lesson("a", (1, 1), shape="disc")])
+    database.learn(SETTING, [lesson("a", (1, 1))])
+    assert [(s.name, s.shape, s.n_readings) for s in database.summaries()] == [("a", "disc", 2)]
+    database.learn(SETTING, [lesson("a", (1, 1), shape="polygon")])
+    assert database.summaries()[0].shape == "polygon"
+
+
+def test_a_forgotten_object_leaves_no_row_behind(database):
+    database.learn(SETTING, [lesson("a", (1, 1), (2, 2)), lesson("b", (3, 3))])
+    assert database.forget("a") == 2
+    assert database.known().names == ("b",)
+    with sqlite3.connect(database.path) as connection:
+        counts = {
+            table: connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
+            for table in ("objects", "readings", "reading_values", "means", "scatters")
+        }
+    connection.close()
+    assert counts == {
+        "objects": 1, "readings": 1, "reading_values": 2, "means": 2, "scatters": 3
+    }  # fmt: skip
+
+
+def test_forgetting_what_is_not_there_names_the_nearest(database):
+    database.learn(SETTING, [lesson("Disc I", (1, 1))])
+    with pytest.raises(UsageError, match="no object named 'Disk I'; did you mean 'Disc I'"):
+        database.forget("Disk I")
+    with pytest.raises(UsageError, match="no object named 'zzz'; there are: Disc I"):
+        database.forget("zzz")
+
+
+@pytest.mark.parametrize("name", ["", "  ", "unknown", "a\x07b"])
+def test_a_name_must_be_printable_and_not_unknown(database, name):
+    with pytest.raises(UsageError, match="an object's name must be printable text other than"):
+        database.learn(SETTING, [lesson(name, (1, 1))])
+
+
+def test_other_features_or_another_unit_go_into_a_database_of_their_own(database):
+    database.learn(SETTING, [lesson("a", (1, 1))])
+    with pytest.raises(
+        UsageError, match=r"readings are in gram, the new ones in volt; .*\(here fe"
+    ):
+        database.learn(Setting(PAIR, "volt"), [lesson("a", (1, 1))])
+    with pytest.raises(UsageError, match="the new readings lack area_cm2 and have holes besides"):
+        database.learn(Setting(("weight", "holes"), "gram"), [lesson("a", (1, 1))])
+    with pytest.raises(UsageError, match="hold the features in another order"):
+        database.learn(Setting(PAIR[::-1], "gram"), [lesson("a", (1, 1))])
+    assert database.summaries()[0].n_readings == 1
+
+
+def test_all_lessons_are_learned_or_none(database):
+    database.learn(SETTING, [lesson("a", (1, 1))])
+    with pytest.raises(UsageError, match="there already: a; forget them first"):
+        database.learn(SETTING, [lesson("b", (1, 1)), lesson("a", (2, 2))], new=True)
+    with pytest.raises(DataError, match="a reading holds a value that is no finite number"):
+        database.learn(SETTING, [lesson("b", (1, 1)), lesson("c", (np.nan, 2))])
+    with pytest.raises(UsageError, match=r"readings must be of shape \(n, 2\), got \(1, 3\)"):
+        database.learn(SETTING, [lesson("b", (1, 1, 1))])
+    with pytest.raises(UsageError, match="1 readings but 0 sources"):
+        database.learn(SETTING, [Lesson("b", "", np.ones((1, 2)), [])])
+    assert [s.name for s in database.summaries()] == ["a"]
