@@ -59,7 +59,7 @@ class Decouple:
             If a valid cell holds NaN or infinity.
         """
         volts = image.filled(0.0)
-        if not all_finite(volts):
+        if not all_finite.call(volts):
             refuse_nan(image, infinite=True)
         found = self._circuit.inverse(volts / self._circuit.supply_v)
         if found.residual > self._max_residual:

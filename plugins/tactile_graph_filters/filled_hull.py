@@ -111,7 +111,7 @@ def misfit(owner, values, known, group, left, right, rules):  # type: ignore[no-
             ends += 1
         for j in range(left[i], right[i] + 1):
             held = owner[i, j]
-            if held == group[0] or held == group[1] or held == group[2]:  # noqa: PLR1714
+            if held == group[0] or held == group[1] or held == group[2]:
                 n += 1
                 total += values[i, j]
     result = DOUBT * max(0.0, 1.0 - n / usual_cells) if usual_cells > 0 else 0.0
@@ -143,7 +143,7 @@ def misfit(owner, values, known, group, left, right, rules):  # type: ignore[no-
             if deep and known[i, j]:
                 result -= voids
             held = owner[i, j]
-            if held == group[0] or held == group[1] or held == group[2]:  # noqa: PLR1714
+            if held == group[0] or held == group[1] or held == group[2]:
                 if deep and values[i, j] < limit:
                     result += WEAK * (1.0 - values[i, j] / limit)
             elif held > 0:

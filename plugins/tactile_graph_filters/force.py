@@ -11,9 +11,10 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 from pydantic import AfterValidator
 
+from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
-from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.nan import refuse_nan
 
 Values = NDArray[np.float64]
 
@@ -33,6 +34,26 @@ def _rising(curve: list[tuple[float, float]] | None) -> list[tuple[float, float]
 
 
 Curve = Annotated[list[tuple[float, float]] | None, AfterValidator(_rising)]
+
+
+def _floored_plain(grams: Values, floor_g: float) -> bool:
+    """Put loads below ``floor_g`` to 0, in place; return whether no load is NaN or infinite."""
+    finite = bool(np.isfinite(grams).all())
+    grams[grams < floor_g] = 0.0
+    return finite
+
+
+@compiled_twin_of(_floored_plain)
+def floored(grams, floor_g):  # type: ignore[no-untyped-def]
+    """Put loads below ``floor_g`` to 0, in place; return whether no load is NaN or infinite."""
+    bad = 0
+    for i in range(grams.shape[0]):
+        row = grams[i]
+        for j in range(grams.shape[1]):
+            bad += row[j] - row[j] != 0  # NaN for NaN and infinity
+            if row[j] < floor_g:
+                row[j] = 0.0
+    return bad == 0
 
 
 Calibrated = tuple[list[tuple[float, float]] | None, list[float] | None, float | None, str]
@@ -142,14 +163,12 @@ class Force:
             )
         grams = self._grams(np.ascontiguousarray(image.values, np.float64))
         valid = image.valid
-        if not all_finite(grams):
+        if not floored.call(grams, self._floor_g):
             refuse_nan(image)
             known = np.isfinite(grams)
             valid = known if valid is None else valid & known
         if valid is not None:
             grams = np.where(valid, grams, 0.0)
-        if self._floor_g > 0.0:
-            grams *= grams >= self._floor_g
         return Image(grams, image.pitch_cm, image.origin_cm, "gram", valid)
 
     def _grams(self, readings: Values) -> Values:

@@ -201,7 +201,7 @@ class ForceLaw:
         siemens : ndarray of float64, shape (rows, columns)
             Conductances; 0 or less gives 0 g, `max_siemens` or more gives inf.
         """
-        return load_kernel(np.ascontiguousarray(siemens, dtype=np.float64), self.packed)
+        return load_kernel.call(np.ascontiguousarray(siemens, dtype=np.float64), self.packed)
 
     def resistance_at(self, load_g: float) -> float:
         """Return the resistance in ohm under one load; inf at 0."""

@@ -2,10 +2,13 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from helpers_filters import image_of, same_grid
 from tactile_graph.errors import DataError
-from tactile_graph_filters.force import Force
+from tactile_graph_filters.force import Force, floored
 
 
 def test_the_thesis_law_passes_through_its_two_points():
@@ -101,3 +104,11 @@ def test_loads_below_the_floor_are_none_at_all():
     image = image_of([[0.004, 0.006, 0.02]], "volt")
     step = Force(polynomial=[0.0, 1000.0], floor_g=5.0)
     assert step(image).values == pytest.approx(np.array([[0.0, 6.0, 20.0]]))
+
+
+@given(arrays(np.float64, (4, 5)), st.floats(0, 100))
+def test_the_twins_that_put_loads_below_the_floor_to_0_agree(grams, floor_g):
+    pytest.importorskip("numba")
+    first, second = grams.copy(), grams.copy()
+    assert floored.reference(first, floor_g) == floored.compiled(second, floor_g)
+    assert np.array_equal(first, second, equal_nan=True)

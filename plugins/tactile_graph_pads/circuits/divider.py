@@ -7,6 +7,7 @@ shadows itself; nothing leaks between columns (thesis sections 2.2, 2.3 and figu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -95,12 +96,12 @@ class Divider:
     mux_ohm: Annotated[float, Ge(0)] = 0.0
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
-    @property
+    @cached_property
     def reference_s(self) -> float:
         """Conductance from column to ground while it is read."""
         return 1.0 / (self.bias_ohm + self.mux_ohm)
 
-    @property
+    @cached_property
     def gain(self) -> float:
         """Share of the column's voltage that stands over the bias resistor."""
         return self.bias_ohm * self.reference_s
@@ -126,7 +127,7 @@ class Divider:
         ``g_ij = v_ij G_ref / (1 - T_j)`` with ``T_j = sum_i v_ij``, exact for ideal drivers. A
         column with T_j at or above 1 is impossible and comes out invalid, never clipped.
         """
-        siemens, valid = siemens_kernel(ratio, self.reference_s, self.gain)
+        siemens, valid = siemens_kernel.call(ratio, self.reference_s, self.gain)
         if self.driver_ohm == 0.0:
             return Inverse(siemens, valid)
         guess = siemens if start is None else start
