@@ -20,7 +20,7 @@ _STEPS = {
     "inpaint": "inpaint:inpaint",
     "load": "load:LoadOf",
     "low_pass": "low_pass:LowPass",
-    "mask_bad": "mask_bad:mask_bad",
+    "mask": "mask:mask",
     "open": "open:Open",
     "sharpen_contacts": "sharpen_contacts:sharpen_contacts",
     "skeleton": "skeleton:skeleton",

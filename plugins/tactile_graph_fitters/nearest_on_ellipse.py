@@ -13,27 +13,15 @@ Values = NDArray[np.float64]
 
 
 @compiled_as_is
-def nearest(a: float, b: float, x: float, y: float) -> tuple[float, float]:
-    """Return the point nearest to (x, y) of the ellipse with half axes a along x and b along y.
-
-    Solves (a x / (t + a**2))**2 + (b y / (t + b**2))**2 = 1 for its greatest root, in the first
-    quadrant and scaled by the smaller half axis, by Newton's method from below, where
-    the left side is convex and falling; safe for points on the axes and in the centre. Source:
-    D. Eberly 2013, Distance from a point to an ellipse.
-    """
-    if a < b:
-        v, u = nearest(b, a, y, x)
-        return u, v
-    px, py = abs(x), abs(y)
+def _first_quadrant(a: float, b: float, px: float, py: float) -> tuple[float, float]:
+    """Return the nearest point for a >= b and a point with coordinates >= 0."""
     if py <= 1e-300 or py <= 1e-15 * b:
         # On the major axis: below the centre of curvature's reach the foot leaves the axis.
         reach = a * a - b * b
         if a * px < reach:
             cos = a * px / reach
-            fx, fy = a * cos, b * math.sqrt(max(0.0, 1.0 - cos * cos))
-        else:
-            fx, fy = a, 0.0
-        return math.copysign(fx, x), math.copysign(fy, y)
+            return a * cos, b * math.sqrt(max(0.0, 1.0 - cos * cos))
+        return a, 0.0
     ratio = (a / b) ** 2
     zx, zy = px / a, py / b
     # s = t / b**2 + 1 > 0; the foot is (ratio px / (s + ratio - 1), py / s).
@@ -47,7 +35,23 @@ def nearest(a: float, b: float, x: float, y: float) -> tuple[float, float]:
         if not following > s * (1.0 + 4e-16):
             break
         s = following
-    return math.copysign(ratio * px / (s + more), x), math.copysign(py / s, y)
+    return ratio * px / (s + more), py / s
+
+
+@compiled_as_is
+def nearest(a: float, b: float, x: float, y: float) -> tuple[float, float]:
+    """Return the point nearest to (x, y) of the ellipse with half axes a along x and b along y.
+
+    Solves (a x / (t + a**2))**2 + (b y / (t + b**2))**2 = 1 for its greatest root, in the first
+    quadrant and scaled by the smaller half axis, by Newton's method from below, where
+    the left side is convex and falling; safe for points on the axes and in the centre. Source:
+    D. Eberly 2013, Distance from a point to an ellipse.
+    """
+    if a < b:
+        fy, fx = _first_quadrant(b, a, abs(y), abs(x))
+    else:
+        fx, fy = _first_quadrant(a, b, abs(x), abs(y))
+    return math.copysign(fx, x), math.copysign(fy, y)
 
 
 @compiled_as_is

@@ -1,4 +1,4 @@
-"""Step ``mask_bad``: the listed broken elements made invalid."""
+"""Step ``mask``: the listed broken elements made invalid."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tactile_graph.wires import Image
 Index = Annotated[int, Ge(0)]
 
 
-def mask_bad(
+def mask(
     image: Image,
     *,
     cells: tuple[tuple[Index, Index], ...] = (),
@@ -45,7 +45,7 @@ def mask_bad(
     for row, column in [*cells, *((row, 0) for row in rows), *((0, column) for column in columns)]:
         if row >= n_rows or column >= n_columns:
             raise DataError(
-                "mask_bad",
+                "mask",
                 f"row {row}, column {column} is not on an image of {n_rows} x {n_columns},"
                 " counted from 0",
             )

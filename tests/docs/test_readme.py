@@ -1,0 +1,57 @@
+"""The README's commands, files and code do what it says."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from tactile_graph import load, loads
+from tactile_graph.cli import cli
+
+ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
+pytestmark = pytest.mark.skipif(not README.is_file(), reason="the README is not beside the tests")
+
+
+def block(kind: str) -> str:
+    found = re.search(rf"^```{kind}\n(.*?)^```", README.read_text(encoding="utf-8"), re.M | re.S)
+    assert found is not None, kind
+    return found.group(1)
+
+
+def test_the_first_command_sets_up_and_locates_the_bundled_discs_and_draws_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = block("sh run").strip().split(" && ")
+    assert steps[:2] == ["python3 -m venv .venv", ".venv/bin/pip install -q ."]
+    program, *arguments = shlex.split(steps[2])
+    assert program == ".venv/bin/tactile-graph"
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(cli, arguments)
+    assert result.exit_code == 0, result.output
+    assert "6 with all outputs" in result.output
+    assert (tmp_path / "strip.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_second_command_sets_up_and_runs_the_tests() -> None:
+    steps = block("sh test").strip().split(" && ")
+    assert steps == [
+        "python3 -m venv .venv",
+        ".venv/bin/pip install -q -e '.[test]'",
+        ".venv/bin/pytest",
+    ]
+
+
+def test_the_pipeline_shown_is_the_one_shipped() -> None:
+    assert block("yaml") == load("circle-3").text
+    assert loads(block("yaml")).key == load("circle-3").key
+
+
+def test_the_python_shown_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    for code in re.findall(r"^```python\n(.*?)^```", README.read_text("utf-8"), re.M | re.S):
+        exec(compile(code, "README.md", "exec"), {"__name__": "readme"})
+    assert "FittedCircle" in capsys.readouterr().out
