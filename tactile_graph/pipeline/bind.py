@@ -36,14 +36,14 @@ def bind_inputs(
             bindings.append(binding)
     complete = len(bindings) == len(wired)
     if declared.each and not n_lists and complete:
-        resolver._problem(declared, ": 'each' needs a list on one of its ports", "each")
+        resolver.problem(declared, ": 'each' needs a list on one of its ports", "each")
     return tuple(bindings)
 
 
 def _missing(
     resolver: Resolver, declared: NodeDeclaration, signature: Signature, port: Port
 ) -> None:
-    resolver._problem(
+    resolver.problem(
         declared,
         f": port {port.name!r} of step {signature.name!r} is not wired ({type_name(port.type)})",
         *(("in",) if declared.inputs is not None else ()),
@@ -59,13 +59,13 @@ def _by_port(
     if wired is None or wired == [] or wired == {}:
         return {}
     if not ports:
-        resolver._problem(declared, f": step {signature.name!r} has no ports", "in")
+        resolver.problem(declared, f": step {signature.name!r} has no ports", "in")
         return {}
     if isinstance(wired, dict):
         for name in [n for n in wired if n not in names]:
             hint = did_you_mean(name, names) or f"; ports: {one_of(names)}"
             text = f": step {signature.name!r} has no port {name!r}{hint}"
-            resolver._problem(declared, text, "in", name, key=True)
+            resolver.problem(declared, text, "in", name, key=True)
         return {n: w for n, w in wired.items() if n in names}
     if isinstance(wired, str):
         return {names[0]: wired}
@@ -75,7 +75,7 @@ def _by_port(
         text = (
             f": {len(wired)} inputs for {len(ports)} ports of {signature.name!r} ({one_of(names)})"
         )
-        resolver._problem(declared, text, "in")
+        resolver.problem(declared, text, "in")
     return dict(zip(names, wired, strict=False))
 
 
@@ -95,7 +95,7 @@ def _bind(
     over_list = False
     if collects and port.item is None:
         text = f": port {port.name!r} of {signature.name!r} takes one input, not a list"
-        resolver._problem(declared, text, *path)
+        resolver.problem(declared, text, *path)
         return None, False
     wanted = port.item if collects else port.type
     for i, text in enumerate(texts):
@@ -109,7 +109,7 @@ def _bind(
         if fitted is None and declared.each and item is not None and not collects:
             fitted, over_list = fit(ref, list[item], list[wanted]), True  # type: ignore[valid-type]
         if fitted is None:
-            resolver._problem(declared, _misfit(signature, port, text, kind, wanted, item), *place)
+            resolver.problem(declared, _misfit(signature, port, text, kind, wanted, item), *place)
             return None, over_list
         refs.append(fitted)
     return Binding(port, tuple(refs), collects, over_list), over_list

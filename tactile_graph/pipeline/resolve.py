@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
 from numpy.random import default_rng
@@ -21,17 +19,17 @@ from tactile_graph.errors import (
 )
 from tactile_graph.pipeline import conditions
 from tactile_graph.pipeline.bind import bind_inputs
-from tactile_graph.pipeline.conditions import ConditionError, Guard, compile_condition, names_in
+from tactile_graph.pipeline.conditions import ConditionError, Guard, compile_condition
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 from tactile_graph.pipeline.facts import (
-    embedded_rules,
     output_facts,
-    ref_facts,
     source_facts,
     step_troubles,
 )
 from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule, Node, NodeKind, node_key
+from tactile_graph.pipeline.order import resolvable_order
 from tactile_graph.pipeline.pipeline import Pipeline, Source, plain
+from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import Trouble, validate_settings
@@ -103,12 +101,17 @@ class Resolver:
         """Return the pipeline; it is only fit to run if the document has no problems."""
         source = self._source()
         self.scope.facts[FRAME] = source_facts(None if self.embedded else source)
-        for name in self._order():
+        order, cycles = resolvable_order(self.declaration)
+        for loop in cycles:
+            text = f"the nodes form a cycle: {' -> '.join(loop)}"
+            self.document.problem(text, "nodes", loop[0], key=True)
+            self.scope.types.update(dict.fromkeys(loop, UNKNOWN))
+        for name in order:
             declared = self.declaration.nodes[name]
             try:
                 self._node(declared)
             except TactileGraphError as error:
-                self._problem(declared, str(error))
+                self.problem(declared, str(error))
                 self.scope.types.setdefault(name, UNKNOWN)
         self._check_conditions()
         self._check_overrides()
@@ -121,9 +124,10 @@ class Resolver:
             overrides=self.overrides, source_override=self.replaced_source,
         )  # fmt: skip
 
-    def _problem(
+    def problem(
         self, node: NodeDeclaration, message: str, *path: str | int, key: bool = False
     ) -> None:
+        """Note what is wrong with a node, at a place within it."""
         self.document.problem(
             f"node {node.name!r}{message_join(message)}", *node.path, *path, key=key
         )
@@ -153,44 +157,6 @@ class Resolver:
             self.document.problem(f"source, {where}{message}", "source", "with", *path)
         return Source(signature, values, mark)
 
-    # -- order -------------------------------------------------------------------------------
-
-    def _order(self) -> list[str]:
-        """Return the nodes, each after those it reads; a cycle is reported as a path."""
-        graph = {name: sorted(self._reads(n)) for name, n in self.declaration.nodes.items()}
-        while True:
-            try:
-                return _in_file_order(graph)
-            except CycleError as error:
-                self._cut_cycle(graph, list(reversed(error.args[1])))
-
-    def _cut_cycle(self, graph: dict[str, list[str]], loop: list[str]) -> None:
-        """Report a cycle and cut it, so that its nodes are still checked in all else."""
-        text = f"the nodes form a cycle: {' -> '.join(loop)}"
-        self.document.problem(text, "nodes", loop[0], key=True)
-        for name in set(loop):
-            self.scope.types[name] = UNKNOWN
-            graph[name] = [r for r in graph[name] if r not in loop]
-
-    def _reads(self, node: NodeDeclaration) -> set[str]:
-        texts: list[str] = list(node.first_of or [])
-        values = node.inputs.values() if isinstance(node.inputs, dict) else [node.inputs]
-        for value in values:
-            texts += value if isinstance(value, list) else [value] if value else []
-        names = {t.partition(".")[0] for t in texts}
-        if node.when:
-            names |= self._names_in(node.when)
-        return names & self.declaration.nodes.keys()
-
-    def _names_in(self, text: str) -> set[str]:
-        found = set[str]()
-        waiting = [text]
-        while waiting:
-            names = names_in(waiting.pop()) - found
-            found |= names
-            waiting += [self.declaration.conditions.get(n, "") for n in sorted(names)]
-        return found
-
     # -- nodes -------------------------------------------------------------------------------
 
     def _node(self, declared: NodeDeclaration) -> None:
@@ -198,7 +164,7 @@ class Resolver:
         if declared.first_of is not None:
             self._first_of(declared, guard)
         elif declared.use:
-            self._use(declared, guard)
+            resolve_use(self, declared, guard)
         elif declared.step:
             self._step(declared, guard)
         else:
@@ -220,13 +186,16 @@ class Resolver:
         column = mark.column + (error.offset if "\n" not in text else 0)
         self.document.problem_at(Mark(mark.file, mark.line, column), message)
 
-    def _mark(self, declared: NodeDeclaration) -> Mark:
+    def mark(self, declared: NodeDeclaration) -> Mark:
+        """Return where the file names the node."""
         return self.document.mark(*declared.path, key=True)
 
-    def _guard_key(self, guard: Guard | None) -> object:
-        return None if guard is None else (guard.text, [self._ref_key(r) for r in guard.refs])
+    def guard_key(self, guard: Guard | None) -> object:
+        """Return what makes two guards equal."""
+        return None if guard is None else (guard.text, [self.ref_key(r) for r in guard.refs])
 
-    def _ref_key(self, ref: Ref) -> tuple[object, ...]:
+    def ref_key(self, ref: Ref) -> tuple[object, ...]:
+        """Return what makes two references equal."""
         return (self.scope.keys.get(ref.node, ref.node), ref.path, ref.item_path)
 
     def ref(self, declared: NodeDeclaration, text: str, *path: str | int) -> tuple[Ref, Any] | None:
@@ -234,7 +203,7 @@ class Resolver:
         try:
             ref, kind = conditions.resolve(tuple(text.split(".")), self.scope.types, [])
         except ConditionError as error:
-            self._problem(declared, f": {error.message}", *path)
+            self.problem(declared, f": {error.message}", *path)
             return None
         return ref, kind
 
@@ -246,9 +215,9 @@ class Resolver:
         kind = common_type([f[1] for f in found if f]) if choices else UNKNOWN
         facts = [self.scope.facts.get(c.node, Facts()) for c in choices if not c.path]
         same = facts[0] if len(facts) == len(choices) and len(set(facts)) == 1 else Facts()
-        key = node_key("first_of", [self._ref_key(c) for c in choices], self._guard_key(guard))
+        key = node_key("first_of", [self.ref_key(c) for c in choices], self.guard_key(guard))
         self.scope.add(
-            Node(declared.name, NodeKind.FIRST_OF, kind, self._mark(declared), choices=choices,
+            Node(declared.name, NodeKind.FIRST_OF, kind, self.mark(declared), choices=choices,
                  guard=guard, facts=same, key=key)
         )  # fmt: skip
 
@@ -268,18 +237,18 @@ class Resolver:
                 if found not in self.document.problems:
                     self.document.problems.append(found)
             else:
-                self._problem(declared, where + message, "with", *path)
+                self.problem(declared, where + message, "with", *path)
 
     def _step(self, declared: NodeDeclaration, guard: Guard | None) -> None:
         assert declared.step is not None
         try:
             signature = self.registry.step(declared.step)
         except (UsageError, PluginError) as error:
-            self._problem(declared, f": {error}", "step")
+            self.problem(declared, f": {error}", "step")
             self.scope.types[declared.name] = UNKNOWN
             return
         if signature.kind is Kind.SOURCE:
-            self._problem(
+            self.problem(
                 declared, f": {declared.step!r} is a source; it belongs under 'source'", "step"
             )
         before = len(self.document.problems)
@@ -291,14 +260,14 @@ class Resolver:
             output = list[output]
             if signature.stateful:
                 text = f": a stateful step ({declared.step}) cannot run for each item"
-                self._problem(declared, text, "each")
+                self.problem(declared, text, "each")
         key = node_key(
             declared.step, sorted(plain(settings).items()), declared.each,
-            [(b.port.name, [self._ref_key(r) for r in b.refs]) for b in inputs],
-            self._guard_key(guard),
+            [(b.port.name, [self.ref_key(r) for r in b.refs]) for b in inputs],
+            self.guard_key(guard),
         )  # fmt: skip
         node = Node(
-            declared.name, NodeKind.STEP, output, self._mark(declared), signature, settings, inputs,
+            declared.name, NodeKind.STEP, output, self.mark(declared), signature, settings, inputs,
             guard=guard, each=declared.each, key=key,
             facts=output_facts(signature, settings, inputs, self.scope.facts),
         )  # fmt: skip
@@ -312,7 +281,7 @@ class Resolver:
             rng = node.signature.rng if node.signature and node.signature.rng_at_init else ""
             return replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
         except Exception as error:  # a constructor may raise anything about its settings
-            self._problem(declared, f": {error}", "with")
+            self.problem(declared, f": {error}", "with")
             return node
 
     def _rules(
@@ -329,84 +298,7 @@ class Resolver:
         self.scope.rules += rules
         for port, message in troubles:
             path = ("in", port) if isinstance(declared.inputs, dict) else ("in",)
-            self._problem(declared, f": {message}", *path)
-
-    # -- embedded pipelines ------------------------------------------------------------------
-
-    def _use(self, declared: NodeDeclaration, guard: Guard | None) -> None:
-        assert declared.use is not None
-        inner = self._inner(declared)
-        if inner is None:
-            self.scope.types[declared.name] = UNKNOWN
-            return
-        inputs = self._use_input(declared)
-        if inputs is None:
-            self.scope.types[declared.name] = UNKNOWN
-        elif declared.each:
-            self._map(declared, inner, inputs, guard)
-        else:
-            self._inline(declared, inner, inputs, guard)
-
-    def _inner(self, declared: NodeDeclaration) -> Pipeline | None:
-        overrides: dict[str, dict[str, Any]] = {}
-        for name, value in declared.settings.items():
-            node, dot, setting = name.rpartition(".")
-            if not dot:
-                text = f", {name}: settings of an embedded pipeline are named node.setting"
-                self._problem(declared, text, "with", name)
-                continue
-            overrides.setdefault(node, {})[setting] = value
-        prefix = f"{declared.name}/"
-        for name, values in self.overrides.items():
-            if name.startswith(prefix):
-                overrides.setdefault(name[len(prefix) :], {}).update(values)
-        try:
-            return self.load(str(declared.use), overrides)
-        except TactileGraphError as error:
-            self._problem(declared, f": pipeline {declared.use!r} cannot be used: {error}", "use")
-            return None
-
-    def _use_input(self, declared: NodeDeclaration) -> Ref | None:
-        wired = declared.inputs
-        if isinstance(wired, dict) and list(wired) == [FRAME]:
-            wired = wired[FRAME]
-        if wired is None:
-            wired = FRAME
-        if not isinstance(wired, str):
-            self._problem(declared, ": an embedded pipeline has one port, 'frame'", "in")
-            return None
-        found = self.ref(declared, wired, "in")
-        return None if found is None else found[0]
-
-    def _map(
-        self, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
-    ) -> None:
-        from tactile_graph.pipeline.embed import map_node
-
-        kind = conditions.resolve((ref.node, *ref.path), self.scope.types, [])[1]
-        node, trouble = map_node(declared.name, inner, ref, kind, guard, self._mark(declared))
-        if trouble:
-            self._problem(declared, f": {trouble}", "in")
-        key = node_key("map", inner.key, self._ref_key(ref), self._guard_key(guard))
-        self.scope.add(replace(node, key=key))
-
-    def _inline(
-        self, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
-    ) -> None:
-        from tactile_graph.pipeline.embed import inline_nodes
-
-        kind = conditions.resolve((ref.node, *ref.path), self.scope.types, [])[1]
-        outer = ref_facts(ref, self.scope.facts)
-        mark = self._mark(declared)
-        nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, mark, outer)
-        broken, rules = embedded_rules(declared.name, inner.frame_rules, outer)
-        self.scope.rules += rules
-        troubles += broken
-        for trouble in troubles:
-            self._problem(declared, f": {trouble}", "in")
-        for node in nodes:
-            key = node_key("in", node.key, self._ref_key(ref), self._guard_key(node.guard))
-            self.scope.add(replace(node, key=key))
+            self.problem(declared, f": {message}", *path)
 
     # -- the whole ---------------------------------------------------------------------------
 
@@ -463,26 +355,3 @@ class Resolver:
 def message_join(message: str) -> str:
     """Return the message with ``": "`` before it unless it brings its own joint."""
     return message if message[:1] in ",:" else f": {message}"
-
-
-def _in_file_order(graph: Mapping[str, list[str]]) -> list[str]:
-    """Return the nodes, each after those it reads, otherwise in the order of the file.
-
-    Raises
-    ------
-    CycleError
-        If the nodes read each other in a circle.
-    """
-    place = {name: i for i, name in enumerate(graph)}
-    sorter = TopologicalSorter(graph)
-    sorter.prepare()
-    ready: list[int] = []
-    order: list[str] = []
-    names = list(graph)
-    while sorter.is_active():
-        for name in sorter.get_ready():
-            heapq.heappush(ready, place[name])
-        name = names[heapq.heappop(ready)]
-        order.append(name)
-        sorter.done(name)
-    return order
