@@ -176,7 +176,7 @@ def test_a_polygon_with_many_corners_comes_near_its_circle():
 
 
 def test_a_sliver_beyond_an_elements_edge_is_not_lost():
-    """A unit disc whose centre lies e inside the corner: a quarter, two strips, less two slivers."""
+    """A unit disc, its centre e inside the corner: a quarter and two strips less two slivers."""
     e = 1e-6
     quarter = np.pi / 4 + 2 * e + e * e
     sliver = (2 / 3) * np.sqrt(2.0) * e**1.5 + e * e  # beyond one edge, to the first orders in e

@@ -82,7 +82,7 @@ def test_emed(real: bool, tmp_path: Path) -> None:
 
 
 def test_f_scan_films_in_kilopascal_run_too(tmp_path: Path) -> None:
-    """They carry no vendor's figure of a frame: every frame answers, and force is pressure x area."""
+    """They carry no vendor's figure of a frame; every frame answers: force is pressure x area."""
     for name in ("FrasP01L.asf", "fscan_testL.asf"):
         found = loads_of(shared(f"vendor_exports/{name}"), tmp_path)
         assert len(found) == 205

@@ -168,7 +168,8 @@ def test_values_that_json_has_no_words_for_become_null(tmp_path):
 def test_infinity_and_nan_are_null_for_json_has_neither():
     from tactile_graph.cli.writers import _clean
 
-    assert _clean({"a": [{"b": float("inf"), "c": float("nan")}]}) == {"a": [{"b": None, "c": None}]}
+    cleaned = _clean({"a": [{"b": float("inf"), "c": float("nan")}]})
+    assert cleaned == {"a": [{"b": None, "c": None}]}
 
 
 def test_private_fields_of_records_are_not_written():
