@@ -12,7 +12,7 @@ from tactile_graph_filters.filled_hull import misfit
 
 REACH_CELLS = 3
 """Groups whose boxes lie further apart are not joined."""
-DIAGONAL = 0.5
+DIAGONAL = 0.7
 """What cells that touch at a corner count beside those that share an edge."""
 GAIN = 1e-9
 """A smaller gain is rounding."""

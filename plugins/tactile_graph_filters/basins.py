@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
 
+STEPS = 2.0**30
+"""Into so many heights the smoothed readings are sorted."""
+
 
 def taps_of(sigma: float) -> NDArray[np.float64]:
     """Return the weights of a Gaussian over -3 to 3 cells, their sum 1.
@@ -21,7 +24,8 @@ def taps_of(sigma: float) -> NDArray[np.float64]:
     ndarray of float64, shape (7,)
     """
     weights: NDArray[np.float64] = np.exp(-0.5 * (np.arange(-3.0, 4.0) / sigma) ** 2)
-    return weights / weights.sum()
+    weights /= weights.sum()
+    return weights
 
 
 def _basins_plain(
@@ -33,9 +37,9 @@ def _basins_plain(
     """Write the basins' numbers (from 1, 0 = off) into ``labels``; return how many there are.
 
     Every cell that is on climbs the values, smoothed along rows and columns by ``taps``, to the
-    highest of its eight neighbours until none is higher; cells that meet on one peak are one
-    basin. The way may lead over cells that are off. Numbers go by the first cell of a basin in
-    reading order.
+    highest of its eight neighbours, on even ground to the first in reading order, until there
+    is none; cells that end together are one basin. The way may lead over cells that are off.
+    Numbers go by the first cell of a basin in reading order.
     """
     rows, columns = values.shape
     reach = len(taps) // 2
@@ -46,12 +50,15 @@ def _basins_plain(
     smooth = np.zeros((rows, columns))
     for k, tap in enumerate(taps):
         smooth += tap * across[k : k + rows]
-    walled = np.pad(smooth, 1, constant_values=-np.inf)
+    # Whole numbers: even ground must not be torn by the last bit of a sum.
+    heights = np.floor(smooth * (STEPS / max(smooth.max(), 1e-300)))
+    walled = np.pad(heights, 1, constant_values=-1.0)
     number_of = np.arange(values.size).reshape(values.shape)
-    highest, to = smooth, number_of
+    highest, to = np.full(values.shape, -1.0), number_of
     for i in (-1, 0, 1):
         for j in (-1, 0, 1):
             there = walled[1 + i : 1 + i + rows, 1 + j : 1 + j + columns]
+            # In reading order, so that of equal neighbours the first is taken.
             to = np.where(there > highest, number_of + i * columns + j, to)
             highest = np.maximum(highest, there)
     flat = to.ravel()
@@ -79,6 +86,13 @@ def basins(values, on, taps, labels):  # type: ignore[no-untyped-def]
         for i in range(max(0, reach - k), min(rows, rows + reach - k)):
             for j in range(columns):
                 smooth[i, j] += taps[k] * across[i + k - reach, j]
+    highest = 1e-300
+    for i in range(rows):
+        for j in range(columns):
+            highest = max(highest, smooth[i, j])
+    for i in range(rows):
+        for j in range(columns):
+            smooth[i, j] = np.floor(smooth[i, j] * (STEPS / highest))
     number = np.zeros((rows, columns), np.int32)
     count = 0
     for i in range(rows):
@@ -88,8 +102,8 @@ def basins(values, on, taps, labels):  # type: ignore[no-untyped-def]
                 continue
             y, x = i, j
             while True:
-                to_y, to_x = y, x
-                for k in range(max(0, y - 1), min(rows, y + 2)):
+                to_y, to_x = max(0, y - 1), max(0, x - 1)
+                for k in range(to_y, min(rows, y + 2)):
                     for m in range(max(0, x - 1), min(columns, x + 2)):
                         if smooth[k, m] > smooth[to_y, to_x]:
                             to_y, to_x = k, m

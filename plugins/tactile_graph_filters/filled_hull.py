@@ -7,11 +7,15 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
 
-RIM_CELLS = 0.7
-"""Cells whose centre lies less deep in the hull are its rim: there a cell may well be off."""
-OFF_ON_RIM, WEAK, FOREIGN = 0.7, 1.5, 3.0
-"""What a cell costs: off on the rim (1 further in), without any load further in, or another's."""
-DOUBT = 8.0
+RIM_CELLS = 0.4
+"""Cells whose centre lies less deep in the hull are its rim: low readings are no surprise there."""
+OFF_ON_RIM, WEAK, FOREIGN = 1.2, 2.0, 3.0
+"""What a cell costs: off on the rim (1 further in), without any load further in, or another's.
+
+A void at the edge of an object does not show, the hull ends before it: a cell that is off on the
+rim is a notch, and notches are what two objects make.
+"""
+DOUBT = 10.0
 """What an object of no cells costs beside one of the usual number."""
 
 

@@ -148,9 +148,7 @@ def joined(owner, count, values, known, rules):  # type: ignore[no-untyped-def]
         a, b = best_pair(owner, values, known, left, right, box, cuts, alive, cost, union, rules)
         c = 0
         if a == 0:
-            a, b, c = best_three(
-                owner, values, known, left, right, cuts, alive, cost, rules
-            )
+            a, b, c = best_three(owner, values, known, left, right, cuts, alive, cost, rules)
         if a == 0:
             return energy_of(cuts, alive, cost, rules[3])
         join(owner, a, b, left, right, box, cuts, alive)

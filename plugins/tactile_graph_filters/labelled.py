@@ -35,14 +35,14 @@ def contacts_of(
     order = np.argsort(first)
     rank = np.empty(old.size, np.int32)
     rank[order] = np.arange(1, old.size + 1)
-    number = rank[number]
-    labels[row, column] = number
+    ranked = rank[number]
+    labels[row, column] = ranked
     labels.setflags(write=False)
     load = image.values[row, column]
     found = [
-        _contact(k, row[number == k], column[number == k], load[number == k], image, labels, margin)
+        _contact(k, row[ranked == k], column[ranked == k], load[ranked == k], image, labels, margin)
         for k in range(1, old.size + 1)
-        if np.count_nonzero(number == k) >= min_cells
+        if np.count_nonzero(ranked == k) >= min_cells
     ]
     return Contacts(tuple(found), len(found))
 

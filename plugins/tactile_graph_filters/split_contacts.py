@@ -23,14 +23,14 @@ class SplitContacts:
     The readings are smoothed and cut into the basins of their peaks (a watershed). Basins are
     then joined while that lowers an energy: what each object lacks in its hull, and a price for
     every cut between cells in contact. Voids inside an object are forgiven, gaps between objects
-    are not; a neck is cheap to cut, a wide disc is not, and pieces that a row of voids has torn
-    off are joined again.
+    are not; a neck is cheap to cut, a wide disc is not, and small pieces that voids have torn off
+    are joined again.
 
     Parameters
     ----------
     voids : float
-        Misfit that each cell inside an object is expected to have: about the share of elements
-        that make no or hardly any contact, and half as much again. Higher: fewer objects.
+        Misfit that each cell inside an object is forgiven, where a void costs 1: about twice the
+        share of elements that make no contact, as many make hardly any. Higher: fewer objects.
     hold : float
         Price of a cut between two cells in contact, where a void costs 1. Higher: fewer objects.
     weak : float
@@ -50,7 +50,8 @@ class SplitContacts:
     Objects are taken to be convex, 3 to 14 cells wide, with cells in contact counted as they
     come: a mask subdivided first needs ``usual_cells`` and ``min_cells`` to match. The settings
     were chosen on simulated scenes of the thesis pad (``benchmarks/objects.py`` measures on
-    others). The energy is a description length: Leclerc 1989, 10.1007/BF00054839.
+    others). The energy is in the manner of a description length: Leclerc 1989,
+    10.1007/BF00054839.
     """
 
     stateless = True
@@ -59,7 +60,7 @@ class SplitContacts:
         self,
         *,
         voids: Annotated[float, Ge(0), Le(1)] = 0.3,
-        hold: Annotated[float, Ge(0)] = 0.5,
+        hold: Annotated[float, Ge(0)] = 0.6,
         weak: Annotated[float, Ge(0), Le(1)] = 0.5,
         usual_cells: Annotated[float, Ge(0)] = 8.0,
         min_cells: Annotated[int, Ge(1)] = 4,

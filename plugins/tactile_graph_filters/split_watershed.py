@@ -89,7 +89,7 @@ def _bridged(on: NDArray[np.bool_], cells: int) -> NDArray[np.bool_]:
 
     if cells == 0:
         return on
-    square = np.ones((2 * cells + 1, 2 * cells + 1))
+    square = np.ones((2 * cells + 1, 2 * cells + 1), np.bool_)
     padded = np.pad(on, cells)  # closing must see the outside as off, not as unknown
     closed = ndimage.binary_closing(padded, square)[cells:-cells, cells:-cells]
     return np.asarray(ndimage.binary_fill_holes(closed), np.bool_)

@@ -91,7 +91,7 @@ def _why(x: Values, y: Values, status: int, rounds: int) -> str:
 
 
 def _radial_error(r: Values, cos2: Values, sin2: Values, a: float, b: float, off: Values) -> float:
-    """Return the sum of squared radial distances (D.9) of points r (cos, sin); ``off`` is scratch."""
+    """Return the sum of squared radial distances (D.9) of points r (cos, sin) into ``off``."""
     off[:] = r - 1.0 / np.sqrt(cos2 / (a * a) + sin2 / (b * b))
     return float(off @ off)
 
@@ -132,7 +132,9 @@ def simplex_search(
         size = 0.0
         for k in (1, 2):
             size = max(size, abs(s[k, 0] / s[0, 0] - 1.0), abs(s[k, 1] / s[0, 1] - 1.0))
-        if size <= tolerance and s[2, 2] - s[0, 2] <= tolerance * (s[0, 2] + 1e-30):
+        # The error of a perfect fit is all rounding: the second term is what that may come to.
+        level = tolerance * (s[0, 2] + 10.0 * tolerance * r.shape[0])
+        if size <= tolerance and s[2, 2] - s[0, 2] <= level:
             return True, abs(s[0, 0]), abs(s[0, 1]), s[0, 2], step
         ma, mb = 0.5 * (s[0, 0] + s[1, 0]), 0.5 * (s[0, 1] + s[1, 1])
         da, db = ma - s[2, 0], mb - s[2, 1]

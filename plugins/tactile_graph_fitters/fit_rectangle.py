@@ -1,4 +1,4 @@
-"""``fit_rectangle``: the rectangle whose outline lies nearest to points, by robust least squares."""
+"""``fit_rectangle``: the rectangle whose outline lies nearest to points, robustly."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.damped_steps import damped_step
-from tactile_graph_fitters.fitted_rectangle import FittedRectangle, alike, sides_in_order
+from tactile_graph_fitters.fitted_rectangle import FittedRectangle, rectangle_of
 from tactile_graph_fitters.principal import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
 
 ANGLES = 12  # tried over a quarter turn before the search
+TRIM = 16  # part of the points left out each way, for strays
 STARTS = 2  # of these are searched from
 ROUNDS = 100
 STEP = 1e-11  # of the points' extent
+LEVEL = 1e-5  # relative decrease of the cost over `PATIENCE` rounds that is taken for none
+PATIENCE = 10
 
 Values: TypeAlias = NDArray[np.float64]
 Found: TypeAlias = tuple[int, float, float, float, float, float, float, int]
@@ -64,22 +67,19 @@ def fit_rectangle(
     -----
     Minimises the sum of 2 s**2 (sqrt(1 + (d / s)**2) - 1) (soft l1) over position, angle and half
     sides, d being the distance of a point from the nearest point of the outline. Angles over a
-    quarter turn are tried with the points' bounding boxes first; Levenberg and Marquardt's
-    iteration with iterated weights goes on from the best two. Points around a corner that a
-    footprint lacks pull both its sides inwards. Source: thesis 4.3.1 and 6.1.3 (rectangle instead
-    of ellipse, left to future work); Huber and Ronchetti 2009, Robust Statistics, chapter 7.
+    quarter turn are tried with the points' (trimmed) bounding boxes first; Levenberg and
+    Marquardt's iteration with iterated weights goes on from the best two. Points around a corner
+    that a footprint lacks pull both its sides inwards. Source: thesis 4.3.1 and 6.1.3 (rectangle
+    instead of ellipse, left to future work); Huber and Ronchetti 2009, Robust Statistics, chapter
+    7.
     """
     xy = np.ascontiguousarray(points.xy_cm, dtype=np.float64)
     status, x, y, first, second, angle, misfit, rounds = outline_fit(xy, scale_cm)
     n = len(xy)
     if status != OK:
         raise Degenerate(_why(xy, status, rounds))
-    length, breadth, angle = sides_in_order(
-        2.0 * (first + inside_cm), 2.0 * (second + inside_cm), angle
-    )
-    return FittedRectangle(
-        x, y, length, breadth, angle, misfit, n, rounds, alike(length, breadth, cell_cm)
-    )
+    first, second = 2.0 * (first + inside_cm), 2.0 * (second + inside_cm)
+    return rectangle_of(x, y, first, second, angle, misfit, n, rounds, cell_cm)
 
 
 def _why(xy: Values, status: int, rounds: int) -> str:
@@ -163,26 +163,23 @@ def equations(
 
 @compiled_as_is
 def _boxed(uv: Values, angle: float, p: Values) -> None:
-    """Write the points' bounding box along an angle."""
+    """Write the points' bounding box along an angle, the outermost sixteenth each way left out."""
+    n = uv.shape[1]
     cos, sin = math.cos(angle), math.sin(angle)
-    low_a = low_b = np.inf
-    high_a = high_b = -np.inf
-    for i in range(uv.shape[1]):
-        a, b = uv[0, i] * cos + uv[1, i] * sin, uv[1, i] * cos - uv[0, i] * sin
-        low_a, high_a = min(low_a, a), max(high_a, a)
-        low_b, high_b = min(low_b, b), max(high_b, b)
-    a, b = 0.5 * (low_a + high_a), 0.5 * (low_b + high_b)
-    p[0], p[1] = a * cos - b * sin, a * sin + b * cos
-    p[2], p[3], p[4] = 0.5 * (high_a - low_a), 0.5 * (high_b - low_b), angle
+    a, b = np.sort(uv[0] * cos + uv[1] * sin), np.sort(uv[1] * cos - uv[0] * sin)
+    first, last = n // TRIM, n - 1 - n // TRIM
+    p[2], p[3], p[4] = 0.5 * (a[last] - a[first]), 0.5 * (b[last] - b[first]), angle
+    mid_a, mid_b = 0.5 * (a[last] + a[first]), 0.5 * (b[last] + b[first])
+    p[0], p[1] = mid_a * cos - mid_b * sin, mid_a * sin + mid_b * cos
 
 
 @compiled_as_is
 def _searched(uv: Values, p: Values, scale: float) -> tuple[float, int]:
-    """Bring ``p`` to a minimum; return the cost there and the rounds made, 0 if given up."""
+    """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
     normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
     new_normal, new_slope, trial = np.empty((5, 5)), np.empty(5), np.empty(5)
     now, _ = equations(uv, p, scale, normal, slope)
-    damping = 1e-3
+    damping, before = 1e-3, np.inf
     for rounds in range(1, ROUNDS + 1):
         ridge = 1e-9 * (normal[0, 0] + normal[1, 1])
         for k in range(5):
@@ -206,10 +203,14 @@ def _searched(uv: Values, p: Values, scale: float) -> tuple[float, int]:
             damping = 0.1 * damping if damping > 1e-12 else 0.0
         else:
             damping = max(10.0 * damping, 1e-6)
-        # At a kink, where the nearest side of a point changes, damping takes the step to nothing.
         if size <= STEP or damping > 1e12:
             return now, rounds
-    return now, 0
+        # Along a kink, where the nearest side of a point changes, the search tacks without end.
+        if rounds % PATIENCE == 0:
+            if now >= before * (1.0 - LEVEL):
+                return now, rounds
+            before = now
+    return now, -ROUNDS
 
 
 @compiled_as_is
@@ -232,7 +233,7 @@ def outline_fit(xy: Values, scale_cm: float) -> Found:
         costs[k] = np.inf
         p[:] = boxes[k]
         found, made = _searched(uv, p, scale)
-        rounds += made
+        rounds += abs(made)
         if found < least:
             least, settled = found, made > 0
             best[:] = p

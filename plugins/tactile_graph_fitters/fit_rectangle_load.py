@@ -13,7 +13,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
-from tactile_graph_fitters.fitted_rectangle import FittedRectangle, alike, sides_in_order
+from tactile_graph_fitters.fitted_rectangle import FittedRectangle, rectangle_of
 from tactile_graph_fitters.orientation import points_scatter, principal_variances, seen_angle
 from tactile_graph_fitters.quasi_newton import searched
 from tactile_graph_fitters.rectangle_likelihood import OFF, ON, UNKNOWN, States
@@ -43,7 +43,7 @@ class FitRectangleLoad:
         Least load that shows, over that of a fully covered element: a cell counts as covered
         once so much of it is.
     load_power : float
-        Power of the load that a reading goes with, where the image is not in grams; about 1.4
+        Power of the load that a reading goes with, where the image is not in grams; about 1.5
         for volts of the thesis' divider.
 
     Notes
@@ -58,7 +58,7 @@ class FitRectangleLoad:
     tried at four angles.
 
     ``misfit`` is the cost per touched cell; it can be negative. Without ``image`` only which cells
-    are touched counts (an area overlap); errors are then about half as large again. Against
+    are touched counts (an area overlap); errors are then up to twice as large. Against
     least squares on boundary points (`fit_rectangle`) see ``benchmarks/rectangles.py``. Fits a
     rectangle directly, as thesis 4.3.1 and 6.1.3 leave to future work.
     """
@@ -110,9 +110,8 @@ class FitRectangleLoad:
         n = len(window.cells_cm)
         if status:
             raise Degenerate(_why(n, status, rounds))
-        length, breadth, angle = sides_in_order(2.0 * first, 2.0 * second, angle)
-        unsure = alike(length, breadth, cell)
-        return FittedRectangle(x, y, length, breadth, angle, found / n, n, rounds, unsure)
+        first, second = 2.0 * first, 2.0 * second
+        return rectangle_of(x, y, first, second, angle, found / n, n, rounds, cell)
 
 
 class _Window(NamedTuple):
@@ -138,18 +137,19 @@ def _window(mask: Mask, image: Image | None, power: float) -> _Window:
     states[at] = ON
     if image is not None:
         readings = image.values[rows, columns]
-        if not (readings > 0.0).all():
-            raise Degenerate("some cells that are on have no positive reading: no load to fit")
-        found = np.log(readings)
-        logs[at] = (found - _median(found)) / power
+        bears = readings > 0.0
+        if not bears.any():
+            raise Degenerate(f"none of {len(rows)} cells that are on bears a load: nothing to fit")
+        found = np.log(readings[bears])
+        logs[at[0][bears], at[1][bears]] = (found - _median(found)) / power
+        states[at[0][~bears], at[1][~bears]] = UNKNOWN
         if image.valid is not None:
             bad_rows, bad_columns = np.nonzero(~image.valid)
-            near = (abs(bad_rows - top - 0.5 * (height - 1)) < 0.5 * height) & (
-                abs(bad_columns - left - 0.5 * (width - 1)) < 0.5 * width
-            )
-            states[bad_rows[near] - top, bad_columns[near] - left] = UNKNOWN
-    xs = x + (np.arange(left, left + width) + 0.5) * px
-    ys = y + (np.arange(top, top + height) + 0.5) * py
+            bad = bad_rows - top, bad_columns - left
+            near = (bad[0] >= 0) & (bad[0] < height) & (bad[1] >= 0) & (bad[1] < width)
+            states[bad[0][near], bad[1][near]] = UNKNOWN
+    xs: Values = x + (np.arange(left, left + width, dtype=np.float64) + 0.5) * px
+    ys: Values = y + (np.arange(top, top + height, dtype=np.float64) + 0.5) * py
     cells = np.empty((len(rows), 2))
     cells[:, 0], cells[:, 1] = xs[at[1]], ys[at[0]]
     return _Window(cells, logs, states, xs, ys)

@@ -48,8 +48,16 @@ def in_order(
     """
     if second_cm > first_cm:
         first_cm, second_cm, angle_rad = second_cm, first_cm, angle_rad + 0.5 * math.pi
+    # Plain references leave NumPy's own floats.
     return FittedEllipse(
-        x_cm, y_cm, first_cm, second_cm, axis_angle(angle_rad), rms_cm, n_points, iterations
+        float(x_cm),
+        float(y_cm),
+        float(first_cm),
+        float(second_cm),
+        axis_angle(angle_rad),
+        float(rms_cm),
+        n_points,
+        iterations,
     )
 
 

@@ -27,20 +27,47 @@ class FittedRectangle(Rectangle):
     columns_shown: ClassVar[tuple[str, ...]] = (*Rectangle.columns_shown, "misfit", "ambiguous")
 
 
-def sides_in_order(
-    first_cm: float, second_cm: float, angle_rad: float
-) -> tuple[float, float, float]:
-    """Return length, breadth and the length's angle in (-pi/2, pi/2] of two sides in any order.
+def rectangle_of(
+    x_cm: float,
+    y_cm: float,
+    first_cm: float,
+    second_cm: float,
+    angle_rad: float,
+    misfit: float,
+    n_points: int,
+    iterations: int,
+    cell_cm: float,
+) -> FittedRectangle:
+    """Return the rectangle with sides ``first_cm`` along the angle and ``second_cm`` across.
 
     Parameters
     ----------
+    x_cm, y_cm : float
+        Centre.
     first_cm, second_cm : float
+        The two sides, in either order of size.
     angle_rad : float
-        Direction of the first side.
+        Direction of the first, as seen; brought into (-pi/2, pi/2] for the longer one.
+    misfit, n_points, iterations : float, int, int
+        As in `FittedRectangle`.
+    cell_cm : float
+        Pitch of the elements that were read, for ``ambiguous``.
     """
     if second_cm > first_cm:
-        return second_cm, first_cm, axis_angle(angle_rad + 0.5 * math.pi)
-    return first_cm, second_cm, axis_angle(angle_rad)
+        first_cm, second_cm, angle_rad = second_cm, first_cm, angle_rad + 0.5 * math.pi
+    # Plain references leave NumPy's own floats.
+    length, breadth = float(first_cm), float(second_cm)
+    return FittedRectangle(
+        float(x_cm),
+        float(y_cm),
+        length,
+        breadth,
+        axis_angle(angle_rad),
+        float(misfit),
+        n_points,
+        iterations,
+        alike(length, breadth, cell_cm),
+    )
 
 
 def alike(length_cm: float, breadth_cm: float, pitch_cm: float) -> bool:
@@ -48,4 +75,4 @@ def alike(length_cm: float, breadth_cm: float, pitch_cm: float) -> bool:
 
     That is where the angle's estimated error, of `orientation`, exceeds 0.35 rad (20 degrees).
     """
-    return angle_std_rad(length_cm, breadth_cm, pitch_cm) > 0.35
+    return bool(angle_std_rad(length_cm, breadth_cm, pitch_cm) > 0.35)

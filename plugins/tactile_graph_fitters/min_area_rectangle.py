@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.fitted_rectangle import FittedRectangle, alike, sides_in_order
+from tactile_graph_fitters.fitted_rectangle import FittedRectangle, rectangle_of
 
 Values = NDArray[np.float64]
 
@@ -53,10 +53,8 @@ def min_area_rectangle(
     if len(corners) < 3:
         raise Degenerate(f"{n} points on one line: no rectangle around them has an area")
     x, y, first, second, angle, inside = smallest(np.ascontiguousarray(corners))
-    length, breadth, angle = sides_in_order(first, second, angle)
     empty = max(0.0, 1.0 - inside / (first * second))
-    unsure = alike(length, breadth, cell_cm)
-    return FittedRectangle(x, y, length, breadth, angle, empty, n, len(corners), unsure)
+    return rectangle_of(x, y, first, second, angle, empty, n, len(corners), cell_cm)
 
 
 @compiled_as_is

@@ -111,7 +111,14 @@ def scatter_of(footprint: Mask | Points) -> Sums:
     if isinstance(footprint, Mask):
         (x0, y0), (px, py) = footprint.origin_cm, footprint.pitch_cm
         n, x, y, xx, xy, yy = mask_scatter(np.ascontiguousarray(footprint.values))
-        found = n, x0 + (x + 0.5) * px, y0 + (y + 0.5) * py, xx * px * px, xy * px * py, yy * py * py
+        found = (
+            n,
+            x0 + (x + 0.5) * px,
+            y0 + (y + 0.5) * py,
+            xx * px * px,
+            xy * px * py,
+            yy * py * py,
+        )
     else:
         found = points_scatter(np.ascontiguousarray(footprint.xy_cm, dtype=np.float64))
     if found[0] == 0:

@@ -14,7 +14,7 @@ N = 5
 # How far the search first goes per unit of slope, relative to a cell: squares of about a fifth
 # of a cell, and of a few degrees.
 FIRST = (0.024, 0.024, 0.03, 0.024, 0.0015)
-LONGEST_CM = 0.8  # of one step, in cells, the angle counted at 6 cells from the centre
+LONGEST = 0.8  # of one step, in cells, the angle counted at 6 cells from the centre
 
 
 @compiled_as_is
@@ -36,10 +36,10 @@ def _direction(inverse: Values, slope: Values, cell: float, step: Values) -> flo
             step[i] -= inverse[i, k] * slope[k]
         along += step[i] * slope[i]
         longest = max(longest, abs(step[i]) / cell if i < 4 else 6.0 * abs(step[i]))
-    if longest > LONGEST_CM:
+    if longest > LONGEST:
         for i in range(N):
-            step[i] *= LONGEST_CM / longest
-        along *= LONGEST_CM / longest
+            step[i] *= LONGEST / longest
+        along *= LONGEST / longest
     return along
 
 
@@ -77,7 +77,7 @@ def searched(
     tolerance: float,
     most: int,
 ) -> tuple[float, int]:
-    """Bring ``p`` to a minimum of the cost; return the cost there and the rounds made, < 0 if given up."""
+    """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
     inverse, slope, new_slope = np.empty((N, N)), np.empty(N), np.empty(N)
     step, moved, change, trial = np.empty(N), np.empty(N), np.empty(N), np.empty(N)
     _restart(inverse, cell)

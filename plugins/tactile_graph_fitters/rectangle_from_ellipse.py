@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from annotated_types import Ge, Gt
+from annotated_types import Gt
 
 from tactile_graph.wires import Ellipse, Rectangle
 from tactile_graph_fitters.fitted_ellipse import FittedEllipse
@@ -69,7 +69,7 @@ class EllipseRectangle(Rectangle):
 def rectangle_from_ellipse(
     ellipse: Ellipse,
     *,
-    inside_cm: Annotated[float, Ge(0)] = 0.0,
+    inside_cm: float = 0.0,
     cell_cm: Annotated[float, Gt(0)] = 1.3,
 ) -> EllipseRectangle:
     """Return the rectangle an ellipse fitted to a rectangular outline stands for.
@@ -79,8 +79,10 @@ def rectangle_from_ellipse(
     ellipse : Ellipse
         From `fit_ellipse_origin`.
     inside_cm : float
-        How far inside the outline the fitted points lie, for the corrected sides: centres of
-        boundary cells lie half a cell inside the cells' outline.
+        How far inside the object's outline the fitted points lie, for the corrected sides;
+        below 0 where they lie outside. Centres of boundary cells lie half a cell inside the cells'
+        outline, and the cells' outline, where a covered fifth turns a cell on, as much as 0.3 cm
+        (on the thesis' pad) outside the object's.
     cell_cm : float
         Pitch of the elements that were read, for `ambiguous`.
 
@@ -101,7 +103,7 @@ def rectangle_from_ellipse(
     ratio = b / a
     length = 2.0 * a * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 1])) + 2.0 * inside_cm
     breadth = 2.0 * b * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 2])) + 2.0 * inside_cm
-    fitted = isinstance(ellipse, FittedEllipse)
+    quality = (ellipse.rms_cm, ellipse.n_points) if isinstance(ellipse, FittedEllipse) else (0.0, 0)
     return EllipseRectangle(
         ellipse.x_cm,
         ellipse.y_cm,
@@ -110,7 +112,6 @@ def rectangle_from_ellipse(
         ellipse.angle_rad,
         length,
         breadth,
-        ellipse.rms_cm if fitted else 0.0,
-        ellipse.n_points if fitted else 0,
+        *quality,
         alike(length, breadth, cell_cm),
     )

@@ -102,8 +102,8 @@ def rotated(
         # A row's turned cells lie between those of its ends.
         for j in (low, high):
             dx = j - column
-            u = int(math.floor((dx * cos - dy * sin / aspect) + 0.5))
-            v = int(math.floor((dx * sin * aspect + dy * cos) + 0.5))
+            u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
+            v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
             left, right = min(left, u), max(right, u)
             top, bottom = min(top, v), max(bottom, v)
     if last < 0:
@@ -114,7 +114,7 @@ def rotated(
         for j in range(ends[i, 0], ends[i, 1] + 1):
             if values[i, j]:
                 dx = j - column
-                u = int(math.floor((dx * cos - dy * sin / aspect) + 0.5))
-                v = int(math.floor((dx * sin * aspect + dy * cos) + 0.5))
+                u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
+                v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
                 out[v - top, u - left] = True
     return out, left, top

@@ -12,13 +12,19 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 
 
+def placed(thing: Any) -> Any:
+    """Return what of a thing has a place: itself, or the shape that was decided on."""
+    return thing if hasattr(thing, "x_cm") else getattr(thing, "shape", thing)
+
+
 def places_cm(things: Sequence[Any], where: str) -> NDArray[np.float64]:
     """Return the centres, shape (N, 2), x and y in cm.
 
     Parameters
     ----------
     things : sequence
-        Contacts, shapes, or anything else with ``x_cm`` and ``y_cm``.
+        Contacts, shapes, or anything else with ``x_cm`` and ``y_cm``, or with a ``shape`` that has
+        them.
     where : str
         Who asks, for the message.
 
@@ -30,7 +36,8 @@ def places_cm(things: Sequence[Any], where: str) -> NDArray[np.float64]:
     xy = np.empty((len(things), 2))
     for i, thing in enumerate(things):
         try:
-            xy[i] = thing.x_cm, thing.y_cm
+            held = placed(thing)
+            xy[i] = held.x_cm, held.y_cm
         except (AttributeError, TypeError, ValueError):
             kind = type(thing).__name__
             raise DataError(

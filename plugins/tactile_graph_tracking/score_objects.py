@@ -47,7 +47,8 @@ def score_objects(
     frame : Frame
         With its truth.
     found : list
-        Contacts, shapes or tracks: anything with ``x_cm`` and ``y_cm``. None at all if skipped.
+        Contacts, shapes, tracks, decisions on a shape: anything with ``x_cm`` and ``y_cm`` or a
+        ``shape`` that has them. None at all where their node was skipped.
     gate_cm : float
         Centres farther apart are no pair.
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tactile_graph.steps import TimeGap
 from tactile_graph_tracking.followed import Followed, State
 from tactile_graph_tracking.pairing import paired
-from tactile_graph_tracking.places import places_cm
+from tactile_graph_tracking.places import placed, places_cm
 from tactile_graph_tracking.tracked_object import TrackedObject
 
 STIR = 1.5
@@ -95,7 +95,7 @@ class Track:
         Parameters
         ----------
         contacts : list
-            Contacts, shapes, or anything else with ``x_cm`` and ``y_cm``.
+            Contacts, shapes, decisions on a shape: see `placed`.
         gap_s : float, optional
             Time since the last call.
 
@@ -105,7 +105,7 @@ class Track:
             If one of them has no finite centre.
         """
         xy = places_cm(contacts, "track")
-        areas = np.array([float(getattr(c, "area_cm2", 0.0)) for c in contacts])
+        areas = np.array([_area_cm2(c) for c in contacts])
         order = np.lexsort((areas, xy[:, 0], xy[:, 1]))
         self._go_on(gap_s)
         self._see([contacts[i] for i in order], xy[order], areas[order])
@@ -133,15 +133,25 @@ class Track:
         known = {i for _, i in pairs}
         fastest_cm_s = self._gate_cm / self._frame_s
         self._all += [
-            Followed(c, *xy[i].tolist(), self._now_s, self._call, self._noise_cm, fastest_cm_s)
+            Followed(
+                c,
+                float(xy[i, 0]),
+                float(xy[i, 1]),
+                self._now_s,
+                self._call,
+                self._noise_cm,
+                fastest_cm_s,
+            )
             for i, c in enumerate(contacts)
             if i not in known
         ]
 
     def _costs(self, xy: Reals, areas: Reals) -> Reals:
         """Return what each object and contact cost as a pair: up to 2, infinite past the gate."""
-        expected = np.array([(one.expected_x_cm, one.expected_y_cm) for one in self._all]).reshape(-1, 2)
-        was = np.array([float(getattr(one.contact, "area_cm2", 0.0)) for one in self._all])
+        expected = np.array([(one.expected_x_cm, one.expected_y_cm) for one in self._all]).reshape(
+            -1, 2
+        )
+        was = np.array([_area_cm2(one.contact) for one in self._all])
         off = expected[:, None] - xy[None]
         near = (off**2).sum(axis=2) / self._gate_cm**2
         both = (was[:, None] > 0) & (areas > 0)
@@ -150,7 +160,8 @@ class Track:
 
     def _given_up(self) -> list[Followed]:
         """Forget those unseen for too long, and those too many; return them."""
-        kept = [one for one in self._all if self._now_s - one.seen_s <= self._patience_s]
+        limit_s = self._patience_s + 1e-9  # a whole number of frames is still in time
+        kept = [one for one in self._all if self._now_s - one.seen_s <= limit_s]
         if len(kept) > self._most:
             longest_seen = sorted(kept, key=lambda one: (-one.seen_s, one.number or math.inf))
             chosen = {id(one) for one in longest_seen[: self._most]}
@@ -179,8 +190,11 @@ def _speed(one: Followed) -> float:
     return math.hypot(one.vx_cm_s, one.vy_cm_s)
 
 
+def _area_cm2(contact: Any) -> float:
+    return float(getattr(placed(contact), "area_cm2", 0.0))
+
+
 def _record(one: Followed, state: State, now_s: float) -> TrackedObject:
-    area_cm2 = float(getattr(one.contact, "area_cm2", 0.0))
     return TrackedObject(
         one.number,
         state,
@@ -189,7 +203,7 @@ def _record(one: Followed, state: State, now_s: float) -> TrackedObject:
         one.seen_y_cm,
         one.vx_cm_s,
         one.vy_cm_s,
-        area_cm2,
+        _area_cm2(one.contact),
         one.contact,
     )
 

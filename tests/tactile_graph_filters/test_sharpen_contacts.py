@@ -31,9 +31,9 @@ def found(image, level=20.0, **settings):
 def test_centre_and_area_of_a_bump_come_out_between_the_cells_at_any_strength(x, y, peak):
     one = found(bump(x, y, peak=peak), level=0.05 * peak, share=0.5, finer=16).contacts[0]
     cell = PITCH[0] * PITCH[1]
-    assert one.x_cm == pytest.approx(ORIGIN[0] + x * PITCH[0], abs=0.03 * PITCH[0])
-    assert one.y_cm == pytest.approx(ORIGIN[1] + y * PITCH[1], abs=0.03 * PITCH[1])
-    assert one.area_cm2 == pytest.approx(np.pi * 4.0 * SHARE_WIDTH * cell, rel=0.06)
+    assert one.x_cm == pytest.approx(ORIGIN[0] + x * PITCH[0], abs=0.05 * PITCH[0])
+    assert one.y_cm == pytest.approx(ORIGIN[1] + y * PITCH[1], abs=0.05 * PITCH[1])
+    assert one.area_cm2 == pytest.approx(np.pi * 4.0 * SHARE_WIDTH * cell, rel=0.1)
 
 
 def test_a_higher_share_makes_a_smaller_contact():
