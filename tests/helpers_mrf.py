@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ def picture(rows: int = 16, columns: int = 16, noise: float = 0.08, seed: int = 
 
 def line_between(lines_h: Any, lines_v: Any, a: tuple[int, int], b: tuple[int, int]) -> bool:
     """Whether the line between two cells that share a side is on."""
-    (i, j), (m, n) = sorted([a, b])
+    (i, j), (m, _n) = sorted([a, b])
     return bool(lines_h[i, j] if m == i + 1 else lines_v[i, j])
 
 
@@ -61,7 +61,7 @@ def counted(problem: Problem, labels: Any, lines_h: Any, lines_v: Any) -> float:
             if far > reach:
                 continue
             cut = all(
-                any(line_between(lines_h, lines_v, p, q) for p, q in zip(w, w[1:], strict=False))
+                any(line_between(lines_h, lines_v, p, q) for p, q in pairwise(w))
                 for w in ways(a, b)
             )
             if not cut:
