@@ -145,7 +145,7 @@ def test_restore_never_raises_the_energy_whatever_the_order(order):
 def test_nine_cells_come_near_the_minimum_of_all_labellings(step, kind, seed):
     """None may be below it; convex cuts reach it, and the others on these images within 3 %."""
     image, model = tiny(seed), tiny_model(smoothness=kind)
-    least = least_energy(model.prepare(image))
+    least = least_energy(model, seed)
     reached = step(image, model=model).energy
     assert reached >= least - 1e-9
     if step is graph_cuts and kind != "truncated_quadratic":

@@ -9,13 +9,13 @@ from tactile_graph_mrf.tree_bound import chain_bound, lower_bound, trw_sweep
 from tactile_graph_mrf.trw import trw
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", ["quadratic", "truncated_quadratic", "geman_mcclure"])
 @pytest.mark.parametrize("n_sweeps", [1, 30])
 def test_the_bound_is_never_above_the_least_energy_of_all(seed, kind, n_sweeps):
-    problem = tiny_model(smoothness=kind).prepare(tiny(seed))
-    found = lower_bound(problem, n_sweeps)
-    least = least_energy(problem)
+    model = tiny_model(smoothness=kind)
+    found = lower_bound(model.prepare(tiny(seed)), n_sweeps)
+    least = least_energy(model, seed)
     assert found.bound <= least + 1e-9
     assert found.energy >= least - 1e-9
     if n_sweeps == 30 and kind == "quadratic":  # convex: the relaxation is exact
