@@ -24,7 +24,8 @@ def test_a_turned_mask_lies_along_x_about_the_same_centre(degrees):
     # Filled first: where cells were hit by two, the voids shift the mean.
     got = orientation(Close(element="cross3")(rotate_mask(mask, axis)))
     assert off_rad(got.angle_rad, 0.0) < 0.01
-    assert (got.x_cm, got.y_cm) == pytest.approx((axis.x_cm, axis.y_cm), abs=0.04)
+    # Rounding to cells of 0.13 cm may shift all of a nearly level edge by up to half a cell.
+    assert (got.x_cm, got.y_cm) == pytest.approx((axis.x_cm, axis.y_cm), abs=0.065)
 
 
 def test_rounding_leaves_voids_that_closing_with_a_cross_fills():
