@@ -85,7 +85,7 @@ class Kernel(Generic[P, R]):
     def reset(self) -> None:
         """Go back to the start: reference first, unless the mode or `warm_up` says otherwise."""
         wanted = mode()
-        self.calls_left = SWITCH_AFTER
+        self._calls_left = SWITCH_AFTER
         if wanted == "plain" or not have_compiler():
             self.call: Callable[..., R] = self.reference
         elif wanted == "compiled" or _warm:
@@ -94,8 +94,8 @@ class Kernel(Generic[P, R]):
             self.call = self._counted
 
     def _counted(self, *args: Any) -> R:
-        self.calls_left -= 1
-        if self.calls_left < 0:
+        self._calls_left -= 1
+        if self._calls_left < 0:
             return self._first_compiled(*args)
         return self.reference(*args)  # type: ignore[call-arg]
 

@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from tactile_graph.errors import DataError, Degenerate
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_classifiers.feature_sums import Sums, feature_sums
 from tactile_graph_classifiers.measurements import Measurements
@@ -119,10 +119,7 @@ class FeaturesOf:
         ValueError
             If image and mask differ in shape.
         """
-        if image.shape != mask.shape:
-            raise ValueError(
-                f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-            )
+        require_same_shape(image=image, mask=mask)
         on = mask.values
         good = on if image.valid is None else on & image.valid
         good.setflags(write=False)  # as a mask's own are: one compiled kernel for both

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.threshold import footprint
 
@@ -42,10 +42,7 @@ def and_compare(
     Thesis section 4.3.3, figure 4.26: the thresholded image and the same after the low pass
     keep the size of the former and lose its lone noise cells.
     """
-    if first.shape != second.shape:
-        raise ValueError(
-            f"first and second must have the same shape, got {first.shape} and {second.shape}"
-        )
+    require_same_shape(first=first, second=second)
     mask = np.logical_and(_on(first, level), _on(second, level))
     return Mask(mask, first.pitch_cm, first.origin_cm)
 

@@ -10,7 +10,7 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.crop import Box, cut_image, cut_mask, widened
 from tactile_graph_filters.labels import label
@@ -118,10 +118,7 @@ def contacts(
     DataError
         If a cell of the mask holds NaN or infinity.
     """
-    if image.shape != mask.shape:
-        raise ValueError(
-            f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-        )
+    require_same_shape(image=image, mask=mask)
     labels = np.empty(mask.shape, np.int32)
     values = np.ascontiguousarray(image.values, np.float64)
     table = label(values, mask.values, connectivity == 8, labels)

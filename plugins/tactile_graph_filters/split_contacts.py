@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le, MinLen
 from numpy.typing import NDArray
 
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.basins import basins, taps_of
 from tactile_graph_filters.contacts import Contacts
@@ -89,10 +89,7 @@ class SplitContacts:
         DataError
             If a cell of the mask holds NaN or infinity.
         """
-        if image.shape != mask.shape:
-            raise ValueError(
-                f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-            )
+        require_same_shape(image=image, mask=mask)
         on = mask.values
         readings = image.values[on]
         if not readings.size:

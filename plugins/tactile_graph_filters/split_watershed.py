@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Lt
 from numpy.typing import NDArray
 
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts import Contacts
 from tactile_graph_filters.labelled import contacts_of
@@ -69,10 +69,7 @@ def split_watershed(
     Meyer's, 1994, 10.1016/0165-1684(94)90060-4. On grids as coarse as the pad's, where objects
     are three to five cells wide, `split_contacts` counts far better.
     """
-    if image.shape != mask.shape:
-        raise ValueError(
-            f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-        )
+    require_same_shape(image=image, mask=mask)
     if not mask.values.any():
         return Contacts((), 0)
     if not np.isfinite(image.values[mask.values]).all():

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_fitters.fitted_rectangle import FittedRectangle, rectangle_of
 from tactile_graph_fitters.orientation import points_scatter, principal_variances, seen_angle
@@ -96,10 +96,8 @@ class FitRectangleLoad:
         Degenerate
             If fewer than 3 cells are on, all are in one line, or no minimum is found.
         """
-        if image is not None and image.shape != mask.shape:
-            raise ValueError(
-                f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-            )
+        if image is not None:
+            require_same_shape(image=image, mask=mask)
         window = _window(mask, image, self._power)
         (px, py), law = mask.pitch_cm, self._law
         cell = math.sqrt(px * py)

@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps.rules import Grid
+from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
 
@@ -76,10 +76,7 @@ def heavier_side(
     variance v along the axis, the larger of both. On a tilted block the pressure is linear over the
     footprint: a centre of load off by e along a side L means pressures of 1 -+ 6 e / L at the ends.
     """
-    if image.shape != mask.shape:
-        raise ValueError(
-            f"image and mask must have the same shape, got {image.shape} and {mask.shape}"
-        )
+    require_same_shape(image=image, mask=mask)
     on = mask.values if image.valid is None else mask.values & image.valid
     rows, columns = np.nonzero(on)
     if len(rows) == 0:

@@ -118,8 +118,8 @@ def _mapped(node: Node, runner: Runner) -> Call:
 
     def call(frame: Any) -> Any:
         results = []
+        outer = runner.frame
         for i, image in enumerate(frame):
-            outer = runner.frame
             inner.item = (*runner.item, i)
             results.append(inner(Frame(image, outer.index, outer.time_s, label=outer.label)))
         runner.inner_results[node.name] = results

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from tactile_graph.wires.image import QUANTITIES
+from tactile_graph.wires.image import QUANTITIES, Image, Mask
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,3 +88,17 @@ class GridFact:
             None if self.columns is None else self.columns * factor,
             None if pitch is None else (pitch[0] / factor, pitch[1] / factor),
         )
+
+
+def require_same_shape(**images: Image | Mask) -> None:
+    """Refuse images of different shapes, named as given: for what only a frame can tell.
+
+    Raises
+    ------
+    ValueError
+        With the names and shapes.
+    """
+    shapes = [image.shape for image in images.values()]
+    if any(shape != shapes[0] for shape in shapes):
+        names, got = " and ".join(images), " and ".join(map(str, shapes))
+        raise ValueError(f"{names} must have the same shape, got {got}")
