@@ -133,8 +133,8 @@ def open_pipeline(
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
     pipeline = load(name, found)
     if settings:
-        pipeline = pipeline.with_settings(dict(_assignment("--set", s) for s in settings))
-    return _sourced(pipeline, recordings, source, source_settings, span or Span())
+        pipeline = pipeline.with_settings(dict(assignment("--set", s) for s in settings))
+    return sourced(pipeline, recordings, source, source_settings, span or Span())
 
 
 def offered() -> str:
@@ -147,13 +147,20 @@ def offered() -> str:
     return "\n".join(["there are:", *lines]) if lines else "no plugin offers any"
 
 
-def _sourced(
+def sourced(
     pipeline: Pipeline,
     recordings: Sequence[str],
     step: str | None,
     given: Sequence[str],
     span: Span,
 ) -> Pipeline:
+    """Return a pipeline on the source a command line names; on its own if it names none.
+
+    Raises
+    ------
+    UsageError
+        If there is none, or it is not allowed.
+    """
     if recordings and step is not None and step != RECORDING:
         raise UsageError(f"give recordings or --source {step}, not both: {recordings[0]}")
     own = pipeline.source
@@ -169,7 +176,7 @@ def _sourced(
         step = own.name
     if own is not None and step == own.name and not recordings:
         base = {k: v for k, v in own.settings.items() if not _is_default(own, k, v)}
-    base.update(_assignment("--with", text) for text in given)
+    base.update(assignment("--with", text) for text in given)
     wanted = {text.partition("=")[0].strip() for text in given}
     if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
         base[COUNT] = span.stop
@@ -223,7 +230,7 @@ def _is_source(name: str) -> bool:
     return outline(registry.installed().offer("steps", name).target).kind == "source"
 
 
-def _assignment(option: str, text: str) -> tuple[str, Any]:
+def assignment(option: str, text: str) -> tuple[str, Any]:
     """Return name and value of ``name=value``, the value read as YAML.
 
     Raises

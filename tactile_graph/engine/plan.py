@@ -8,7 +8,7 @@ is *lazy*: it stands in the block of the item that may need it, and runs when th
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind
@@ -56,6 +56,8 @@ class Plan:
     reads_frame: tuple[Ref, ...] = ()
     depth: int = 0
     rules: tuple[FrameRule, ...] = ()
+    refs: dict[Ref, int] = field(default_factory=dict)
+    """The slot of each node and of each view of one; two views may share their name."""
 
     @property
     def n_slots(self) -> int:
@@ -128,6 +130,7 @@ class _Planner:
             tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
             self._depth(),
             tuple(r for r in self.pipeline.frame_rules if r.node in used),
+            self.by_ref,
         )
 
     # -- slots -------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from tactile_graph.engine.plan import Plan
+    from tactile_graph.pipeline.wiring import Ref
     from tactile_graph.wires.frame import Frame
 
 
@@ -118,6 +119,12 @@ class Result(Mapping[str, Any]):
             hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
             raise UsageError(f"no node or output named {name!r}{hint}")
         outcome = self._state[slot]
+        return NOT_ASKED if outcome is None else outcome
+
+    def outcome_at(self, ref: Ref) -> Outcome:
+        """Return the outcome of what the plan reads at a reference."""
+        slot = self.plan.refs.get(ref)
+        outcome = None if slot is None else self._state[slot]
         return NOT_ASKED if outcome is None else outcome
 
     @property

@@ -39,11 +39,16 @@ class ConditionError(Exception):
 
 @dataclass(frozen=True)
 class Guard:
-    """A compiled condition: what it reads, and the function of those values."""
+    """A compiled condition: what it reads, and the function of those values.
+
+    ``text`` is what the file says, ``meaning`` the same with named conditions spelled out and the
+    references numbered: two guards of equal meaning and references hold for the same frames.
+    """
 
     text: str
     refs: tuple[Ref, ...]
     function: Callable[..., Any]
+    meaning: str
 
     def reason(self, values: tuple[Any, ...]) -> str:
         """Return why a node was skipped: the condition and what it read."""
@@ -100,7 +105,9 @@ def compile_condition(
         if not compiler.is_truth(tree):
             raise ConditionError(compiler.not_truth(tree))
         _check_depth(tree)
-        return Guard(" ".join(text.split()), tuple(compiler.refs), _function(compiler, tree))
+        meaning = ast.unparse(tree)
+        function = _function(compiler, tree)
+        return Guard(" ".join(text.split()), tuple(compiler.refs), function, meaning)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
 

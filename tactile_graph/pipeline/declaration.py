@@ -133,7 +133,9 @@ class _Declarer:
         for name, text in data.items():
             path = ("conditions", name)
             self.name(name, path, "condition")
-            if isinstance(text, bool | int | float):
+            if isinstance(text, bool):
+                text = self.document.spelled(*path)
+            elif isinstance(text, int | float):
                 text = shown(text)
             if not isinstance(text, str):
                 self.problem(
@@ -192,7 +194,7 @@ class _Declarer:
         node.inputs = self.inputs(body.get("in"), (*path, "in"), what)
         node.settings = self.mapping(body.get("with"), (*path, "with"), what)
         when = body.get("when")
-        given = {"when": str(when)} if isinstance(when, bool) else body
+        given = {"when": self.document.spelled(*path, "when")} if isinstance(when, bool) else body
         node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
         each = body.get("each", False)
         if not isinstance(each, bool):

@@ -35,6 +35,15 @@ class Document:
     problems: list[Problem] = field(default_factory=list)
     _keys: dict[Path, Mark] = field(default_factory=dict)
     _values: dict[Path, Mark] = field(default_factory=dict)
+    _switches: dict[Path, str] = field(default_factory=dict)
+
+    def spelled(self, *path: str | int) -> str:
+        """Return how a yes/no is written: a condition may be called ``on``, which YAML reads as one.
+
+        ``true`` and ``false`` in any case come back as conditions spell them: True, False.
+        """
+        text = self._switches[path]
+        return text.capitalize() if text.lower() in ("true", "false") else text
 
     def mark(self, *path: str | int, key: bool = False) -> Mark:
         """Return where the value (or its key) at ``path`` stands, else its nearest parent."""
@@ -167,7 +176,10 @@ class _Reader:
         if isinstance(node, yaml.SequenceNode) and node.tag == "tag:yaml.org,2002:seq":
             return [self.read(child, (*path, i)) for i, child in enumerate(node.value)]
         if isinstance(node, yaml.ScalarNode) and node.tag in _SCALARS:
-            return self._scalar(node)
+            value = self._scalar(node)
+            if isinstance(value, bool):
+                self.document._switches[path] = str(node.value)
+            return value
         self.document.problem_at(self._mark(node), _refused(node.tag))
         return None
 

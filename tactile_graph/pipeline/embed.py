@@ -69,7 +69,7 @@ def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list
 def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], outer: Facts) -> Node:
     guard = node.guard
     if guard is not None:
-        guard = Guard(guard.text, tuple(rename(r) for r in guard.refs), guard.function)
+        guard = replace(guard, refs=tuple(rename(r) for r in guard.refs))
     return replace(
         node,
         name=f"{name}/{node.name}",

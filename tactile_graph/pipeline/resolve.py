@@ -32,7 +32,7 @@ from tactile_graph.pipeline.pipeline import Pipeline, Source, plain
 from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.registry import Registry
-from tactile_graph.steps.settings import Trouble, validate_settings
+from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
 from tactile_graph.wires import Frame
 
@@ -153,7 +153,7 @@ class Resolver:
             return None
         values, troubles = validate_settings(signature, given)
         for path, message in troubles:
-            where = f"{path[0]}: " if path else ""
+            where = f"{spelled(path)}: " if path else ""
             self.document.problem(f"source, {where}{message}", "source", "with", *path)
         return Source(signature, values, mark)
 
@@ -192,7 +192,7 @@ class Resolver:
 
     def guard_key(self, guard: Guard | None) -> object:
         """Return what makes two guards equal."""
-        return None if guard is None else (guard.text, [self.ref_key(r) for r in guard.refs])
+        return None if guard is None else (guard.meaning, [self.ref_key(r) for r in guard.refs])
 
     def ref_key(self, ref: Ref) -> tuple[object, ...]:
         """Return what makes two references equal."""
@@ -230,9 +230,9 @@ class Resolver:
     def _report(self, declared: NodeDeclaration, troubles: list[Trouble]) -> None:
         outside = self.overrides.get(declared.name, {})
         for path, message in troubles:
-            where = f", {path[0]}: " if path else ": "
+            where = f", {spelled(path)}: " if path else ": "
             if path and path[0] in outside:
-                text = f"setting {declared.name}.{path[0]}: {message}"
+                text = f"setting {declared.name}.{spelled(path)}: {message}"
                 found = Problem(None, text)
                 if found not in self.document.problems:
                     self.document.problems.append(found)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tactile_graph import Frame, loads
 from tactile_graph.pipeline.conditions import compile_condition, names_in
 from tactile_graph.pipeline.wiring import Ref
 
@@ -81,3 +82,28 @@ def test_any_text_is_a_condition_or_told_to_be_none(text: str) -> None:
     else:
         message = guard.text
     assert isinstance(message, str)
+
+
+@pytest.mark.parametrize("name", ["on", "off", "yes", "no", "Yes"])
+def test_a_condition_may_be_named_what_yaml_reads_as_a_switch(name: str) -> None:
+    text = f"""
+pipeline: switches
+conditions: {{{name}: frame.index > 0}}
+nodes:
+  a: {{step: threshold, in: frame, with: {{level_v: 0.01}}, when: {name}}}
+outputs: [a]
+"""
+    pipeline = loads(text)
+    frames = [Frame.of([[1.0]], quantity="volt").with_index(i) for i in (0, 1)]
+    assert [pipeline.run(f).ok for f in frames] == [False, True]
+
+
+@pytest.mark.parametrize(("when", "ran"), [("true", True), ("FALSE", False)])
+def test_a_guard_may_be_a_plain_truth(when: str, ran: bool) -> None:
+    text = f"""
+pipeline: plain
+nodes:
+  a: {{step: threshold, in: frame, with: {{level_v: 0.01}}, when: {when}}}
+outputs: [a]
+"""
+    assert loads(text).run(Frame.of([[1.0]], quantity="volt")).ok is ran

@@ -1,0 +1,155 @@
+"""Which outputs of a variant answer what, told by their types before the first frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
+
+from tactile_graph.engine.truth import shape_kind
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
+from tactile_graph.steps.signature import list_item
+from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
+
+OF_SHAPES: dict[type, tuple[str, ...]] = {
+    Circle: ("centre", "radius"),
+    Ellipse: ("centre", "length", "breadth", "angle"),
+    Rectangle: ("centre", "length", "breadth", "angle"),
+    Polygon: ("centre", "area"),
+}
+"""What of each kind of shape is compared with the truth."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """An output that says where things are: one, or as many as there are.
+
+    Parameters
+    ----------
+    ref : Ref
+    many : bool
+        Whether it is a list.
+    items : callable
+        Gives the list of an output's value.
+    thing : callable
+        Gives what of an item has a place: itself, or its shape.
+    kinds : tuple of type
+        The shapes an item can be; empty where it only has a place.
+    quantities : tuple of str
+    """
+
+    ref: Ref
+    many: bool
+    items: Callable[[Any], Sequence[Any]]
+    thing: Callable[[Any], Any]
+    kinds: tuple[type, ...]
+    quantities: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What of a variant answers which quantity; where several could, the first not skipped does.
+
+    Shapes come before what only has a place; an output that failed is asked all the same.
+    """
+
+    places: tuple[Places, ...]
+    counts: tuple[tuple[Ref, Callable[[Any], int]], ...]
+    identities: tuple[Ref, ...]
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The quantities the variant can answer."""
+        found = dict.fromkeys(q for p in self.places for q in p.quantities)
+        found |= {"count": None} if self.counts else {}
+        found |= {"identity": None} if self.identities else {}
+        return tuple(found)
+
+
+def answers_of(pipeline: Pipeline, asked: Sequence[str]) -> Answers:
+    """Return what the outputs asked for say about the truth.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    asked : sequence of str
+        Outputs, nodes or ``node.field``.
+    """
+    shapes: list[Places] = []
+    spots: list[Places] = []
+    counts: list[tuple[Ref, Callable[[Any], int]]] = []
+    identities: list[Ref] = []
+    for name in asked:
+        ref = pipeline.outputs.get(name) or pipeline.ref(name)
+        kind = pipeline.type_of(ref)
+        items, item = _listed(kind)
+        if items is not None:
+            counts.append((ref, _counter(kind, items)))
+        place = _places(ref, items, item)
+        if place is not None:
+            (shapes if place.kinds else spots).append(place)
+        elif _is_identity(kind):
+            identities.append(ref)
+    return Answers(tuple(shapes or spots), tuple(counts), tuple(identities))
+
+
+def _listed(kind: Any) -> tuple[Callable[[Any], Sequence[Any]] | None, Any]:
+    """Return how a type's list is had, and the type of its items; None and itself without."""
+    item = list_item(kind)
+    if item is not None:
+        return (lambda value: value), item
+    fields = public_fields(kind)
+    if fields.get("count") is int and hasattr(kind, "_fields"):
+        for name in kind._fields:
+            item = list_item(fields.get(name))
+            if item is not None:
+                return attrgetter(name), item
+    return None, kind
+
+
+def _counter(kind: Any, items: Callable[[Any], Sequence[Any]]) -> Callable[[Any], int]:
+    if list_item(kind) is None:
+        return attrgetter("count")  # the record counts its list itself
+    return lambda value: len(items(value))
+
+
+def _places(ref: Ref, items: Any, item: Any) -> Places | None:
+    kinds = _shape_kinds(item)
+    thing: Callable[[Any], Any] = _itself
+    if not kinds and (kinds := _shape_kinds(field_type(item, "shape"))):
+        thing = attrgetter("shape")
+    if kinds:
+        quantities = tuple(dict.fromkeys(q for k in kinds for q in OF_SHAPES[k]))
+    elif all(_is_number(field_type(item, name)) for name in ("x_cm", "y_cm")):
+        turned = _is_number(field_type(item, "angle_deg"))
+        quantities = ("centre", "angle") if turned else ("centre",)
+    else:
+        return None
+    return Places(ref, items is not None, items or _alone, thing, kinds, quantities)
+
+
+def _itself(value: Any) -> Any:
+    return value
+
+
+def _alone(value: Any) -> Sequence[Any]:
+    return (value,)
+
+
+def _shape_kinds(kind: Any) -> tuple[type, ...]:
+    """Return the shapes a type can be, if it is nothing else."""
+    if kind is None:
+        return ()
+    found = [shape_kind(arm) for arm in arms(kind) if arm is not type(None)]
+    return tuple(dict.fromkeys(k for k in found if k)) if found and all(found) else ()
+
+
+def _is_number(kind: Any) -> bool:
+    return kind is float or kind is int
+
+
+def _is_identity(kind: Any) -> bool:
+    fields = public_fields(kind)
+    return fields.get("name") is str and fields.get("known") is bool

@@ -1,0 +1,100 @@
+"""What somebody wants compared: a pipeline, what is set of it, what is asked of it."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.errors import UsageError
+from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.plugins.registry import Registry
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One variant as it was asked for.
+
+    Parameters
+    ----------
+    name : str, Path or Pipeline
+        A pipeline's name, file, or itself.
+    settings : mapping
+        ``node.setting`` -> value, instead of the file's.
+    only : tuple of str
+        Nodes to ask for instead of its outputs.
+    swept : bool
+        Whether sweeps apply to it; not to parents that were only pulled in.
+    """
+
+    name: str | Path | Pipeline
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    only: tuple[str, ...] = ()
+    swept: bool = True
+
+
+def parse_wanted(text: str, registry: Registry) -> Wanted:
+    """Return the variant that ``NAME --set node.setting=value … --only NODE …`` spells.
+
+    Raises
+    ------
+    UsageError
+        If it holds anything else.
+    """
+    if " " not in text.strip() or registry.has("pipelines", text) or Path(text).is_file():
+        return Wanted(text)
+    try:
+        name, *rest = shlex.split(text)
+    except ValueError as error:
+        raise UsageError(f"variant {text!r}: {error}") from None
+    settings: dict[str, Any] = {}
+    only: list[str] = []
+    waiting = list(rest)
+    while waiting:
+        option, sign, value = waiting.pop(0).partition("=")
+        if option not in ("--set", "--only"):
+            raise UsageError(
+                f"variant {text!r}: {option!r} is not allowed; it is "
+                "'NAME --set node.setting=value … --only NODE …'"
+            )
+        if not sign:
+            if not waiting:
+                raise UsageError(f"variant {text!r}: {option} says nothing")
+            value = waiting.pop(0)
+        if option == "--only":
+            only.append(value)
+        else:
+            settings |= dict([_assigned(value)])
+    return Wanted(name, settings, tuple(only))
+
+
+def _assigned(text: str) -> tuple[str, Any]:
+    from tactile_graph.cli.arguments import assignment
+
+    return assignment("--set", text)
+
+
+def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:
+    """Return a variant as it can be given again: one argument, quoted where it must be."""
+    words = [name]
+    for key, value in settings.items():
+        words += ["--set", f"{key}={as_yaml(value)}"]
+    for node in only:
+        words += ["--only", node]
+    return shlex.quote(shlex.join(words)) if len(words) > 1 else shlex.quote(name)
+
+
+def as_yaml(value: Any) -> str:
+    """Return a setting's value as YAML on one line."""
+    value = plain(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if value is None:
+        return "null"
+    if isinstance(value, list):
+        return f"[{', '.join(as_yaml(v) for v in value)}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{k}: {as_yaml(v)}' for k, v in value.items())}}}"
+    return repr(value) if isinstance(value, float) else str(value)

@@ -1,0 +1,39 @@
+"""The hand-made plugin stands in for the installed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers_cli import install
+from tactile_graph.plugins import registry
+
+NEXT = """\
+pipeline: next
+about: Discs with a spare circle where the first finds none, and another level
+evolves: discs
+source: {step: made, with: {frames: 4}}
+conditions:
+  touched: footprint.count > 0
+nodes:
+  footprint: {step: pressed, in: frame, with: {level_v: 0.5}}
+  merged: {step: merge, in: [footprint]}
+  first: {step: disc, in: merged, with: {fail_at_x: 1}, when: touched}
+  spare: {step: disc, in: footprint, when: touched}
+  circle: {first_of: [first, spare]}
+outputs: [circle]
+"""
+
+
+@pytest.fixture
+def hand_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder with ``next.yaml``, which evolves from the plugin's ``discs``."""
+    install(monkeypatch, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "next.yaml").write_text(NEXT)
+    # It would compile the kernels for every test that comes after.
+    monkeypatch.setattr("tactile_graph.compiled.warm_up", lambda: None)
+    yield tmp_path
+    registry.installed.cache_clear()
