@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tactile_graph.errors import did_you_mean, one_of, shown
+from tactile_graph.steps.inner import Place, fields, item, leaves, place
 from tactile_graph.steps.signature import Setting, Signature, strip, type_name
 
 Trouble = tuple[tuple[str | int, ...], str]
@@ -49,14 +51,15 @@ def validate_settings(
     troubles += [((n,), _unknown(signature, n, list(known))) for n in given if n not in known]
     for name, setting in known.items():
         if name in given:
+            wrong = _booleans(setting, given[name])
             try:
-                values[name] = _one(setting, given[name])
+                values[name] = adapter(setting).validate_python(given[name])
             except ValidationError as error:
-                troubles += [(_path(name, e), _words(e, setting)) for e in _shortest(error)]
-            except _BadValue as error:
-                troubles.append(((name,), str(error)))
+                found = _shortest(error, given[name])
+                wrong = {p: _words(e, setting, p) for p, e in found.items()} | wrong
             except Exception as error:  # a plugin's own validator may raise anything
-                troubles.append(((name,), f"{error or type(error).__name__}"))
+                wrong = wrong or {(): f"{error or type(error).__name__}"}
+            troubles += [((name, *p), message) for p, message in wrong.items()]
         elif setting.required:
             troubles.append(((), f"setting {name!r} is missing ({type_name(setting.annotation)})"))
         else:
@@ -64,15 +67,21 @@ def validate_settings(
     return values, troubles
 
 
-class _BadValue(Exception):  # noqa: N818 -- never leaves this module
-    pass
+def spelled(path: tuple[str | int, ...]) -> str:
+    """Return the names on a trouble's path as people write them: ``model.lambda_d``."""
+    return ".".join(p for p in path if isinstance(p, str))
 
 
-def _one(setting: Setting, value: Any) -> Any:
-    if isinstance(value, bool) and not _takes_bool(setting.annotation):
-        # pydantic would read "yes" as the number 1
-        raise _BadValue(f"must be {_allowed(setting)}, got {shown(value)}")
-    return adapter(setting).validate_python(value)
+def _booleans(setting: Setting, value: Any) -> dict[Place, str]:
+    """Return what is wrong with each true or false that stands for no such thing.
+
+    pydantic would read "yes" as the number 1.
+    """
+    return {
+        at: f"must be {_allowed(annotation)}, got {shown(leaf)}"
+        for at, annotation, leaf in leaves(setting.annotation, value)
+        if isinstance(leaf, bool) and not _takes_bool(annotation)
+    }
 
 
 def _takes_bool(annotation: Any) -> bool:
@@ -82,8 +91,8 @@ def _takes_bool(annotation: Any) -> bool:
     )
 
 
-def _allowed(setting: Setting) -> str:
-    return type_name(strip(setting.annotation)[0])
+def _allowed(annotation: Any) -> str:
+    return type_name(strip(annotation)[0])
 
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:
@@ -91,14 +100,19 @@ def _unknown(signature: Signature, name: str, known: list[str]) -> str:
     return f"unknown setting {name!r}{hint}"
 
 
-def _shortest(error: ValidationError) -> list[Any]:
+def _shortest(error: ValidationError, given: Any) -> dict[Place, Any]:
     """Return one trouble per place: a union reports each of its arms."""
-    seen: dict[tuple[str | int, ...], Any] = {}
+    seen: dict[Place, Any] = {}
+    absent: dict[tuple[str | int, ...], Any] = {}
     for e in error.errors(include_url=False):
-        place = tuple(p for p in e["loc"] if isinstance(p, int))
-        if place not in seen or _rank(e) < _rank(seen[place]):
-            seen[place] = e
-    return list(seen.values())
+        at = place(given, e["loc"])
+        if str(e["type"]).startswith("missing"):
+            absent[e["loc"]] = e
+        elif at not in seen or _rank(e) < _rank(seen[at]):
+            seen[at] = e
+    for loc, e in absent.items():
+        seen.setdefault(place(given, loc), e)
+    return seen
 
 
 def _rank(e: Any) -> int:
@@ -106,23 +120,31 @@ def _rank(e: Any) -> int:
     return 0 if kind in _COMPARISONS else 1 if kind in ("literal_error", "value_error") else 2
 
 
-def _path(name: str, e: Any) -> tuple[str | int, ...]:
-    return (name, *(p for p in e["loc"] if isinstance(p, int)))
-
-
-def _words(e: Any, setting: Setting) -> str:
+def _words(e: Any, setting: Setting, at: Place) -> str:
     kind, context, got = str(e["type"]), e.get("ctx", {}), e["input"]
+    annotation, above = setting.annotation, setting.annotation
+    for part in at:
+        annotation, above = item(annotation, part), annotation
+    if kind in ("unexpected_keyword_argument", "extra_forbidden"):
+        known = list(fields(above))
+        hint = did_you_mean(str(at[-1]), known) or f"; {_allowed(above)} takes: {one_of(known)}"
+        return f"unknown setting {str(at[-1])!r}{hint}"
+    if kind.startswith("missing"):
+        wanted = e["loc"][-1]
+        return f"{wanted!r} is missing ({_allowed(item(annotation, wanted))})"
+    if isinstance(got, Mapping) and kind.endswith("_type"):
+        got = dict(got)
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
         return f"must be {sign} {context[key]}, got {shown(got)}"
     if kind == "literal_error":
-        names = [part.strip().strip("'") for part in _allowed(setting).split("|")]
+        names = [part.strip().strip("'") for part in _allowed(annotation).split("|")]
         hint = did_you_mean(got if isinstance(got, str) else shown(got), names)
-        return f"must be one of {_allowed(setting)}, got {shown(got)}{hint}"
+        return f"must be one of {_allowed(annotation)}, got {shown(got)}{hint}"
     if kind == "value_error":
         return f"{context.get('error', e['msg'])}"
     if kind.endswith(("_parsing", "_type", "_from_float")):
-        return f"must be {_allowed(setting)}, got {shown(got)}"
+        return f"must be {_allowed(annotation)}, got {shown(got)}"
     if kind in ("too_short", "too_long"):
         return f"{str(e['msg'])[0].lower()}{str(e['msg'])[1:]}"
-    return f"must be {_allowed(setting)}, got {shown(got)} ({e['msg']})"
+    return f"must be {_allowed(annotation)}, got {shown(got)} ({e['msg']})"

@@ -145,15 +145,16 @@ class Polygon:
             x, y = self.xy_cm.mean(axis=0) if self.count else (0.0, 0.0)
             return 0.0, float(x), float(y)
         x0, y0 = self.xy_cm[0]
-        x, y = self.xy_cm[:, 0] - x0, self.xy_cm[:, 1] - y0
+        size = float(np.abs(self.xy_cm - self.xy_cm[0]).max()) or 1.0
+        x, y = (self.xy_cm[:, 0] - x0) / size, (self.xy_cm[:, 1] - y0) / size
         xn, yn = np.roll(x, -1), np.roll(y, -1)
         cross = x * yn - xn * y
         area = 0.5 * float(cross.sum())
         if area == 0.0:
             return 0.0, float(self.xy_cm[:, 0].mean()), float(self.xy_cm[:, 1].mean())
-        cx = float(((x + xn) * cross).sum()) / (6.0 * area)
-        cy = float(((y + yn) * cross).sum()) / (6.0 * area)
-        return area, float(x0) + cx, float(y0) + cy
+        cx = size * float(((x + xn) * cross).sum()) / (6.0 * area)
+        cy = size * float(((y + yn) * cross).sum()) / (6.0 * area)
+        return area * size * size, float(x0) + cx, float(y0) + cy
 
     @property
     def area_cm2(self) -> float:
