@@ -19,6 +19,9 @@ from tactile_graph.compiled import compiled_twin_of
 
 Array = NDArray[np.float64]
 
+LEAST_ROOM = 1e-12
+"""Of the conductance left above saturation: below it rounding decides, so no load is told."""
+
 
 def _conductance(load_g: Array, law: Array) -> Array:
     """Return the conductance in siemens of each element under ``load_g``; ``law`` as packed."""
@@ -58,10 +61,11 @@ def _load(siemens: Array, law: Array) -> Array:
     out = np.zeros(siemens.shape)
     on = siemens > 0.0
     y = np.log(siemens[on]) - log_c
-    excess = np.exp(np.maximum(y - p * log_sat, 0.0)) - 1.0
-    room = 1.0 - excess / headroom
+    with np.errstate(over="ignore"):  # no force reaches such conductances: inf
+        excess = np.exp(np.maximum(y - p * log_sat, 0.0)) - 1.0
+        room = 1.0 - excess / headroom
     with np.errstate(divide="ignore"):
-        saturated = log_sat - headroom / p * np.log(np.maximum(room, 0.0))
+        saturated = log_sat - headroom / p * np.log(np.where(room > LEAST_ROOM, room, 0.0))
     log_load = np.where(excess > 0.0, saturated, y / p)
     if bend > 0.0:
         drop = np.minimum(y - p * log_on, 0.0)
@@ -88,7 +92,7 @@ def load_kernel(siemens: Array, law: Array) -> Array:  # noqa: D103
                 x = log_on + 2.0 * drop / (p + math.sqrt(p * p - 4.0 * bend * drop))
             elif excess > 0.0:
                 room = 1.0 - (math.exp(excess) - 1.0) / headroom
-                x = log_sat - headroom / p * math.log(room) if room > 0.0 else math.inf
+                x = log_sat - headroom / p * math.log(room) if room > LEAST_ROOM else math.inf
             else:
                 x = y / p
             out[r, c] = math.exp(x)

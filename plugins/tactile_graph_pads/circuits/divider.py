@@ -42,9 +42,10 @@ def ratio_kernel(siemens: Array, reference_s: float, gain: float) -> Array:  # n
 
 def _siemens(ratio: Array, reference_s: float, gain: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return the conductances and which columns are possible, the exact inverse of `_ratio`."""
-    true = ratio / gain
-    left = 1.0 - true.sum(axis=0)
-    possible = left > 0.0
+    with np.errstate(over="ignore"):  # no supply gives such sums: not possible
+        true = ratio / gain
+        left = 1.0 - true.sum(axis=0)
+    possible = (left > 0.0) & (left < np.inf)
     valid = np.broadcast_to(possible, ratio.shape).copy()
     siemens = np.where(valid, true * (reference_s / np.where(possible, left, 1.0)), 0.0)
     return siemens, valid

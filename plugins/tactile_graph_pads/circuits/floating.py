@@ -179,6 +179,11 @@ class Floating:
         if not on.any():
             return Inverse(np.zeros(ratio.shape), valid)
         target = np.where(on, ratio / (self.bias_ohm * left), 0.0)
+        # A network's conductance is in proportion to its parts': of a size near 1 none overflows.
+        unit = float(target.max())
+        if not unit > 0.0:
+            return Inverse(np.zeros(ratio.shape), valid)
+        target /= unit
         siemens = np.zeros(ratio.shape)
         last: dict[str, Array] = {}
 
@@ -193,7 +198,9 @@ class Floating:
 
         if start is None:
             start = target * (target / np.where(on, equivalent_s(target), 1.0))
+        else:
+            start = start / unit
         first = np.log(np.where(start[on] > 0.0, start[on], target[on]))
         found = solve_log(np.log(target[on]), log_model, jacobian, first)
-        siemens[on] = np.exp(found.log_siemens)
+        siemens[on] = np.exp(found.log_siemens) * unit
         return Inverse(siemens, valid, found.residual, found.iterations)

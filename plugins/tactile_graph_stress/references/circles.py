@@ -1,0 +1,85 @@
+"""The circle fits' equations: the geometric one, Kåsa's, Taubin's and the hyper fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from tactile_graph_stress.references.stationary import Fit, Vector
+
+Points = Sequence[tuple[Any, Any]]
+
+
+def _geometric(a: Vector, x: Any, y: Any, n: int) -> Vector:
+    """Return one point's part of half the gradient of sum (d - R)**2."""
+    from mpmath import sqrt
+
+    dx, dy = x - a[0], y - a[1]
+    d = sqrt(dx * dx + dy * dy)
+    off = d - a[2]
+    return [-off * dx / d, -off * dy / d, -off]
+
+
+def _kasa(a: Vector, x: Any, y: Any, n: int) -> Vector:
+    off = x * x + y * y + a[0] * x + a[1] * y + a[2]
+    return [off * x, off * y, off]
+
+
+def _constrained(hyper: bool) -> Callable[[Vector, Any, Any, int], Vector]:
+    """Return the equations (M - eta N) A = 0 with the first of A held at 1."""
+
+    def term(a: Vector, x: Any, y: Any, n: int) -> Vector:
+        b, c, d, eta = a
+        z = x * x + y * y
+        off = z + b * x + c * y + d
+        if hyper:
+            bound = (8 * z + 4 * (x * b + y * c) + 2 * d, 4 * x + b, 4 * y + c, 2)
+        else:
+            bound = (4 * z + 2 * (x * b + y * c), 2 * x + b, 2 * y + c, 0)
+        rows = (z, x, y, 1)
+        return [off * row - eta * limit for row, limit in zip(rows, bound, strict=True)]
+
+    return term
+
+
+def _of_conic(a: Vector) -> Vector:
+    from mpmath import sqrt
+
+    x, y = -a[0] / 2, -a[1] / 2
+    return [x, y, sqrt(x * x + y * y - a[2])]
+
+
+def _as_conic(shape: Vector, points: Points) -> Vector:
+    x, y, radius = shape
+    return [-2 * x, -2 * y, x * x + y * y - radius * radius]
+
+
+def _with_eta(shape: Vector, points: Points) -> Vector:
+    """Return the conic and the multiplier that it would have."""
+    b, c, d = _as_conic(shape, points)
+    off = sum((x * x + y * y + b * x + c * y + d) ** 2 for x, y in points)
+    bound = sum((2 * x + b) ** 2 + (2 * y + c) ** 2 for x, y in points)
+    return [b, c, d, off / bound]
+
+
+def _eta(a: Vector, points: Points) -> Any:
+    """Return the multiplier, which is what the constrained fits make least; none is below 0."""
+    from mpmath import inf
+
+    return a[3] if a[3] >= 0 else inf
+
+
+def _distances(a: Vector, points: Points) -> Any:
+    from mpmath import hypot
+
+    return sum((hypot(x - a[0], y - a[1]) - a[2]) ** 2 for x, y in points)
+
+
+def _powers(a: Vector, points: Points) -> Any:
+    return sum((x * x + y * y + a[0] * x + a[1] * y + a[2]) ** 2 for x, y in points)
+
+
+GEOMETRIC = Fit(_geometric, list, lambda shape, points: list(shape), _distances)
+KASA = Fit(_kasa, _of_conic, _as_conic, _powers)
+TAUBIN = Fit(_constrained(False), _of_conic, _with_eta, _eta)
+HYPER = Fit(_constrained(True), _of_conic, _with_eta, _eta)

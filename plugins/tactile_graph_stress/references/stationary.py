@@ -1,0 +1,186 @@
+"""Fits as roots of equations that sum over points, solved and differentiated to 50 digits.
+
+Where F(a, x) = sum over points of f(a, x_i) = 0 defines the answer a, Newton's method finds it
+and the implicit function theorem says how it moves with each coordinate: da = -F_a^-1 F_x dx.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+DIGITS = 100  # to work with, so that 50 are right: slopes by differences have half of them
+ROUNDS = 30
+STEP = 1e-45  # of differences
+SETTLED = 1e-50
+
+Vector = list[Any]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fit by its equations, in a frame where the points have an extent of about 1.
+
+    Parameters
+    ----------
+    term : callable
+        ``term(a, x, y, n)`` gives one of n points' part of the equations.
+    shape : callable
+        ``shape(a)`` gives x, y, then lengths, then at most one angle (counter-clockwise in
+        (x, y), y down) of the answer.
+    start : callable
+        ``start(shape, xy)`` gives unknowns near the answer of a shape.
+    cost : callable
+        ``cost(a, points)`` gives what is least at the answer: there are other roots.
+    angled : bool
+        Whether the last part of the shape is an angle.
+    """
+
+    term: Callable[[Vector, Any, Any, int], Vector]
+    shape: Callable[[Vector], Vector]
+    start: Callable[[Vector, Sequence[tuple[Any, Any]]], Vector]
+    cost: Callable[[Vector, Sequence[tuple[Any, Any]]], Any]
+    angled: bool = False
+
+
+class Solved(NamedTuple):
+    """The right answer, and how it moves with the points.
+
+    Parameters
+    ----------
+    shape : list of mpf
+        x, y, then lengths in cm, then at most one angle, counter-clockwise in (x, y), y down.
+    moves : ndarray
+        For each part the sum of the sizes of its derivatives by all coordinates; for the angle
+        by coordinates in units of ``unit_cm``.
+    unit_cm : mpf
+    angled : bool
+        Whether the last part is an angle.
+    """
+
+    shape: Vector
+    moves: NDArray[np.float64]
+    unit_cm: Any
+    angled: bool
+
+
+def solve(fit: Fit, xy: NDArray[np.float64], starts: Sequence[Vector]) -> Solved | None:
+    """Return the answer for points, shape (N, 2): the best of those the starts lead to.
+
+    Parameters
+    ----------
+    fit : Fit
+    xy : ndarray, shape (N, 2)
+    starts : sequence of lists
+        Shapes in cm, such as ``Fit.shape`` gives.
+    """
+    from mpmath import mp, mpf
+
+    with mp.workdps(DIGITS):
+        raw = [(mpf(float(x)), mpf(float(y))) for x, y in xy]
+        x0, y0 = (sum(p[k] for p in raw) / len(raw) for k in (0, 1))
+        unit = max(max(abs(x - x0), abs(y - y0)) for x, y in raw)
+        if not unit > 0:
+            return None
+        points = [((x - x0) / unit, (y - y0) / unit) for x, y in raw]
+        roots = []
+        for start in starts:
+            framed = _framed(fit, [mpf(v) for v in start], x0, y0, unit)
+            try:
+                a = _root(fit, points, fit.start(framed, points))
+            except (ZeroDivisionError, ValueError):
+                continue
+            if a is not None:
+                roots.append((fit.cost(a, points), a))
+        if not roots:
+            return None
+        return _answer(fit, points, min(roots, key=lambda r: r[0])[1], x0, y0, unit)
+
+
+def _framed(fit: Fit, shape: Vector, x0: Any, y0: Any, unit: Any) -> Vector:
+    last = len(shape) - 1 if fit.angled else len(shape)
+    middle = [v / unit for v in shape[2:last]]
+    return [(shape[0] - x0) / unit, (shape[1] - y0) / unit, *middle, *shape[last:]]
+
+
+def _total(fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector) -> Vector:
+    n = len(points)
+    parts = [fit.term(a, x, y, n) for x, y in points]
+    return [sum(column) for column in zip(*parts, strict=True)]
+
+
+def _slopes(of: Callable[[Vector], Vector], a: Vector) -> tuple[Vector, Any]:
+    """Return a function's value and its matrix of derivatives, by differences."""
+    from mpmath import matrix, mpf
+
+    here = of(a)
+    slopes = matrix(len(here), len(a))
+    for k in range(len(a)):
+        h = mpf(STEP) * max(abs(a[k]), mpf(1) / 1000)
+        there = of([*a[:k], a[k] + h, *a[k + 1 :]])
+        for i in range(len(here)):
+            slopes[i, k] = (there[i] - here[i]) / h
+    return here, slopes
+
+
+def _root(fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector) -> Vector | None:
+    """Return the unknowns at which the equations hold, by damped steps of Newton's method."""
+    from mpmath import lu_solve, matrix, norm
+
+    before = None
+    for _ in range(ROUNDS):
+        value, slopes = _slopes(lambda v: _total(fit, points, v), a)
+        step = lu_solve(slopes, matrix(value))
+        size, extent = norm(step), norm(matrix(a))
+        if size > extent:  # far away: no more than as far as everything is large
+            step = step * (extent / size)
+        a = [v - step[k] for k, v in enumerate(a)]
+        if size <= SETTLED * extent:
+            return a
+        if before is not None and size > 1e6 * before:
+            return None
+        before = size
+    return None
+
+
+def _answer(
+    fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector, x0: Any, y0: Any, unit: Any
+) -> Solved:
+    from mpmath import lu_solve, matrix, mpf
+
+    n = len(points)
+    _, by_unknown = _slopes(lambda v: _total(fit, points, v), a)
+    shape, by_shape = _slopes(fit.shape, a)
+    columns = matrix(len(a), 2 * n)
+    h = mpf(STEP)
+    for i, (x, y) in enumerate(points):
+        here = fit.term(a, x, y, n)
+        for k, there in enumerate((fit.term(a, x + h, y, n), fit.term(a, x, y + h, n))):
+            for row in range(len(a)):
+                columns[row, 2 * i + k] = (there[row] - here[row]) / h
+    moves = np.zeros(len(shape))
+    inverse = _inverse(by_unknown, lu_solve)
+    total = by_shape * inverse * columns
+    for row in range(len(shape)):
+        moves[row] = float(sum(abs(total[row, k]) for k in range(2 * n)))
+    last = len(shape) - 1 if fit.angled else len(shape)
+    placed = [shape[0] * unit + x0, shape[1] * unit + y0, *(v * unit for v in shape[2:last])]
+    return Solved([*placed, *shape[last:]], moves, unit, fit.angled)
+
+
+def _inverse(square: Any, lu_solve: Any) -> Any:
+    from mpmath import matrix
+
+    n = square.rows
+    out = matrix(n, n)
+    for k in range(n):
+        unit = matrix(n, 1)
+        unit[k] = 1
+        column = lu_solve(square, unit)
+        for i in range(n):
+            out[i, k] = column[i]
+    return out

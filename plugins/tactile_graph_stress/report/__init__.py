@@ -1,0 +1,1 @@
+"""What the rows of a study look like to people and programs."""

@@ -1,0 +1,56 @@
+"""A study written to a file, in the form its name asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tactile_graph.errors import UsageError
+from tactile_graph_stress.report.markdown import markdown
+from tactile_graph_stress.study import Row
+
+ENDINGS = (".md", ".csv", ".json")
+COLUMNS = ("step", "kind", "plugin", "group", "case", "outcome", "units", "condition", "note")
+
+
+def check_ending(path: Path) -> None:
+    """Refuse a file whose name says no known form, or whose folder is not there.
+
+    Raises
+    ------
+    UsageError
+    """
+    if path.suffix.lower() not in ENDINGS:
+        raise UsageError(f"-o {path}: its name must end in {', '.join(ENDINGS)}")
+    if not path.parent.is_dir():
+        raise UsageError(f"-o {path}: there is no folder {str(path.parent)!r}")
+
+
+def write(path: Path, rows: Sequence[Row], command: str) -> None:
+    """Write the rows; ``command`` is what made them."""
+    make = {".md": markdown, ".csv": _csv, ".json": _json}[path.suffix.lower()]
+    path.write_text(make(rows, command), encoding="utf-8")
+
+
+def _fields(row: Row) -> list[object]:
+    v = row.verdict
+    of_row: list[object] = [row.step, row.kind, row.plugin, row.group, row.case]
+    return [*of_row, v.outcome.value, v.units, v.condition, v.note]
+
+
+def _csv(rows: Sequence[Row], command: str) -> str:
+    import csv
+    import io
+
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(["" if f is None else f for f in _fields(row)] for row in rows)
+    return text.getvalue()
+
+
+def _json(rows: Sequence[Row], command: str) -> str:
+    import json
+
+    cases = [dict(zip(COLUMNS, _fields(row), strict=True)) for row in rows]
+    return json.dumps({"command": command, "cases": cases}, indent=1) + "\n"

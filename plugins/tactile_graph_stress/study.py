@@ -1,0 +1,64 @@
+"""All cases of all subjects, one row each."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_graph.errors import TactileGraphError
+from tactile_graph.plugins.registry import Registry
+from tactile_graph_stress.case import Case
+from tactile_graph_stress.cases.circuits import circuit_cases
+from tactile_graph_stress.cases.images import image_cases
+from tactile_graph_stress.cases.masks import mask_cases
+from tactile_graph_stress.cases.points import point_cases
+from tactile_graph_stress.judge import Judge
+from tactile_graph_stress.subject import Subject
+from tactile_graph_stress.trial import Trial
+from tactile_graph_stress.verdict import Outcome, Verdict
+
+
+@dataclass(frozen=True)
+class Row:
+    """One step, one case, and what it came to."""
+
+    step: str
+    kind: str
+    plugin: str
+    group: str
+    case: str
+    verdict: Verdict
+
+
+def cases_of(subject: Subject, seed: int, quick: bool) -> list[Case]:
+    """Return all cases for a subject; those of one kind are the same for all its steps."""
+    rng = np.random.default_rng([seed, zlib.crc32(subject.kind.encode())])
+    if subject.kind == "decouple":
+        return list(circuit_cases(subject, rng, quick))
+    make: dict[str, Callable[[Subject, np.random.Generator, bool], Iterator[Case]]] = {
+        "points": point_cases, "mask": mask_cases, "image": image_cases,
+    }  # fmt: skip
+    return list(make[subject.feed](subject, rng, quick))
+
+
+def stressed(
+    subject: Subject, seed: int = 0, quick: bool = True, registry: Registry | None = None
+) -> Iterator[Row]:
+    """Yield a row for each case of a subject; none if it cannot be built with its defaults."""
+    try:
+        trial = Trial(subject, seed, registry)
+    except TactileGraphError:  # two settings of which one must be given, for instance
+        return
+    judge = Judge(trial, np.random.default_rng([seed, 1]))
+    for case in cases_of(subject, seed, quick):
+        verdict = judge.of(case)
+        yield Row(subject.label, subject.kind, subject.plugin, case.group, case.name, verdict)
+
+
+def worst_first(rows: Sequence[Row]) -> list[Row]:
+    """Return rows by outcome, the worst first, and within one by falling error."""
+    order = list(Outcome)
+    return sorted(rows, key=lambda r: (-order.index(r.verdict.outcome), -(r.verdict.units or 0.0)))

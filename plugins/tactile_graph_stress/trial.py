@@ -1,0 +1,158 @@
+"""``Trial``: a step in a pipeline of its own, run on one case after another."""
+
+from __future__ import annotations
+
+import linecache
+import types
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Frame, TactileGraphError, hookimpl, loads
+from tactile_graph.plugins.registry import Registry, installed
+from tactile_graph.wires import Image, Mask, Points
+from tactile_graph_stress.finite import not_finite
+from tactile_graph_stress.subject import TURNING, Subject
+
+Given = Points | Mask | Image
+
+FORGED = ("numpy", "scipy", "skimage", "numba")
+"""Packages whose own errors no step may hand on: they are not written for its user."""
+
+
+@dataclass(frozen=True)
+class Came:
+    """What came of one run: a value, a typed refusal (``gave_up``), or what broke."""
+
+    value: Any = None
+    gave_up: str = ""
+    broke: str = ""
+
+
+class Trial:
+    """Runs a subject through the engine, as a pipeline file would.
+
+    Parameters
+    ----------
+    subject : Subject
+    seed : int
+        Of steps that take randomness.
+    registry : Registry, optional
+        Where steps are looked up; the installed plugins if not given.
+    """
+
+    def __init__(self, subject: Subject, seed: int = 0, registry: Registry | None = None) -> None:
+        self.subject = subject
+        self._seed = seed
+        known = registry or installed()
+        names = [subject.name, *subject.suppliers]
+        steps = {name: known.load("steps", name) for name in names}
+        self._pipeline = loads(_text(subject), registry=_small(steps))
+        self._runners: dict[str, Callable[[Frame], Any]] = {}
+
+    def run(self, given: Given, settings: Mapping[str, Any] | None = None) -> Came:
+        """Return what comes of a case; never raises."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                value = self._runner(settings or {})(_frame(given))["subject"]
+            except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
+                came = _without_value(error)
+            except Exception as error:
+                came = Came(broke=f"the run crashed with {type(error).__name__}: {error}")
+            else:
+                bad = not_finite(value)
+                came = Came(broke=bad) if bad else Came(value=value)
+        return Came(broke=f"warning escaped: {caught[0].message}") if caught else came
+
+    def _runner(self, settings: Mapping[str, Any]) -> Callable[[Frame], Any]:
+        key = repr(sorted(settings.items()))
+        if key not in self._runners or self.subject.signature.stateful:
+            pipeline = self._pipeline
+            if settings:
+                pipeline = pipeline.with_settings({f"subject.{k}": v for k, v in settings.items()})
+            self._runners[key] = pipeline.runner(seed=self._seed)
+        return self._runners[key]
+
+
+def _without_value(error: TactileGraphError) -> Came:
+    """Return what an outcome without a value stands for."""
+    outcome = getattr(error, "outcome", None)
+    cause = getattr(outcome, "error", error)
+    reason = f"{type(cause).__name__}: {cause}"
+    where = getattr(outcome, "where", "")
+    return Came(gave_up=reason) if _typed(cause, where) else Came(broke=f"untyped {reason}")
+
+
+def _typed(error: object, where: str) -> bool:
+    """Return whether an error was raised for people: of the project, or a ValueError on purpose.
+
+    ``where`` is the engine's "file:line in function".
+    """
+    if isinstance(error, TactileGraphError):
+        return True
+    file, _, line = where.partition(" in ")[0].rpartition(":")
+    if type(error) is not ValueError or any(f"/{package}/" in file for package in FORGED):
+        return False
+    return line.isdigit() and "raise" in linecache.getline(file, int(line))
+
+
+def _frame(given: Given) -> Frame:
+    if isinstance(given, Points):
+        # A frame must have a cell: the first row is a stand-in that `_points` takes away.
+        xy = given.xy_cm
+        return Frame(Image(np.vstack([np.zeros((1, 2), xy.dtype), xy])))
+    if isinstance(given, Mask):
+        values = given.values.astype(np.float64)
+        return Frame(Image(values, given.pitch_cm, given.origin_cm, "level"))
+    return Frame(given)
+
+
+def _points(image: Image) -> Points:
+    """Return the rows of an image, but for the first, as points."""
+    xy: NDArray[np.float64] = image.values[1:]
+    return Points(xy)
+
+
+def _mask(image: Image) -> Mask:
+    """Return the valid cells above half the peak."""
+    with np.errstate(invalid="ignore"):
+        on = image.filled() > 0.5 * image.peak
+    return image.mask(on)
+
+
+class _Offer:
+    def __init__(self, steps: Mapping[str, Any]) -> None:
+        self._steps = dict(steps)
+
+    @hookimpl
+    def tactile_graph_steps(self) -> Mapping[str, Any]:
+        return self._steps
+
+
+def _small(steps: Mapping[str, Any]) -> Registry:
+    """Return a registry of these steps and of those that make what a case brings."""
+    offer: Any = _Offer({**steps, "stress_points": _points, "stress_mask": _mask})
+    module: types.ModuleType = offer
+    return Registry([("stress", "tactile-graph", "", lambda: module)])
+
+
+def _text(subject: Subject) -> str:
+    """Return the pipeline file that feeds the subject."""
+    feed = "frame" if subject.feed == "image" else "given"
+    lines = ["pipeline: stress", "nodes:"]
+    if subject.feed != "image":
+        lines.append(f"  given: {{step: stress_{subject.feed}, in: frame}}")
+    elif "mask" in subject.wires.values():
+        lines.append("  mask: {step: stress_mask, in: frame}")
+    for supplier in subject.suppliers:
+        source = f"[{feed}, orientation]" if supplier == TURNING else feed
+        lines.append(f"  {supplier}: {{step: {supplier}, in: {source}}}")
+    into = {port: feed if wire == subject.feed else wire for port, wire in subject.wires.items()}
+    ports = ", ".join(f"{port}: {wire}" for port, wire in into.items())
+    lines.append(f"  subject: {{step: {subject.name}, in: {{{ports}}}}}")
+    return "\n".join([*lines, "outputs: [subject]", ""])
