@@ -16,7 +16,6 @@ counts as an error of its object's own radius.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
 
 import numpy as np
 import yaml
@@ -26,32 +25,15 @@ from scipy.optimize import minimize
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.plugins.registry import installed
+from tactile_graph_thesis.measure.circles import circle_errors, max_and_average
+from tactile_graph_thesis.numbers import error_table
 
 PIPELINES = ("circle-1", "circle-2", "circle-3")
 OBJECTS = ("DISC I", "DISC II", "DISC III")
 COLUMNS = ("x max", "x avg", "y max", "y avg", "r max", "r avg")
 GROUP = 20
 
-# Tables 4.3, 4.4 and 4.5: rows are the objects of table 4.2, columns as COLUMNS, in cm.
-THESIS = np.array(
-    [
-        [
-            [0.4, 0.3, 2.0, 1.3, 2.2, 1.2],
-            [1.1, 0.7, 0.6, 0.4, 2.3, 2.0],
-            [1.5, 0.6, 1.5, 0.9, 2.6, 2.0],
-        ],
-        [
-            [0.8, 0.5, 1.2, 1.0, 1.3, 0.8],
-            [0.5, 0.4, 0.4, 0.3, 2.0, 1.6],
-            [2.0, 0.8, 1.4, 0.7, 2.2, 1.7],
-        ],
-        [
-            [0.9, 0.6, 1.0, 0.6, 0.4, 0.3],
-            [0.7, 0.4, 0.6, 0.5, 1.3, 1.0],
-            [0.7, 0.5, 0.6, 0.4, 0.7, 0.4],
-        ],
-    ]
-)
+THESIS = np.array([error_table(f"table-4.{k}").values for k in (3, 4, 5)])
 # Where the search sets out: sigma, voids, correlation in cm, log odds of the fixed share.
 STARTS = (
     (0.5, 0.1, 0.5, -2.0),
@@ -75,33 +57,10 @@ def readings(pad: dict[str, object], groups: int, seed: int) -> list[Frame]:
     return list(source.frames(seed))
 
 
-def errors(frames: Iterable[Frame]) -> Array:
-    """Return |x|, |y| and |radius| errors, shape (pipelines, objects, readings, 3)."""
-    runners = [load(name).runner() for name in PIPELINES]
-    found: list[list[list[tuple[float, float, float]]]] = [[[] for _ in OBJECTS] for _ in PIPELINES]
-    for frame in frames:
-        assert frame.truth is not None
-        true = frame.truth[0]
-        which = OBJECTS.index(true.name)
-        for runner, row in zip(runners, found, strict=True):
-            circle = runner(frame).get("circle")
-            if circle is None:
-                row[which].append((true.shape.radius_cm,) * 3)
-                continue
-            row[which].append((
-                abs(circle.x_cm - true.shape.x_cm),
-                abs(circle.y_cm - true.shape.y_cm),
-                abs(circle.radius_cm - true.shape.radius_cm),
-            ))  # fmt: skip
-    return np.array(found)
-
-
-def table(found: Array) -> Array:
+def table(frames: list[Frame]) -> Array:
     """Return maximum and average errors as the thesis tabulates them, shape (3, 3, 6)."""
-    pipelines, objects, readings_, _ = found.shape
-    grouped = found.reshape(pipelines, objects, readings_ // GROUP, GROUP, 3)
-    largest, mean = grouped.max(axis=3).mean(axis=2), found.mean(axis=2)
-    return np.stack([largest, mean], axis=-1).reshape(pipelines, objects, 6)
+    runners = [load(name).runner() for name in PIPELINES]
+    return max_and_average(circle_errors(frames, runners, OBJECTS), GROUP)
 
 
 def misfit(ours: Array) -> float:
@@ -129,7 +88,7 @@ def search(groups: int, seed: int) -> dict[str, float]:
         nonlocal trials
         trials += 1
         settings = uneven(parameters)
-        found = misfit(table(errors(readings({**pad, "unevenness": settings}, groups, seed))))
+        found = misfit(table(readings({**pad, "unevenness": settings}, groups, seed)))
         if trials % 20 == 1:
             shown = ", ".join(f"{k} {v:.3f}" for k, v in settings.items())
             print(f"trial {trials:4}: misfit {found:.4f}  ({shown})", flush=True)
@@ -167,7 +126,7 @@ def main() -> None:
     if not arguments.check:
         pad["unevenness"] = search(arguments.groups, seed=1)
         print("unevenness: " + str({k: round(v, 3) for k, v in pad["unevenness"].items()}))  # type: ignore[attr-defined]
-    show(table(errors(readings(pad, 25, seed=2))))
+    show(table(readings(pad, 25, seed=2)))
 
 
 if __name__ == "__main__":

@@ -11,11 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_graph_classifiers.experiments import Curve, error_curves, strangers_rejected, table_4_9
+from tactile_graph_classifiers.experiments import Curve, strangers_rejected, table_4_9
+from tactile_graph_thesis.measure.identification import mean_curves
+from tactile_graph_thesis.numbers import numbers
 
 SEEDS = range(4)
-THESIS_BEYOND_G = 1000.0
-THESIS_AT_MOST = 0.05
+THESIS_BEYOND_G = numbers("identification")["beyond_g"]
+THESIS_AT_MOST = 0.01 * numbers("identification")["error_below_percent"]
 WEIGHINGS = {"curve": "calibration curve alone, as in the thesis", "decoupled": "circuit inverted"}
 
 
@@ -32,19 +34,6 @@ def show_table_4_9() -> None:
     shares = [strangers_rejected(seed=seed) for seed in range(4)]
     for step in shares[0]:
         print(f"  {step:<28} {100 * np.mean([s[step] for s in shares]):6.2f} %")
-
-
-def mean_curves(kind: str) -> list[Curve]:
-    """Return the curves averaged over pads."""
-    runs = [error_curves(kind, seed=seed) for seed in SEEDS]
-    return [
-        Curve(
-            same[0].pair,
-            same[0].differences_g,
-            {s: np.mean([c.error[s] for c in same], axis=0) for s in same[0].error},
-        )
-        for same in zip(*runs, strict=True)
-    ]
 
 
 def show(curves: list[Curve], kind: str) -> None:
@@ -96,7 +85,7 @@ def main() -> None:
     start = time.perf_counter()
     show_table_4_9()
     for kind in WEIGHINGS:
-        curves = mean_curves(kind)
+        curves = mean_curves(SEEDS, kind)
         show(curves, kind)
         if folder is not None:
             plot(curves, kind, folder)

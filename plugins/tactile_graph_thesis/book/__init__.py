@@ -1,0 +1,1 @@
+"""The book: every item on one page that needs nothing else, and the files beside it."""

@@ -1,0 +1,120 @@
+"""``Item``: one table or figure of the thesis and how it is made; ``Made``: what came out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from tactile_graph_pads.studies import Finding, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from tactile_graph_thesis.work import Work
+
+__all__ = ["Compared", "Finding", "Item", "Made", "Table"]
+
+
+class Compared(NamedTuple):
+    """One number of ours beside the thesis'.
+
+    Parameters
+    ----------
+    what : str
+        Which object and quantity.
+    unit : str
+    ours : float
+        NaN where there was no reading with an answer.
+    thesis : float, optional
+        None where the thesis has no such number.
+    low, high : float, optional
+        Between these lie nine in ten of what groups of readings, as many as the thesis', give.
+    limit : bool
+        Whether the thesis only says "less than" its number.
+    """
+
+    what: str
+    unit: str
+    ours: float
+    thesis: float | None = None
+    low: float | None = None
+    high: float | None = None
+    limit: bool = False
+
+    @property
+    def ratio(self) -> float | None:
+        """Ours over the thesis', where both are numbers."""
+        if self.thesis is None or self.thesis == 0.0 or not math.isfinite(self.ours):
+            return None
+        return self.ours / self.thesis
+
+    @property
+    def within(self) -> bool | None:
+        """Whether the thesis' number lies in our range; None where there is no such range."""
+        if self.thesis is None or self.low is None or self.high is None:
+            return None
+        return self.low <= self.thesis <= self.high
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """What an item came to.
+
+    Parameters
+    ----------
+    compared : tuple of Compared
+        Numbers beside the thesis'.
+    findings : tuple of Finding
+        What the thesis concludes, and whether it comes out.
+    table : Table, optional
+        The data behind the figure, for a CSV file.
+    figure : matplotlib Figure, optional
+    svg : str
+        A drawing that is no matplotlib figure.
+    notes : tuple of str
+        Remarks with numbers of this run.
+    """
+
+    compared: tuple[Compared, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    table: Table | None = None
+    figure: Figure | None = None
+    svg: str = ""
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Item:
+    """A table or figure of the thesis, or a study it wished for.
+
+    Parameters
+    ----------
+    id : str
+        ``table-4.5``, ``figure-4.5``, or the name of a study.
+    title : str
+    shows : str
+        What is to be seen, in a sentence or two.
+    make : callable
+        ``make(work)`` returns a `Made`.
+    why : str
+        Where ours differs from the thesis', and why. Numbers of a run stand in `Made.notes`.
+    """
+
+    id: str
+    title: str
+    shows: str
+    make: Callable[[Work], Made]
+    why: str = ""
+
+    @property
+    def name(self) -> str:
+        """What people call it: ``table 4.5``."""
+        return self.id.replace("-", " ") if self.number else self.id
+
+    @property
+    def number(self) -> str:
+        """``4.5``; empty for a study."""
+        kind, dash, number = self.id.partition("-")
+        return number if dash and kind in ("table", "figure") else ""

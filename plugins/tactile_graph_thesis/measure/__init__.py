@@ -1,0 +1,1 @@
+"""What is measured for the tables and figures: errors of pipelines on simulated readings."""

@@ -1,0 +1,69 @@
+"""The catalogue: every figure and table that an algorithm makes is there and is found by name."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tactile_graph.errors import UsageError
+from tactile_graph_thesis.catalogue import chosen, items
+
+TABLES = ("4.3", "4.4", "4.5", "4.7", "4.8", "4.9", "5.2")
+FIGURES = (
+    *(f"2.{k}" for k in range(8, 20)),
+    *(f"4.{k}" for k in range(1, 44)),
+    *(f"5.{k}" for k in range(8, 15)),
+)
+STUDIES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
+
+
+def test_every_table_and_figure_is_there_once() -> None:
+    expected = [*(f"table-{n}" for n in TABLES), *(f"figure-{n}" for n in FIGURES), *STUDIES]
+    assert sorted(i.id for i in items()) == sorted(expected)
+
+
+def test_the_order_is_that_of_the_thesis() -> None:
+    ids = [i.id for i in items()]
+    figures = [i for i in ids if i.startswith("figure")]
+    assert figures == sorted(figures, key=lambda i: [int(p) for p in i[7:].split(".")])
+    for table, before, after in (
+        ("table-4.3", "figure-4.12", "figure-4.13"),
+        ("table-4.5", "figure-4.20", "figure-4.21"),
+        ("table-5.2", "figure-5.13", "figure-5.14"),
+    ):
+        assert ids.index(before) < ids.index(table) < ids.index(after)
+    assert tuple(ids[-len(STUDIES) :]) == STUDIES or set(ids[-len(STUDIES) :]) == set(STUDIES)
+
+
+def test_a_number_is_both_the_table_and_the_figure() -> None:
+    assert [i.id for i in chosen(("4.5",))] == ["figure-4.5", "table-4.5"]
+    assert [i.id for i in chosen(("table-4.5",))] == ["table-4.5"]
+    assert [i.id for i in chosen(("subpixel", "2.8", "figure-2.8"))] == ["figure-2.8", "subpixel"]
+
+
+def test_all_is_everything() -> None:
+    assert chosen(("all",)) == list(items())
+
+
+def test_an_unknown_name_is_told_with_the_nearest() -> None:
+    with pytest.raises(UsageError, match=r"named 'figur-4.5'; did you mean 'figure-4.5'"):
+        chosen(("figur-4.5",))
+    with pytest.raises(UsageError, match=r"no table, figure or study named 'zzz'; 'tactile-graph"):
+        chosen(("zzz",))
+
+
+def test_reasons_hold_no_number_of_a_run() -> None:
+    """A number in a fixed text would stay when the run says otherwise: only places may have one."""
+    places = r"(tables?|figures?|sections?|equations?|circle-|rectangle-|element #)\s?[\d.]+"
+    for item in items():
+        text = re.sub(places + r"( to [\d.]+| and [\d.]+|, [\d.]+)*", "", item.why, flags=re.I)
+        text = re.sub(r"(DISC|RECTANGLE) I+", "", text)
+        assert not re.search(r"\d", text), f"{item.id}: {item.why}"
+
+
+def test_every_item_says_what_is_to_be_seen() -> None:
+    for item in items():
+        assert item.title, item.id
+        assert item.shows.endswith("."), item.id
+        assert not item.why or item.why.endswith("."), item.id
