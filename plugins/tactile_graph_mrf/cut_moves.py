@@ -1,4 +1,4 @@
-"""``Cuts``: the moves of `graph_cuts`, each solved as a minimum cut."""
+"""``Cuts``: the moves of `graph_cuts`, each a minimum cut: by PyMaxflow, but for swaps."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_mrf.layout import by_cell, layout
 from tactile_graph_mrf.model import Problem
+from tactile_graph_mrf.swap_moves import swap_cycle
+from tactile_graph_mrf.visits import fit_for
 
 Labels = NDArray[np.int64]
 Costs = NDArray[np.float64]
@@ -29,7 +32,7 @@ class Cuts:
     Raises
     ------
     DataError
-        If PyMaxflow is not installed.
+        If PyMaxflow is not installed; swaps do without.
     ValueError
         If the moves are not submodular for the problem's smoothness.
     """
@@ -51,7 +54,8 @@ class Cuts:
                 f"{lines}, so a cut would not find its best move; take {fitting}"
             )
         self.moves = moves
-        self._graph = _maxflow()
+        if moves != "swap":
+            self._graph = _maxflow()
         self.index = np.flatnonzero(problem.in_field)
         self.ends, self.weights = _pairs(problem)
 
@@ -65,7 +69,9 @@ class Cuts:
     def cycle(self, labels: Labels) -> Labels:
         """Return the labels after each move was tried once; none raises the energy."""
         flat = labels.ravel().copy()
-        self._count(flat)
+        if self.moves == "swap":
+            self._swap(flat)
+            return flat.reshape(labels.shape)
         for target in getattr(self, f"_{self.moves}s")(flat):
             self._move(flat, target)
         return flat.reshape(labels.shape)
@@ -74,17 +80,14 @@ class Cuts:
         for alpha in range(self.problem.n_levels):
             yield np.full(flat.shape, alpha)
 
-    def _swaps(self, flat: Labels) -> Iterator[Labels]:
-        """Trade labels that are there for one another, and for those beside them.
-
-        In the first cycle, whose start is flat, the one label there is offered all others.
-        """
-        first = len(np.unique(flat[self.index])) == 1
-        for alpha in range(self.problem.n_levels):
-            for beta in range(alpha + 1, self.problem.n_levels):
-                here, there = self._counts[alpha], self._counts[beta]
-                if (here and there) or ((here or there) and (first or beta == alpha + 1)):
-                    yield np.where(flat == alpha, beta, np.where(flat == beta, alpha, flat))
+    def _swap(self, flat: Labels) -> None:
+        """Trade labels that are there for one another, and for those beside them."""
+        p = self.problem
+        tables = layout(p)
+        near, _ = by_cell(tables, flat.size)
+        own = p.curvature.ravel(), p.centre.ravel(), p.table, p.row.ravel()
+        kernel = fit_for(swap_cycle, flat.size * p.n_levels)
+        kernel(tables.cells, near, *own, self.rho, p.weights, flat)
 
     def _jumps(self, flat: Labels) -> Iterator[Labels]:
         size = 1 << (self.problem.n_levels - 1).bit_length()
@@ -129,11 +132,6 @@ class Cuts:
         moved[goes] = target[goes]
         if self._change(flat, moved) < 0.0:
             flat[:] = moved
-            self._count(flat)
-
-    def _count(self, flat: Labels) -> None:
-        counts = np.bincount(flat[self.index], minlength=self.problem.n_levels)
-        self._counts = counts.tolist()
 
     def _own(self, cells: Labels, labels: Labels) -> Costs:
         p = self.problem

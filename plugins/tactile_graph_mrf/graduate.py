@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph_mrf.annealing import State
 from tactile_graph_mrf.line_field import no_lines
 from tactile_graph_mrf.model import Model, Problem
@@ -60,11 +60,16 @@ def colours(order: int) -> int:
 
 
 def graduated(
-    problem: Problem, influences: NDArray[np.float64], sweeps: int, over: float
+    problem: Problem,
+    influences: NDArray[np.float64],
+    sweeps: int,
+    over: float,
+    still: float = 1e-6,
 ) -> NDArray[np.float64]:
     """Return levels, not whole, after each graduation, shape (steps, rows, columns).
 
-    ``sweeps`` at each graduation, each cell ``over`` times the way to its minimum (1 to 2).
+    At most ``sweeps`` at each graduation, each cell going ``over`` times the way to its minimum
+    (1 to 2). A cell rests while none beside it moves by the share ``still`` of the range.
     """
     p = problem
     levels = p.observed.copy()
@@ -74,7 +79,7 @@ def graduated(
     kernel = fit_for(relax, out.size * sweeps // 20)
     kernel(
         *(p.in_field, p.curvature, p.centre, p.table, p.row, p.observed, influences, p.offsets),
-        *(p.weights, colours(p.model.order), sweeps, over, levels, out),
+        *(p.weights, colours(p.model.order), sweeps, over, still * (p.n_levels - 1), levels, out),
     )
     return out
 
@@ -102,6 +107,7 @@ def _relax_plain(
     n_colours: int,
     sweeps: int,
     over: float,
+    still: float,
     levels: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
@@ -114,25 +120,39 @@ def _relax_plain(
     i, j = np.indices(levels.shape)
     colour = (i + j) % 2 if n_colours == 2 else i % 3 * 3 + j % 3
     inside = np.pad(in_field, 2)
+    top = table.shape[1] - 1
     for k, influence_k in enumerate(influences):
+        awake = in_field.copy()
         for c in [c for _ in range(sweeps) for c in range(n_colours)]:
-            own = curvature + _own_weight(levels, observed, table, row)
-            pull, mass = own * (np.where(curvature > 0, centre, observed) - levels), own
-            padded = np.pad(levels, 2)
-            for (di, dj), weight in zip(offsets.tolist(), weights.tolist(), strict=True):
-                for m, n in ((2 + di, 2 + dj), (2 - di, 2 - dj)):
-                    window = np.s_[m : m + rows, n : n + columns]
-                    step = padded[window] - levels
-                    d = np.minimum(np.abs(step), len(influence_k) - 2)
-                    whole = d.astype(np.int64)
-                    low, high = influence_k[whole], influence_k[whole + 1]
-                    w = np.where(inside[window], weight * (low + (d - whole) * (high - low)), 0.0)
-                    pull, mass = pull + w * step, mass + w
-            moved = in_field & (colour == c) & (mass > 0)
-            np.divide(over * pull, mass, out=pull, where=moved)
-            top = table.shape[1] - 1
-            levels[moved] = np.clip(levels + pull, 0.0, top)[moved]
+            if awake.any():
+                own = curvature + _own_weight(levels, observed, table, row)
+                pull, mass = own * (np.where(curvature > 0, centre, observed) - levels), own
+                padded = np.pad(levels, 2)
+                for (di, dj), weight in zip(offsets.tolist(), weights.tolist(), strict=True):
+                    for m, n in ((2 + di, 2 + dj), (2 - di, 2 - dj)):
+                        window = np.s_[m : m + rows, n : n + columns]
+                        step = padded[window] - levels
+                        bend = weight * _bent(influence_k, np.abs(step))
+                        w = np.where(inside[window], bend, 0.0)
+                        pull, mass = pull + w * step, mass + w
+                visited = awake & (colour == c)
+                moved = visited & (mass > 0)
+                np.divide(over * pull, mass, out=pull, where=moved)
+                after = np.where(moved, np.clip(levels + pull, 0.0, top), levels)
+                far = np.pad(np.abs(after - levels) >= still, 2)
+                levels[...] = after
+                awake[visited] = False
+                for di, dj in [(0, 0), *offsets.tolist(), *(-offsets).tolist()]:
+                    awake |= far[2 + di : 2 + di + rows, 2 + dj : 2 + dj + columns]
+                awake &= in_field
         out[k] = levels
+
+
+def _bent(influence: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
+    d = np.minimum(d, len(influence) - 2)
+    whole = d.astype(np.int64)
+    low, high = influence[whole], influence[whole + 1]
+    return np.asarray(low + (d - whole) * (high - low))
 
 
 def _own_weight(
@@ -152,44 +172,79 @@ def _own_weight(
 @compiled_twin_of(_relax_plain)
 def relax(  # type: ignore[no-untyped-def]
     in_field, curvature, centre, table, row, observed, influences, offsets, weights,
-    n_colours, sweeps, over, levels, out,
+    n_colours, sweeps, over, still, levels, out,
 ):  # fmt: skip
     """Write into ``out`` the levels after the sweeps with each row of ``influences``."""
+    awake = np.empty(levels.shape, np.bool_)
+    for k in range(len(influences)):
+        awake[:] = in_field
+        for _ in range(sweeps):
+            stirred = False
+            for c in range(n_colours):
+                if relax_colour(
+                    in_field, curvature, centre, table, row, observed, influences[k], offsets,
+                    weights, n_colours, c, over, still, levels, awake,
+                ):  # fmt: skip
+                    stirred = True
+            if not stirred:
+                break
+        out[k] = levels
+
+
+@compiled_as_is
+def relax_colour(  # type: ignore[no-untyped-def]
+    in_field, curvature, centre, table, row, observed, bends, offsets, weights, n_colours, c, over,
+    still, levels, awake,
+):  # fmt: skip
+    """Move the cells of one colour that are awake; return whether any went as far as ``still``.
+
+    A cell sleeps until one beside it does so.
+    """
     rows, columns = levels.shape
     top = table.shape[1] - 1
-    for k in range(len(influences)):
-        bends = influences[k]
-        for sweep in range(sweeps * n_colours):
-            c = sweep % n_colours
-            rise, run = (1, 2) if n_colours == 2 else (3, 3)
-            for i in range(0 if n_colours == 2 else c // 3, rows, rise):
-                for j in range((i + c) % 2 if n_colours == 2 else c % 3, columns, run):
-                    if not in_field[i, j]:
-                        continue
-                    x = levels[i, j]
-                    mass, goal = curvature[i, j], observed[i, j]
-                    if mass > 0:
-                        goal = centre[i, j]
-                    if row[i, j] > 0:
-                        away = abs(x - observed[i, j])
-                        at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
-                        up, dn = (
-                            table[row[i, j], min(at + 1, top)],
-                            table[row[i, j], max(at - 1, 0)],
-                        )
-                        mass += abs(0.5 * (up - dn)) / (2.0 * (1.0 if away < 1.0 else away))
-                    pull = mass * (goal - x)
-                    for q in range(len(weights)):
-                        for sign in (1, -1):
-                            m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
-                            if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
-                                step = levels[m, n] - x
-                                d = min(abs(step), top)
-                                whole = int(d)
-                                low, high = bends[whole], bends[whole + 1]
-                                w = weights[q] * (low + (d - whole) * (high - low))
-                                pull += w * step
-                                mass += w
-                    if mass > 0:
-                        levels[i, j] = min(max(x + over * pull / mass, 0.0), top)
-        out[k] = levels
+    rise, run = (1, 2) if n_colours == 2 else (3, 3)
+    stirred = False
+    for i in range(0 if n_colours == 2 else c // 3, rows, rise):
+        for j in range((i + c) % 2 if n_colours == 2 else c % 3, columns, run):
+            if not awake[i, j]:
+                continue
+            awake[i, j] = False
+            x = levels[i, j]
+            mass, goal = curvature[i, j], observed[i, j]
+            if mass > 0:
+                goal = centre[i, j]
+            if row[i, j] > 0:
+                away = abs(x - observed[i, j])
+                at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
+                slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
+                mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
+            pull = mass * (goal - x)
+            for q in range(len(weights)):
+                for sign in (1, -1):
+                    m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+                    if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                        step = levels[m, n] - x
+                        d = min(abs(step), top)
+                        whole = int(d)
+                        low, high = bends[whole], bends[whole + 1]
+                        w = weights[q] * (low + (d - whole) * (high - low))
+                        pull += w * step
+                        mass += w
+            if mass > 0:
+                after = min(max(x + over * pull / mass, 0.0), top)
+                levels[i, j] = after
+                if abs(after - x) >= still:
+                    stirred = awake[i, j] = True
+                    wake_beside(in_field, offsets, i, j, awake)
+    return stirred
+
+
+@compiled_as_is
+def wake_beside(in_field, offsets, i, j, awake):  # type: ignore[no-untyped-def]
+    """Wake the cells in one clique with cell (i, j)."""
+    rows, columns = in_field.shape
+    for q in range(len(offsets)):
+        for sign in (1, -1):
+            m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+            if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                awake[m, n] = True

@@ -1,4 +1,4 @@
-"""Step ``graph_cuts``: moves of any number of cells at once by minimum cuts (PyMaxflow)."""
+"""Step ``graph_cuts``: moves of any number of cells at once by minimum cuts."""
 
 from __future__ import annotations
 
@@ -32,6 +32,9 @@ def graph_cuts(
     term its end is the least energy there is. ``auto`` takes jump or expansion where they are
     submodular, else swap. Explicit lines are cut at the price of a straight one and then
     adapted to one another by iterated conditional modes. Deterministic.
+
+    A cycle of swaps tries up to L² / 2 pairs of labels, each a cut of a few cells only, which are
+    compiled here and need no PyMaxflow; the others move all cells at once by its cuts.
 
     Parameters
     ----------

@@ -50,6 +50,14 @@ def layout(problem: Problem) -> Layout:
     return _made(field, order, problem.offsets, explicit)
 
 
+def by_cell(tables: Layout, size: int) -> tuple[Indices, Indices]:
+    """Return ``near`` and ``cut`` with a row for each of ``size`` cells, -1 off the field."""
+    near = np.full((size, tables.near.shape[1]), -1)
+    cut = np.full((size, 4), -1)
+    near[tables.cells], cut[tables.cells] = tables.near, tables.cut
+    return near, cut
+
+
 @lru_cache(maxsize=8)
 def _whole(shape: tuple[int, int], order: int, explicit: bool) -> Layout:
     return _made(np.ones(shape, np.bool_), order, OFFSETS[: 2 * order], explicit)

@@ -78,8 +78,11 @@ class Model:
         itself at the price of a straight one.
     end, straight, corner, tee, cross : float
         V_l4, for one, two, two, three and four lines that meet where four cells meet (fig. 5.6 c).
-        The numbers of fig. 5.7 are lost; these are Geman and Geman's (1984, section XIII, DOI
-        10.1109/TPAMI.1984.4767596).
+        The numbers of fig. 5.7 are lost. These are the ones ascribed to Geman and Geman (1984,
+        section XIII, DOI 10.1109/TPAMI.1984.4767596), whose line cliques are the same six: no
+        line 0, an end 2.7, a straight line 0.9, a turn 1.8, a T 1.8, a cross 2.7, all whole
+        multiples of 0.9. The paper itself was not at hand and no second source with the
+        numbers was found; they are settings for that reason too.
     parallel : float
         V_l2, for two lines side by side on two sides of one cell (fig. 5.6 e, f). Ours: as much
         as a corner, so that a wide slope is cut once.
@@ -157,7 +160,9 @@ def _prepared(model: Model, image: Image, region: Mask | None, expected: Image |
     low, step = _scale(seen, has_data, in_field, model.n_levels)
     if not has_data.all():
         in_field = _reached(has_data, in_field, offsets if model.lambda_d > 0 else offsets[:0])
-    observed = np.where(has_data, (seen - low) / step if step else 0.0, 0.0)
+    # In halves: from end to end of the numbers there are, a difference is none.
+    above = (0.5 * seen - 0.5 * low) / (0.5 * step) if step else 0.0
+    observed = np.where(has_data, above, 0.0)
     gaussian = model.noise == "gaussian"
     curvature = (has_data & gaussian).astype(np.float64)
     centre = observed

@@ -131,7 +131,8 @@ class Problem:
         image = self.image
         known = np.isfinite(image.values) if image.valid is None else image.valid
         kept = np.where(known, image.values, 0.0)
-        values = np.where(self.in_field, self.low + self.step * labels, kept)
+        found = 2.0 * (0.5 * self.low + 0.5 * self.step * labels)  # halves do not overflow
+        values = np.where(self.in_field, found, kept)
         return image.with_values(values, valid=self.in_field | known)
 
 

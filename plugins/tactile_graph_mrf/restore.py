@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -14,9 +15,16 @@ from tactile_graph_mrf.fuse import polish
 from tactile_graph_mrf.graduate import graduated, influence, settled
 from tactile_graph_mrf.line_field import Restored, no_lines
 from tactile_graph_mrf.model import Model, Problem, energy
+from tactile_graph_mrf.region_moves import fuse
 
-SCHEDULES = ((10, 2.0, 6), (20, 1.5, 12), (40, 1.2, 40))
-"""Graduations, growth and sweeps of each effort."""
+SCHEDULES = ((30, 1.13, 24), (80, 1.05, 48), (200, 1.02, 100))
+"""Graduations, growth and most sweeps of each effort."""
+STIFFNESSES = (1.4, 0.7)
+"""Of further graduations, whose ends are fused: one more with each effort."""
+OVER = 1.6
+"""Over-relaxation."""
+STILL = 5e-4
+"""Share of the range: cells beside which none moves by as much rest."""
 
 
 def restore(
@@ -28,12 +36,13 @@ def restore(
     effort: Annotated[int, Ge(1), Le(3)] = 1,
     n_rounds: Annotated[int, Ge(0), Le(1000)] = 8,
 ) -> Restored:
-    """Restore an image by graduated non-convexity, then by exact moves of rows and columns.
+    """Restore an image by graduated non-convexity, then by moves that lower the energy.
 
-    Every round gives each row, then each column, the best combination of proposals for its cells
-    (the present label, those beside it, the neighbours', the datum, a local mean), with the other
-    rows held, and then each cell and line its best state; none raises the energy. It ends
-    where none lowers it. Deterministic. Chains are moved in neighbourhoods of order 1 and 2.
+    Every round raises and lowers by one level the sets of cells for which that is best, gives
+    each row, then each column, the best combination of proposals for its cells (the present
+    label, those beside it, the neighbours', the datum, a local mean), with the other rows held,
+    and then each cell and line its best state; none raises the energy. It ends where none lowers
+    it. Deterministic. Chains are moved in neighbourhoods of order 1 and 2.
 
     Parameters
     ----------
@@ -46,7 +55,8 @@ def restore(
     model : Model
         What is minimised.
     effort : int
-        1, 2 or 3: ever slower graduations, about 1, 2 and 10 ms on 16 by 16 cells.
+        1, 2 or 3: ever slower graduations, and with 2 or 3 as many of them, each of another
+        stiffness, fused.
     n_rounds : int
         Rounds of moves at most.
 
@@ -64,19 +74,37 @@ def restore(
 
     Notes
     -----
-    Blake and Zisserman (1987) for the start; the moves are fusion moves (V. Lempitsky et al. 2010,
-    DOI 10.1109/TPAMI.2009.143) solved along chains by dynamic programming.
+    Blake and Zisserman (1987) for the start; regions are jump moves (V. Kolmogorov and
+    A. Shioura 2009, DOI 10.1016/j.disopt.2009.04.006); rows and columns fusion moves
+    (V. Lempitsky et al. 2010, DOI 10.1109/TPAMI.2009.143) by dynamic programming.
     """
     problem = model.prepare(image, region, expected)
     if problem.idle:
         return unswept(problem)
+    trace: list[float] = []
+    state = _descended(problem, effort, 1.0, n_rounds, trace)
+    for stiffness in STIFFNESSES[: effort - 1 if n_rounds else 0]:
+        other = _descended(problem, effort, stiffness, n_rounds, [])
+        if energy(problem, *other) < trace[-1]:
+            state, other = other, state
+            trace.append(energy(problem, *state))
+        if fuse(problem, state, other.labels):
+            trace += polish(problem, state, n_rounds)
+    return outcome(problem, state, trace)
+
+
+def _descended(
+    problem: Problem, effort: int, stiffness: float, n_rounds: int, trace: list[float]
+) -> State:
+    """Return the end of a graduation, of a smoothness so many times the model's, and of moves."""
     steps, growth, sweeps = SCHEDULES[effort - 1]
-    levels = graduated(problem, influence(model, steps, growth), sweeps, 1.5)[-1]
+    path = replace(problem.model, lambda_d=min(stiffness * problem.model.lambda_d, 1e12))
+    levels = graduated(problem, influence(path, steps, growth), sweeps, OVER, STILL)[-1]
     states = (settled(problem, levels), _flat(problem, levels))
     start = [energy(problem, *state) for state in states]
     state = states[0] if start[0] <= start[1] else states[1]
-    trace = [min(start), *(polish(problem, state, n_rounds) if n_rounds else ())]
-    return outcome(problem, state, trace)
+    trace += [min(start), *(polish(problem, state, n_rounds) if n_rounds else ())]
+    return state
 
 
 def _flat(problem: Problem, levels: NDArray[np.float64]) -> State:

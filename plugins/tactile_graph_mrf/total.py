@@ -82,39 +82,76 @@ def broken(across: Any, down: Any, i: int, j: int, di: int, dj: int) -> bool:
     return bool((down[i, j - 1] or across[i, j - 1]) and (across[i, j] or down[i + 1, j - 1]))
 
 
+@compiled_as_is
+def own_costs(in_field, curvature, centre, table, row, labels):  # type: ignore[no-untyped-def]
+    """Return the sum of the costs that each cell has by itself."""
+    energy = 0.0
+    tabled = table.shape[0] > 1
+    for i in range(labels.shape[0]):
+        for j in range(labels.shape[1]):
+            if in_field[i, j]:
+                x = labels[i, j]
+                energy += curvature[i, j] * (x - centre[i, j]) ** 2
+                if tabled:
+                    energy += table[row[i, j], x]
+    return energy
+
+
+@compiled_as_is
+def pair_costs(in_field, smooth, di, dj, labels, across, down):  # type: ignore[no-untyped-def]
+    """Return the sum over the pairs (di, dj) apart that no line cuts, their weight left out."""
+    rows, columns = labels.shape
+    energy = 0.0
+    for i in range(rows - di):
+        for j in range(max(-dj, 0), columns - max(dj, 0)):
+            if not (in_field[i, j] and in_field[i + di, j + dj]):
+                continue
+            if di == 1 and dj == 0:
+                cut = across[i, j]
+            elif di == 0 and dj == 1:
+                cut = down[i, j]
+            else:
+                cut = broken(across, down, i, j, di, dj)
+            if not cut:
+                energy += smooth[abs(labels[i, j] - labels[i + di, j + dj])]
+    return energy
+
+
+@compiled_as_is
+def line_costs(in_field, pattern, parallel, one, across, down):  # type: ignore[no-untyped-def]
+    """Return the sum over the cliques of lines; lines without a site must be off."""
+    rows, columns = in_field.shape
+    energy = 0.0
+    count, beside = 0, 0
+    for i in range(rows - 1):
+        for j in range(columns):
+            if across[i, j]:
+                count += 1
+                beside += i + 2 < rows and across[i + 1, j]
+    for i in range(rows):
+        for j in range(columns - 1):
+            if down[i, j]:
+                count += 1
+                beside += j + 2 < columns and down[i, j + 1]
+    for i in range(rows - 1):
+        for j in range(columns - 1):
+            code = 1 * down[i, j] + 2 * down[i + 1, j] + 4 * across[i, j] + 8 * across[i, j + 1]
+            if code:
+                above = in_field[i, j] and in_field[i, j + 1]
+                if above and in_field[i + 1, j] and in_field[i + 1, j + 1]:
+                    energy += pattern[code]
+    return energy + parallel * beside + one * count
+
+
 @compiled_twin_of(_total_plain)
 def total(  # type: ignore[no-untyped-def]
     in_field, curvature, centre, table, row, smooth, offsets, weights, pattern, parallel, one,
     labels, across, down,
 ):  # fmt: skip
     """Return the energy of labels and lines; lines are off where they have no site."""
-    rows, columns = labels.shape
-    energy = 0.0
-    for i in range(rows):
-        for j in range(columns):
-            if not in_field[i, j]:
-                continue
-            x = labels[i, j]
-            energy += curvature[i, j] * (x - centre[i, j]) ** 2 + table[row[i, j], x]
-            for k in range(len(weights)):
-                di, dj = offsets[k, 0], offsets[k, 1]
-                m, n = i + di, j + dj
-                if m >= rows or n >= columns or n < 0 or not in_field[m, n]:
-                    continue
-                if not broken(across, down, i, j, di, dj):
-                    energy += weights[k] * smooth[abs(x - labels[m, n])]
-            right = j + 1 < columns and in_field[i, j + 1]
-            below = i + 1 < rows and in_field[i + 1, j]
-            if right and below and in_field[i + 1, j + 1]:
-                energy += pattern[
-                    1 * down[i, j] + 2 * down[i + 1, j] + 4 * across[i, j] + 8 * across[i, j + 1]
-                ]
-            if right and down[i, j]:
-                energy += one
-                if j + 2 < columns and down[i, j + 1]:
-                    energy += parallel
-            if below and across[i, j]:
-                energy += one
-                if i + 2 < rows and across[i + 1, j]:
-                    energy += parallel
-    return energy
+    energy = own_costs(in_field, curvature, centre, table, row, labels)
+    for k in range(len(weights)):
+        energy += weights[k] * pair_costs(
+            in_field, smooth, offsets[k, 0], offsets[k, 1], labels, across, down
+        )
+    return energy + line_costs(in_field, pattern, parallel, one, across, down)

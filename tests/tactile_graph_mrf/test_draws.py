@@ -7,7 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph_mrf.draws import NEGLIGIBLE_LOG, draw_cost, draw_line, draw_parabola
+from tactile_graph_mrf.draws import (
+    NEGLIGIBLE_LOG,
+    draw_cost,
+    draw_line,
+    draw_parabola,
+    weights_of_all,
+)
 
 N = 4000
 EVEN = (np.arange(N) + 0.5) / N
@@ -30,11 +36,30 @@ def test_parabola_draws_share_out_even_numbers_as_the_density(n_levels, mean, na
     assert np.abs(counts - wanted * len(drawn)).max() <= 1.001
 
 
-def test_parabola_of_many_levels():
-    drawn = [draw_parabola.loops(1e-6, 3000.2, 4096, 1.0, u)[0] for u in EVEN[::4]]
-    shares = np.cumsum(np.bincount(drawn, minlength=4096)) / len(drawn)
-    wanted = np.cumsum(chances((np.arange(4096) - 3000.2) ** 2, 1e-6))
-    assert np.abs(shares - wanted).max() < 1.001 / len(drawn)
+@pytest.mark.parametrize("mean", [3000.2, 4095.4, 0.0, 700.0])
+@pytest.mark.parametrize("narrow", [1e-3, 1e-5, 1e-6])
+def test_parabola_of_many_levels(mean, narrow):
+    """Levels are gone through outwards from the likeliest: so much of the numbers is each one's."""
+    n = 300
+    evenly = (np.arange(n) + 0.5) / n
+    drawn = [draw_parabola.loops(narrow, mean, 4096, 1.0, u)[0] for u in evenly]
+    levels = np.arange(4096)
+    order = np.argsort(np.abs(levels - min(math.floor(mean + 0.5), 4095)) - 0.1 * (levels > mean))
+    shares = np.cumsum(np.bincount(drawn, minlength=4096)[order]) / n
+    wanted = np.cumsum(chances((levels - mean) ** 2, narrow)[order])
+    assert np.abs(shares - wanted).max() < 1.001 / n
+
+
+@pytest.mark.parametrize("off", [-0.5, -0.2, 0.0, 0.31, 0.5])
+@pytest.mark.parametrize("narrow", [1e-6, 1e-4, 0.0034, 0.05, 0.2499, 0.2501, 2.0])
+@pytest.mark.parametrize(("above", "below"), [(100, 99), (0, 199), (199, 0), (30, 3), (1, 0)])
+def test_the_sum_of_all_weights_is_right(off, narrow, above, below):
+    k = np.arange(-below, above + 1)
+    wanted = math.fsum(np.exp(-narrow * ((k + off) ** 2 - off**2)))
+    factor = math.exp(-2 * narrow)
+    up, down = (math.exp(-narrow * (1 + s * 2 * off)) for s in (1, -1))
+    got = weights_of_all.loops(narrow, off, up, down, factor, above, below)
+    assert got == pytest.approx(wanted, rel=1e-12)
 
 
 @pytest.mark.parametrize("beta", [1e-12, 0.01, 1.0, 1e12])

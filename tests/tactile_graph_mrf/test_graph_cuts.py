@@ -1,11 +1,15 @@
+import itertools
 import sys
 
+import numpy as np
 import pytest
 
-from helpers_restorers import never_rises, square
+from helpers_restorers import never_rises, square, tiny, tiny_model
 from tactile_graph.errors import DataError
 from tactile_graph_mrf.graph_cuts import graph_cuts
-from tactile_graph_mrf.model import Model
+from tactile_graph_mrf.layout import by_cell, layout
+from tactile_graph_mrf.model import Model, energy
+from tactile_graph_mrf.swap_moves import swap_cycle
 from tactile_graph_mrf.trw import trw
 
 
@@ -58,3 +62,40 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch):
     monkeypatch.setitem(sys.modules, "maxflow", None)
     with pytest.raises(DataError, match=r"needs PyMaxflow, .*tactile-graph\[graphcut\]"):
         graph_cuts(square(), model=model("absolute"))
+
+
+def test_swaps_need_no_library(monkeypatch):
+    monkeypatch.setitem(sys.modules, "maxflow", None)
+    restored = graph_cuts(square(20.0, 8), model=model("truncated_quadratic", lambda_d=3.0))
+    assert restored.trace[-1] < restored.trace[0]
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("seed", range(4))
+def test_after_swaps_no_trade_of_two_labels_lowers_the_energy(order, seed):
+    """Against every way to share out two labels among the cells that have them."""
+    chosen = tiny_model(smoothness="truncated_quadratic", order=order)
+    problem = chosen.prepare(tiny(seed))
+    restored = graph_cuts(tiny(seed), model=chosen, moves="swap", n_cycles=50)
+    labels = np.rint((restored.image.values - problem.low) / problem.step).astype(np.int64)
+    for alpha, beta in itertools.combinations(np.unique(labels).tolist(), 2):
+        cells = np.flatnonzero(np.isin(labels, (alpha, beta)))
+        for choice in itertools.product((alpha, beta), repeat=len(cells)):
+            traded = labels.copy()
+            traded.ravel()[cells] = choice
+            assert energy(problem, traded) >= restored.energy - 1e-9
+
+
+def test_a_cycle_of_swaps_is_the_same_compiled():
+    pytest.importorskip("numba")
+    problem = model("truncated_quadratic", lambda_d=3.0).prepare(square(20.0, 8))
+    tables = layout(problem)
+    near, _ = by_cell(tables, 64)
+    own = problem.curvature.ravel(), problem.centre.ravel(), problem.table, problem.row.ravel()
+    ends = []
+    for kernel in (swap_cycle.reference, swap_cycle.compiled):
+        labels = problem.start().ravel().copy()
+        kernel(tables.cells, near, *own, problem.smooth, problem.weights, labels)
+        ends.append(labels)
+    assert np.array_equal(*ends)
+    assert energy(problem, ends[0].reshape(8, 8)) < energy(problem, problem.start())

@@ -1,0 +1,68 @@
+"""The logarithmic scale: no unit in it, and noise alone is told from a load."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactile_graph.wires import Image
+from tactile_graph_mrf.compress import compress
+
+
+def volts() -> np.ndarray:
+    rng = np.random.default_rng(0)
+    values = 2e-4 * rng.standard_normal((8, 8))
+    values[2:5, 2:6] += 0.3 * np.exp(0.7 * rng.standard_normal((3, 4)))
+    return values
+
+
+def test_another_unit_of_the_readings_changes_nothing() -> None:
+    one, other = compress(Image(volts())), compress(Image(1000.0 * volts()))
+    np.testing.assert_allclose(other.image.values, one.image.values, atol=1e-12)
+    assert one.stands_out
+    assert other.stands_out
+
+
+def test_a_factor_between_strong_readings_becomes_a_constant_difference() -> None:
+    values = np.array([[0.0, 0.1, 0.2, 0.4, 1.0]])
+    steps = np.diff(compress(Image(values), share=1e-4).image.values[0, 1:])
+    np.testing.assert_allclose(steps, np.log([2.0, 2.0, 2.5]), atol=1e-4)
+
+
+def test_a_large_share_leaves_the_scale_even() -> None:
+    values = np.array([[0.0, 0.5, 1.0]])
+    low, middle, high = compress(Image(values), share=100.0).image.values[0].tolist()
+    assert low == 0.0
+    assert middle / high == pytest.approx(0.5, rel=1e-4)
+
+
+def test_the_scale_begins_no_lower_than_the_noise() -> None:
+    values = np.array([[-0.05, 0.05, 1.0]])
+    low, noise, _ = compress(Image(values), share=1e-6).image.values[0].tolist()
+    assert noise == pytest.approx(np.arcsinh(1.0))
+    assert low == -noise
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_noise_alone_does_not_stand_out(seed: int) -> None:
+    noise = np.random.default_rng(seed).standard_normal((16, 16))
+    assert not compress(Image(noise)).stands_out
+
+
+@pytest.mark.parametrize("values", [np.zeros((3, 3)), np.full((3, 3), -1.0), np.zeros((0, 4))])
+def test_nothing_above_zero_gives_an_even_image(values: np.ndarray) -> None:
+    made = compress(Image(values))
+    assert not made.stands_out
+    np.testing.assert_array_equal(made.image.values, np.zeros(values.shape))
+
+
+def test_what_is_not_known_stays_unknown_and_sets_no_scale() -> None:
+    values = np.array([[0.0, 9.0, np.nan, 1.0]])
+    valid = np.array([[True, False, True, True]])
+    made = compress(Image(values, valid=valid), share=0.5)
+    assert made.image.quantity == "level"
+    assert made.image.values[0, 3] == np.arcsinh(2.0)
+    assert made.image.values[0, 2] == 0.0
+    assert not made.image.valid[0, 2]
+    assert made.image.valid is not None
+    assert not made.image.valid[0, 1]
