@@ -7,10 +7,11 @@ each rectangle, ``--seed`` other ones. All pipelines see the same frames of the 
 left out of the averages and counted. "Max" is the mean over groups of 20 readings, the
 thesis' own number (section 4.1), of each group's maximum.
 
-Section 4.3.8 calls a cell 1 cm although the pitch is 1.3 cm. The second table of each pipeline
-reads ours that way: it comes nearer to the thesis for RECTANGLE I and not for RECTANGLE II.
+Section 4.3.8 calls a cell 1 cm although the pitch is 1.3 cm: the second table of each pipeline
+reads ours that way. Why ours differ from the thesis' is what ``rectangle_errors.py`` is about.
 
-rectangle-3's settings were chosen on frames of seed 2 among others: take another ``--seed``.
+No setting was chosen on frames of the default seed, 101: rectangle-3's were on those of seed 2
+among others, rectangle-2's on those of seeds up to 14.
 """
 
 from __future__ import annotations
@@ -28,120 +29,77 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
-from tactile_graph import Frame, Rectangle, load
+from tactile_graph import Rectangle, load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
+from tactile_graph_fitters.experiments import (
+    OBJECTS,
+    STATED_CELL_CM,
+    ErrorTable,
+    beside_thesis,
+    rectangle_frames,
+    signed_errors,
+)
 
 Values = NDArray[np.float64]
-
-OBJECTS = ("RECTANGLE I", "RECTANGLE II")
 COLUMNS = ("angle max", "angle avg", "length max", "length avg", "breadth max", "breadth avg")
-GROUP = 20
 LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
-
-# Tables 4.7 and 4.8: degrees, cm, cm.
-THESIS = {
-    "rectangle-1": ((21, 10.6, 4.9, 3.9, 1.9, 1.1), (9.0, 4.8, 3.4, 1.9, 3.4, 1.7)),
-    "rectangle-2": ((21, 10.6, 4.9, 3.8, 1.7, 1.0), (9.0, 4.8, 3.3, 1.6, 1.6, 1.3)),
-}
-# A pre-filter that fills one lost element, which cross3 on cells of a tenth does not.
-FILLED = {"filled.element": "square:11"}
-Read = Callable[[Frame], tuple[float, float, float] | None]
+PRE_FILTER_PASSES = 8
 
 
-def frames_of(readings: int, seed: int, **pad: float) -> list[Frame]:
-    source = load("rectangle-1").with_source(
-        "simulate", scene="rectangles", frames=2 * readings, **pad
-    )
-    return list(source.frames(seed))
-
-
-def sides(name: str, kind: str, cell_cm: float = PITCH_CM, **settings: object) -> Read:
-    """Angle, length and breadth of a pipeline: as it reports them, or corrected."""
-    runner = load(name).with_settings(settings).runner()
-
-    def read(frame: Frame) -> tuple[float, float, float] | None:
-        result = runner(frame)
-        found = result.get("rectangle")
-        if found is None:
-            return None
-        angle = result["axis"].angle_rad if "axis" in result else found.angle_rad
-        scale = cell_cm / PITCH_CM
-        if kind == "corrected":
-            return angle, found.corrected_length_cm, found.corrected_breadth_cm
-        return angle, scale * found.length_cm, scale * found.breadth_cm
-
-    return read
-
-
-def errors(read: Read, frames: list[Frame]) -> list[Values]:
-    """Absolute errors (degrees, cm, cm) of each object's readings; NaN rows without an answer."""
-    rows: list[list[tuple[float, ...]]] = [[], []]
-    for frame in frames:
-        assert frame.truth is not None
-        true, name = frame.truth[0].shape, frame.truth[0].name
-        assert isinstance(true, Rectangle)
-        found = read(frame)
-        row: tuple[float, ...] = (math.nan,) * 3
-        if found is not None:
-            angle, length, breadth = found
-            off = abs(math.degrees(math.remainder(angle - true.angle_rad, math.pi)))
-            row = (off, abs(length - true.length_cm), abs(breadth - true.breadth_cm))
-        rows[OBJECTS.index(name)].append(row)
-    return [np.array(r) for r in rows]
-
-
-def table(found: list[Values]) -> tuple[Values, list[int]]:
-    """Maximum and average of each column, shape (objects, 6), and readings without an answer."""
-    rows, missing = [], []
-    for per_object in found:
-        good = per_object[~np.isnan(per_object[:, 0])]
-        missing.append(len(per_object) - len(good))
-        groups = [good[i : i + GROUP] for i in range(0, len(good) - GROUP + 1, GROUP)] or [good]
-        largest = np.mean([g.max(axis=0) for g in groups], axis=0)
-        rows.append(np.stack([largest, good.mean(axis=0)], axis=1).ravel())
-    return np.array(rows), missing
-
-
-def show(title: str, ours: Values, missing: list[int], n: int, thesis: object = None) -> None:
+def show(title: str, table: ErrorTable, beside: bool) -> None:
     print(f"\n{title}")
     print(f"{'':13}" + "".join(f"{c:>15}" for c in COLUMNS) + "   no answer")
-    for k, name in enumerate(OBJECTS):
-        if thesis is None:
-            cells = "".join(f"{x:15.2f}" for x in ours[k])
+    for name in OBJECTS:
+        rows = [row for row in table.rows if row.object == name]
+        if beside:
+            cells = "".join(f"{row.ours:8.2f} /{row.thesis:5.1f}" for row in rows)
         else:
-            pairs = zip(ours[k], thesis[k], strict=True)  # type: ignore[index]
-            cells = "".join(f"{x:8.2f} /{y:5.1f}" for x, y in pairs)
-        print(f"{name:13}{cells}   {missing[k]} of {n}")
+            cells = "".join(f"{row.ours:15.2f}" for row in rows)
+        print(f"{name:13}{cells}   {table.missing[name]} of {table.n}")
+
+
+def averages(errors: dict[str, Values]) -> Values:
+    """Average absolute angle, length, breadth and centre errors, shape (objects, 4)."""
+    return np.array([np.nanmean(np.abs(errors[name]), axis=0) for name in OBJECTS])
 
 
 def tables(readings: int, seed: int) -> None:
-    frames = frames_of(readings, seed)
+    frames = rectangle_frames(readings, seed)
     print(f"{readings} readings of each rectangle; ours / thesis; degrees and cm")
-    averages: dict[str, Values] = {}
-    contestants: list[tuple[str, str, Read]] = []
+    found: dict[str, Values] = {}
     for name in ("rectangle-1", "rectangle-2"):
-        contestants += [
-            (f"{name}, sides as the thesis reports them (full axes)", name, sides(name, "full")),
-            (f"{name}, the same read at 1 cm a cell", name, sides(name, "full", 1.0)),
-            (f"{name}, sides corrected", "", sides(name, "corrected")),
-        ]
-    two = "rectangle-2"
-    contestants += [
-        (f"{two}, pre-filter square:11, full axes", two, sides(two, "full", **FILLED)),
-        (f"{two}, pre-filter square:11, at 1 cm a cell", two, sides(two, "full", 1.0, **FILLED)),
-        (f"{two}, pre-filter square:11, corrected", "", sides(two, "corrected", **FILLED)),
-        ("rectangle-3", "", sides("rectangle-3", "full")),
-    ]
-    for title, thesis, read in contestants:
-        ours, missing = table(errors(read, frames))
-        averages[title] = ours[:, 1::2]
-        show(title, ours, missing, readings, THESIS.get(thesis))
-    mine = averages["rectangle-3"]
-    print("\nrectangle-3's average errors over others' (target: at most 0.5 of rectangle-2's)")
-    for title, theirs in averages.items():
-        ratios = "  ".join(" ".join(f"{x:5.2f}" for x in row) for row in mine / theirs)
-        print(f"  {ratios}   {title}")
+        run = load(name).runner()
+        ways = {
+            f"{name}, full axes": signed_errors(run, frames),
+            f"{name}, at 1 cm a cell": signed_errors(run, frames, STATED_CELL_CM),
+            f"{name}, corrected": signed_errors(run, frames, corrected=True),
+        }
+        for title, errors in ways.items():
+            found[title] = averages(errors)
+            show(title, beside_thesis(name, errors), "corrected" not in title)
+    once = load("rectangle-2").with_settings({"filled.times": 1}).runner()
+    errors = signed_errors(once, frames)
+    show("rectangle-2, full axes, pre-filter once", beside_thesis("rectangle-2", errors), True)
+    errors = signed_errors(load("rectangle-3").runner(), frames)
+    found["rectangle-3"] = averages(errors)
+    show("rectangle-3", beside_thesis("rectangle-2", errors), False)
+    orders(found)
+
+
+def orders(found: dict[str, Values]) -> None:
+    """Print each evolution's average errors over those of the one before."""
+    columns = "  ".join(
+        f"{c:>7}" for _ in OBJECTS for c in ("angle", "length", "breadth", "centre")
+    )
+    print(f"\nAverage errors over others', {' and '.join(OBJECTS)}\n  {columns}")
+    pairs = [(f"rectangle-2, {w}", f"rectangle-1, {w}")
+             for w in ("full axes", "at 1 cm a cell", "corrected")]  # fmt: skip
+    pairs += [("rectangle-3", title) for title in found if title != "rectangle-3"]
+    for one, other in pairs:
+        ratios = "  ".join(f"{x:7.2f}" for x in (found[one] / found[other]).ravel())
+        print(f"  {ratios}   {one} over {other}")
+    print("  target: rectangle-3 at most 0.5 of rectangle-2, full axes")
 
 
 def alternatives(readings: int, seed: int) -> None:
@@ -153,7 +111,7 @@ def alternatives(readings: int, seed: int) -> None:
     from tactile_graph_fitters.orientation_robust import orientation_robust
     from tactile_graph_hull.boundary_scan import boundary_scan
 
-    frames = frames_of(readings, seed)
+    frames = rectangle_frames(readings, seed)
     clean = load("rectangle-1").runner(only=["clean"])
     masks = [clean(frame)["clean"] for frame in frames]
     by_load = FitRectangleLoad(load_power=1.5)
@@ -213,7 +171,8 @@ def skimage_script() -> Callable[[Values], tuple[float, ...]]:
         centre = (10 * columns.mean() + 4.5, 10 * rows.mean() + 4.5)
         fine = np.kron(mask, np.ones((10, 10))).astype(np.float64)
         turned = rotate(fine, np.degrees(-angle), resize=False, center=centre, order=0) > 0.5
-        opened = binary_opening(binary_closing(turned, cross), square)
+        filled = binary_closing(turned, cross, PRE_FILTER_PASSES)
+        opened = binary_opening(filled, square)
         if not opened.any():
             return ()
         edge = opened & ~np.logical_and.reduce(
@@ -235,7 +194,7 @@ def skimage_script() -> Callable[[Values], tuple[float, ...]]:
 
 
 def times(seed: int) -> None:
-    both = frames_of(1, seed, sigma=0.0, voids=0.0)  # no break, so that both answer alike
+    both = rectangle_frames(1, seed, sigma=0.0, voids=0.0)  # no break, so that both answer alike
     images = [f.image.values for f in both]
     turn = {"n": 0}
 
@@ -269,7 +228,7 @@ def times(seed: int) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--readings", type=int, default=500, help="of each rectangle")
-    parser.add_argument("--seed", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=101)
     arguments = parser.parse_args()
     if not have_compiler():
         print("numba is not installed: these are the times of the plain references\n")

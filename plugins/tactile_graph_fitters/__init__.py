@@ -30,6 +30,7 @@ def tactile_graph_steps() -> Mapping[str, str]:
     )
     return {
         **{name: f"tactile_graph_fitters.{name}:{name}" for name in names},
+        "fit_circle_load": "tactile_graph_fitters.fit_circle_load:FitCircleLoad",
         "fit_rectangle_load": "tactile_graph_fitters.fit_rectangle_load:FitRectangleLoad",
         "simplify_polygon": "tactile_graph_fitters.simplify_polygon:SimplifyPolygon",
     }

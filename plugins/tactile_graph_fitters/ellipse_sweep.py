@@ -15,6 +15,7 @@ from tactile_graph.wires import Points
 from tactile_graph_fitters.fit_ellipse_origin import OK, origin_fit
 from tactile_graph_fitters.fitted_ellipse import FittedEllipse, in_order
 from tactile_graph_fitters.orientation import Orientation
+from tactile_graph_fitters.principal import LARGEST
 
 SETTLED = 1e-6  # of the half axes, while sweeping
 NARROW_RAD = 1e-4  # width at which halving the angle's interval ends
@@ -53,8 +54,8 @@ def ellipse_sweep(
     Raises
     ------
     Degenerate
-        If there are fewer than 5 points, some are not finite, or at no orientation an ellipse
-        fits.
+        If there are fewer than 5 points, some are not finite or further than 1e150 cm away, or at
+        no orientation an ellipse fits.
 
     Notes
     -----
@@ -63,12 +64,14 @@ def ellipse_sweep(
     matrix, so that a broken footprint does not lead it astray; but its centre must be right.
     `fit_ellipse` looks for centre, axes and angle together.
     """
-    xy = points.xy_cm
+    xy = np.asarray(points.xy_cm, dtype=np.float64)
     n = len(xy)
     if n < 5:
         raise Degenerate(f"{n} points: an ellipse to be swept needs at least 5")
     if not np.isfinite(xy).all():
         raise Degenerate(f"some of {n} points not finite: no ellipse fits")
+    if np.abs(xy).max() > LARGEST:
+        raise Degenerate(f"{n} points, some too far away for their squares: no ellipse fits")
     x, y = (
         (0.5 * (xy.min(axis=0) + xy.max(axis=0))).tolist()
         if centre is None

@@ -14,7 +14,7 @@ from tactile_graph.wires import Points
 from tactile_graph_fitters.algebra import back, distance_from_circle
 from tactile_graph_fitters.fitted_circle import FittedCircle
 from tactile_graph_fitters.outcome import circle_from
-from tactile_graph_fitters.principal import NOT_SETTLED, OK, into_frame
+from tactile_graph_fitters.principal import NOT_SETTLED, OK, ONE_LINE, into_frame
 
 
 def fit_circle_thesis(
@@ -42,8 +42,9 @@ def fit_circle_thesis(
     Raises
     ------
     Degenerate
-        If the iteration has not settled after ``max_iterations``; if there are fewer than 3
-        distinct points, all are on one line or some are not finite.
+        If the iteration has not settled after ``max_iterations``, or has on a circle that fits
+        worse than a straight line does, as it may on nearly straight points; if there are fewer
+        than 3 distinct points, all are on one line or some are not finite.
 
     Notes
     -----
@@ -115,5 +116,10 @@ def thesis_fit(
         return status, 0.0, 0.0, 0.0, 0.0, 0
     settled, u, v, radius, rounds = iterated(uv, max_iterations, tolerance)
     rms = distance_from_circle(uv, u, v, radius)
+    line = 0.0
+    for i in range(uv.shape[1]):
+        line += uv[1, i] * uv[1, i]
+    if settled and rms * rms * uv.shape[1] > line:
+        return ONE_LINE, 0.0, 0.0, frame[2] * radius, 0.0, 0
     x, y, radius, rms = back(frame, u, v, radius, rms)
     return OK if settled else NOT_SETTLED, x, y, radius, rms, rounds

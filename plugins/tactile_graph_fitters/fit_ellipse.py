@@ -17,6 +17,7 @@ from tactile_graph_fitters.nearest_on_ellipse import nearest
 
 ROUNDS = 200
 STEP = 1e-11  # of the points' extent
+SETTLING = 8  # steps at the end, each less than half the one before
 LARGEST = 1e3  # half axes, in extents of the points, beyond which they are no ellipse's
 
 Values = NDArray[np.float64]
@@ -52,7 +53,7 @@ def fit_ellipse(points: Points) -> FittedEllipse:
     xy = np.ascontiguousarray(points.xy_cm, dtype=np.float64)
     uv, frame = framed(xy)
     p = np.array(direct_shape(uv))
-    rms, rounds = refined(uv, p)
+    rms, rounds = refined(uv, p, STEP)
     n = len(xy)
     if rounds <= 0:
         raise Degenerate(f"{n} points: no ellipse found within {-rounds} rounds; "
@@ -96,8 +97,11 @@ def equations(uv: Values, p: Values, normal: Values, slope: Values) -> float:
 
 
 @compiled_as_is
-def refined(uv: Values, p: Values) -> tuple[float, int]:
-    """Bring ``p`` to the minimum; return the rms and the rounds made, < 0 if none was found."""
+def refined(uv: Values, p: Values, least: float) -> tuple[float, int]:
+    """Bring ``p`` to the minimum; return the rms and the rounds made, < 0 if none was found.
+
+    The search ends with a step below ``least`` of the larger half axis.
+    """
     normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
     new_normal, new_slope, trial = np.empty((5, 5)), np.empty(5), np.empty(5)
     n = uv.shape[1]
@@ -132,6 +136,33 @@ def refined(uv: Values, p: Values) -> tuple[float, int]:
                 return 0.0, -rounds
         else:
             damping = max(10.0 * damping, 1e-8)
-        if size <= STEP * max(p[2], p[3]) or damping > 1e14:
-            return math.sqrt(now / n), rounds
+        if size <= least * max(p[2], p[3]) or damping > 1e14:
+            return math.sqrt(_settled(uv, p, now) / n), rounds
     return 0.0, -ROUNDS
+
+
+@compiled_as_is
+def _settled(uv: Values, p: Values, now: float) -> float:
+    """Take undamped steps as long as they halve; return the sum of squared distances.
+
+    At the minimum the sum is too coarse to judge a step by, but a step that is less than half
+    the one before still leads nearer.
+    """
+    normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
+    last = 1e-6 * max(p[2], p[3])
+    for _ in range(SETTLING):
+        new = equations(uv, p, normal, slope)
+        ridge = 1e-12 * (normal[0, 0] + normal[1, 1])
+        for k in range(5):
+            normal[k, k] += ridge
+        if not damped_step(normal, slope, 0.0, step):
+            break
+        size = abs(step[4]) * abs(p[2] - p[3])
+        for k in range(4):
+            size = max(size, abs(step[k]))
+        if size > 0.5 * last or size == 0.0:
+            break
+        now, last = min(now, new), size
+        for k in range(5):
+            p[k] += step[k]
+    return now

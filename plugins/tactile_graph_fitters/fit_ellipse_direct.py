@@ -12,7 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.fitted_ellipse import FittedEllipse, in_order
 from tactile_graph_fitters.nearest_on_ellipse import distances
-from tactile_graph_fitters.principal import NOT_FINITE, OK, Frame, into_frame
+from tactile_graph_fitters.principal import NOT_FINITE, OK, OUT_OF_RANGE, Frame, into_frame
 
 Values: TypeAlias = NDArray[np.float64]
 Shape: TypeAlias = tuple[float, float, float, float, float]
@@ -67,6 +67,12 @@ def framed(xy: Values) -> tuple[Values, Frame]:
     n = len(xy)
     points = "1 point" if n == 1 else f"{n} points"
     status, uv, frame = into_frame(xy)
+    if status == OUT_OF_RANGE:  # their squares are no numbers: by a power of two brought nearer 1
+        _, exponent = math.frexp(float(np.abs(xy).max()))
+        status, uv, (x, y, unit, cos, sin) = into_frame(np.ldexp(xy, -exponent))
+        if status == OK:
+            x, y, unit = (math.ldexp(v, exponent) for v in (x, y, unit))
+            frame = (x, y, unit, cos, sin)
     if status == NOT_FINITE:
         bad = n - int(np.isfinite(xy).all(axis=1).sum())
         raise Degenerate(f"{bad} of {points} not finite: no ellipse fits")
@@ -76,20 +82,20 @@ def framed(xy: Values) -> tuple[Values, Frame]:
 
 
 def in_pad(shape: Shape, frame: Frame, rms: float, n: int, rounds: int) -> FittedEllipse:
-    """Return an ellipse found in the frame of `framed` in pad coordinates."""
+    """Return an ellipse found in the frame of `framed` in pad coordinates.
+
+    Raises
+    ------
+    Degenerate
+        If a size of it is too large for a number.
+    """
     (u, v, a, b, angle), (x, y, unit, cos, sin) = shape, frame
     # v runs as y does, down, in the frame: as seen its angles run the other way.
     seen = -(angle + math.atan2(sin, cos))
-    return in_order(
-        x + unit * (u * cos - v * sin),
-        y + unit * (u * sin + v * cos),
-        unit * a,
-        unit * b,
-        seen,
-        unit * rms,
-        n,
-        rounds,
-    )
+    x, y = x + unit * (u * cos - v * sin), y + unit * (u * sin + v * cos)
+    if not math.isfinite(x + y + unit * (a + b)):
+        raise Degenerate(f"{n} points: their ellipse is too large for a number")
+    return in_order(x, y, unit * a, unit * b, seen, unit * rms, n, rounds)
 
 
 def direct_shape(uv: Values) -> Shape:

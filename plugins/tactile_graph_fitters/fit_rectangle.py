@@ -74,7 +74,7 @@ def fit_rectangle(
     7.
     """
     xy = np.ascontiguousarray(points.xy_cm, dtype=np.float64)
-    status, x, y, first, second, angle, misfit, rounds = outline_fit(xy, scale_cm)
+    status, x, y, first, second, angle, misfit, rounds = outline_fit(xy, scale_cm, STARTS, STEP)
     n = len(xy)
     if status != OK:
         raise Degenerate(_why(xy, status, rounds))
@@ -174,7 +174,7 @@ def _boxed(uv: Values, angle: float, p: Values) -> None:
 
 
 @compiled_as_is
-def _searched(uv: Values, p: Values, scale: float) -> tuple[float, int]:
+def _searched(uv: Values, p: Values, scale: float, least: float) -> tuple[float, int]:
     """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
     normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
     new_normal, new_slope, trial = np.empty((5, 5)), np.empty(5), np.empty(5)
@@ -203,7 +203,7 @@ def _searched(uv: Values, p: Values, scale: float) -> tuple[float, int]:
             damping = 0.1 * damping if damping > 1e-12 else 0.0
         else:
             damping = max(10.0 * damping, 1e-6)
-        if size <= STEP or damping > 1e12:
+        if size <= least or damping > 1e12:
             return now, rounds
         # Along a kink, where the nearest side of a point changes, the search tacks without end.
         if rounds % PATIENCE == 0:
@@ -214,8 +214,12 @@ def _searched(uv: Values, p: Values, scale: float) -> tuple[float, int]:
 
 
 @compiled_as_is
-def outline_fit(xy: Values, scale_cm: float) -> Found:
-    """Return status, centre (x, y), half sides and angle in cm and as seen, misfit and rounds."""
+def outline_fit(xy: Values, scale_cm: float, starts: int, least_step: float) -> Found:
+    """Return status, centre (x, y), half sides and angle in cm and as seen, misfit and rounds.
+
+    The best ``starts`` boxes are searched from, each until a step is below ``least_step`` of the
+    points' extent.
+    """
     status, uv, frame = into_frame(xy)
     if status != OK or xy.shape[0] < 5:
         return (status if status != OK else 1), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
@@ -228,11 +232,11 @@ def outline_fit(xy: Values, scale_cm: float) -> Found:
         costs[k], _ = equations(uv, boxes[k], scale, normal, slope)
     best, p = np.empty(5), np.empty(5)
     least, rounds, settled = np.inf, 0, False
-    for _ in range(STARTS):
+    for _ in range(starts):
         k = int(np.argmin(costs))
         costs[k] = np.inf
         p[:] = boxes[k]
-        found, made = _searched(uv, p, scale)
+        found, made = _searched(uv, p, scale, least_step)
         rounds += abs(made)
         if found < least:
             least, settled = found, made > 0

@@ -13,6 +13,7 @@ from tactile_graph_fitters.principal import EPS, NOT_SETTLED, OK, ONE_LINE, into
 
 STEP = 1e-10  # of the radius: Newton squares it once more, to below rounding
 FLAT = 1e3  # radii beyond so many extents of the points are checked against a straight line
+REACH = 2.0  # no point is further from the middle, in half extents
 ROUNDS = 200
 
 Slopes = tuple[float, float, float, float, float, float, float, float, float, float]
@@ -38,19 +39,24 @@ def _slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     beyond = u * u + v * v - 2.0 * (a * u + b * v)  # = d**2 - centre**2
     size = d + centre
     off = np.divide(beyond, size, out=np.zeros_like(d), where=size > 0.0)
+    # Gradient of d, and what it differs by from that at the points' middle: so few digits of the
+    # sine itself say how a slight arc is bent.
+    cos, sin = -du * inverse, -dv * inverse
+    to_a, to_b = (a / centre, b / centre) if centre > 0.0 else (0.0, 0.0)
+    cos_off, sin_off = -(u + to_a * off) * inverse, -(v + to_b * off) * inverse
+    cos_off -= cos_off.mean()
+    sin_off -= sin_off.mean()
     mean = off.mean()
     off -= mean
-    cos, sin = -du * inverse, -dv * inverse  # gradient of d
-    cos_mean, sin_mean = cos.mean(), sin.mean()
     bend = off * inverse
     return (
         float(centre + mean),
         float((off * off).mean()),
-        float((off * cos).mean()),
-        float((off * sin).mean()),
-        float(((cos - cos_mean) ** 2).mean()),
-        float(((cos - cos_mean) * (sin - sin_mean)).mean()),
-        float(((sin - sin_mean) ** 2).mean()),
+        float((off * cos_off).mean()),
+        float((off * sin_off).mean()),
+        float((cos_off * cos_off).mean()),
+        float((cos_off * sin_off).mean()),
+        float((sin_off * sin_off).mean()),
         float((bend * sin * sin).mean()),
         float((-bend * cos * sin).mean()),
         float((bend * cos * cos).mean()),
@@ -62,6 +68,7 @@ def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     """Do the same in loops; each mean is taken around a first value, which keeps its digits."""
     n = uv.shape[1]
     centre = math.sqrt(a * a + b * b)
+    to_a, to_b = (a / centre, b / centre) if centre > 0.0 else (0.0, 0.0)
     s_e = s_c = s_s = s_ee = s_ec = s_es = s_cc = s_cs = s_ss = 0.0
     w_ss = w_cs = w_cc = w_all_ss = w_all_cs = w_all_cc = 0.0
     e_0 = c_0 = s_0 = 0.0
@@ -73,10 +80,12 @@ def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
         size = d + centre
         e = (u * u + v * v - 2.0 * (a * u + b * v)) / size if size > 0.0 else 0.0
         cos, sin = -du * inverse, -dv * inverse
+        c, s = -(u + to_a * e) * inverse, -(v + to_b * e) * inverse
         if i == 0:
-            e_0, c_0, s_0 = e, cos, sin
+            e_0, c_0, s_0 = e, c, s
         e -= e_0
-        c, s = cos - c_0, sin - s_0
+        c -= c_0
+        s -= s_0
         s_e += e
         s_c += c
         s_s += s
@@ -142,8 +151,9 @@ def refined(
     for rounds in range(1, ROUNDS + 1):
         radius = now[0]
         du, dv, promised, upward = step_of(now, damping)
-        # What rounding of the distances does to F.
-        floor = EPS * (5.0 * now[1] + 8.0 * radius * math.sqrt(now[1]) + 16.0 * EPS * radius**2)
+        # What rounding of the distances does to F; they differ by no more than the points do.
+        reach = min(radius, REACH)
+        floor = EPS * (5.0 * now[1] + 8.0 * reach * math.sqrt(now[1]) + 16.0 * EPS * reach**2)
         if promised <= floor and damping > 0.0:
             if undamped:
                 return OK, a, b, radius, math.sqrt(now[1]), rounds

@@ -82,9 +82,11 @@ def heavier_side(
     if len(rows) == 0:
         raise Degenerate("no valid cell is on: no side is heavier")
     load = np.maximum(image.values[rows, columns], 0.0)
-    total = float(load.sum())
-    if not 0.0 < total < math.inf:
+    peak = float(load.max())
+    if not 0.0 < peak < math.inf:
         raise Degenerate(f"the footprint's {len(rows)} cells bear no load: no side is heavier")
+    load = load / peak  # squares of very large and very small ones are no numbers
+    total = float(load.sum())
     xs, ys = image.x_cm[columns], image.y_cm[rows]
     x, y = float(load @ xs) / total, float(load @ ys) / total
     at_x, at_y = (xs.mean(), ys.mean()) if shape is None else (shape.x_cm, shape.y_cm)

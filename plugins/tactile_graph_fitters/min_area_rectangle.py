@@ -38,7 +38,8 @@ def min_area_rectangle(
     Raises
     ------
     Degenerate
-        If there are fewer than 3 points not on one line, or some are not finite.
+        If there are fewer than 3 points not on one line, some are not finite, or the rectangle
+        is too large for a number.
 
     Notes
     -----
@@ -52,8 +53,17 @@ def min_area_rectangle(
     n = len(points.xy_cm)
     if len(corners) < 3:
         raise Degenerate(f"{n} points on one line: no rectangle around them has an area")
-    x, y, first, second, angle, inside = smallest(np.ascontiguousarray(corners))
+    # By a power of two: areas of very large and very small ones are no numbers.
+    _, exponent = math.frexp(float(np.abs(corners).max()))
+    found = smallest(np.ldexp(corners, -exponent))
+    first, second, angle, inside = found[2:]
+    if not first * second > 0.0:
+        raise Degenerate(f"{n} points nearly on one line: the rectangle's area is too small")
     empty = max(0.0, 1.0 - inside / (first * second))
+    try:
+        x, y, first, second = (math.ldexp(v, exponent) for v in (*found[:2], first, second))
+    except OverflowError:
+        raise Degenerate(f"{n} points: their rectangle is too large for a number") from None
     return rectangle_of(x, y, first, second, angle, empty, n, len(corners), cell_cm)
 
 

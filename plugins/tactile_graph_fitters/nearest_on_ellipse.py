@@ -25,8 +25,11 @@ def _first_quadrant(a: float, b: float, px: float, py: float) -> tuple[float, fl
     ratio = (a / b) ** 2
     zx, zy = px / a, py / b
     # s = t / b**2 + 1 > 0; the foot is (ratio px / (s + ratio - 1), py / s).
-    s = zy
+    # Below its root: each term alone is less than both, and s + ratio - 1 more than s. The margin
+    # is what the difference may lose by rounding.
     more = ratio - 1.0
+    both = math.sqrt(ratio * zx * ratio * zx + zy * zy)
+    s = max(zy, both - more - 2e-15 * both)
     for _ in range(100):
         f, g = ratio * zx / (s + more), zy / s
         value = f * f + g * g - 1.0

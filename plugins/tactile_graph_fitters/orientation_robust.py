@@ -69,10 +69,13 @@ def orientation_robust(
     pitch = math.sqrt(mask.cell_area_cm2) if cell_cm is None else cell_cm
     if len(corners) < 3:
         return orientation(Points(cells), cell_cm=pitch, ambiguous_above_rad=ambiguous_above_rad)
-    x, y, xx, xy, yy = area_moments(corners)
+    # By a power of two: the fourth powers of very large and very small sizes are no numbers.
+    _, exponent = math.frexp(float(np.abs(corners - corners[0]).max()))
+    x, y, xx, xy, yy = area_moments(np.ldexp(corners, -exponent))
+    x, y = math.ldexp(x, exponent), math.ldexp(y, exponent)
     along, across = principal_variances(xx, xy, yy)
     length, breadth = math.sqrt(12.0 * along), math.sqrt(12.0 * across)
-    std = angle_std_rad(length, breadth, pitch)
+    std = angle_std_rad(length, breadth, math.ldexp(pitch, -exponent))
     angle = seen_angle(xx, xy, yy)
     return Orientation(angle, x, y, 1.0 - breadth / length, std, std > ambiguous_above_rad)
 

@@ -31,9 +31,10 @@ def rotate_points(points: Points, axis: Orientation) -> Points:
     turns by +theta, so that it takes -theta to bring an axis at theta along x.
     """
     cos, sin = math.cos(axis.angle_rad), math.sin(axis.angle_rad)
-    dx, dy = (points.xy_cm - (axis.x_cm, axis.y_cm)).T
+    xy = points.xy_cm.astype(np.float64, copy=False)
+    dx, dy = (xy - (axis.x_cm, axis.y_cm)).T
     # y runs down: what turns clockwise as seen has its signs the other way round.
-    turned = np.empty_like(points.xy_cm)
+    turned = np.empty_like(xy)
     turned[:, 0] = axis.x_cm + (dx * cos - dy * sin)
     turned[:, 1] = axis.y_cm + (dx * sin + dy * cos)
     return Points(turned)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Annotated, Literal, NamedTuple, TypeAlias
+from typing import Annotated, NamedTuple, TypeAlias
 
 import numpy as np
 from annotated_types import Ge, Gt, Le
@@ -12,18 +11,19 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Points, Polygon, Rectangle
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_ellipse import fit_ellipse
-from tactile_graph_fitters.fit_rectangle import fit_rectangle
-from tactile_graph_fitters.nearest_on_ellipse import distances
-from tactile_graph_fitters.simplify_polygon import SimplifyPolygon
+from tactile_graph_fitters.fitted_circle import FittedCircle
+from tactile_graph_fitters.fitted_ellipse import in_order
+from tactile_graph_fitters.fitted_rectangle import rectangle_of
+from tactile_graph_fitters.shape_confidence import KINDS, MOST_CORNERS, Kind, confidences, features
+from tactile_graph_fitters.shape_misfits import DISC, FEWEST_CORNERS, RECTANGLE, shape_misfits
 
 Values: TypeAlias = NDArray[np.float64]
-Kind = Literal["disc", "ellipse", "rectangle", "polygon"]
 AnyShape: TypeAlias = Circle | Ellipse | Rectangle | Polygon
 
-FLOOR_CELLS = 0.12  # rms distance, in cells, below which closer is not better
 PER_CELL = 2.0  # points of the hull's outline, evenly spread, that are compared
+FLOOR_CELLS = 0.12  # rms distance from a polygon, in cells, below which closer is not better
+MOST_CELLS = 1e5  # that an outline may span
+EVIDENCE = 0.6  # independent measurements per cell's length of outline
 
 
 class ShapeDecision(NamedTuple):
@@ -43,12 +43,22 @@ class ShapeDecision(NamedTuple):
     polygon: float
 
 
+class Fits(NamedTuple):
+    """What `shape_misfits` returns."""
+
+    n: int
+    length_cm: float
+    misfits_cm2: Values
+    shapes: Values
+    polygons: Values
+
+
 def shape_decision(
     points: Points,
     *,
     cell_cm: Annotated[float, Gt(0)] = 1.3,
-    max_corners: Annotated[int, Ge(3), Le(12)] = 6,
-    evidence: Annotated[float, Gt(0)] = 0.6,
+    max_corners: Annotated[int, Ge(3), Le(12)] = MOST_CORNERS,
+    temperature: Annotated[float, Gt(0)] = 1.0,
 ) -> ShapeDecision:
     """Return the kind of shape that an outline is most likely of, with its confidence.
 
@@ -57,12 +67,11 @@ def shape_decision(
     points : Points
         Of the boundary.
     cell_cm : float
-        Pitch of the elements that were read: a cell's length of outline counts as one
-        independent measurement.
+        Pitch of the elements that were read.
     max_corners : int
-        Polygons of 3 up to so many corners are considered.
-    evidence : float
-        Independent measurements per cell's length; less makes all confidences more alike.
+        A polygon is given 3 up to so many corners.
+    temperature : float
+        Above 1 all confidences come out more alike, below 1 less; 1 is calibrated.
 
     Returns
     -------
@@ -71,90 +80,71 @@ def shape_decision(
     Raises
     ------
     Degenerate
-        If the points' hull has no area.
+        If the points' hull has no area, or nothing can be fitted to it.
 
     Notes
     -----
-    A disc, an ellipse, a rectangle and polygons are fitted to the convex hull of the points,
-    its outline evenly sampled. Each is judged by Schwarz' criterion n ln(rms**2 + f**2) + k ln n
-    with k unknowns (3, 5, 5 and two a corner), n the outline's length in cells and f = 0.12 cells;
-    confidences are the normalised exp(-criterion / 2), a kind of polygon counting by its best
-    number of corners. Source: G. Schwarz 1978, 10.1214/aos/1176344136.
+    A disc, an ellipse, a rectangle and polygons are fitted to the convex hull of the points, its
+    outline evenly sampled. Confidences are those of a logistic regression on the logarithms of
+    the mean squared distances and of the outline's length in cells, fitted to objects of all kinds,
+    equally frequent, on the simulated pad: ``benchmarks/shape_confidence.py``. Where some kinds are
+    likelier beforehand, multiply by how much and normalise. The number of a polygon's corners is
+    that of Schwarz' least criterion n ln(rms**2 + f**2) + k ln n with k unknowns, two a corner, n
+    0.6 times the outline's length in cells and f = 0.12 cells. Source: G. Schwarz 1978,
+    10.1214/aos/1176344136.
     """
     from tactile_graph_hull.hull import hull
 
     outline = hull(points)
+    _refuse_far_apart(outline, cell_cm)
     if outline.count < 3 or outline.area_cm2 <= 0.0:
         raise Degenerate(f"{points.count} points on one line: no shape to decide on")
-    xy, length = _evenly(outline.xy_cm, cell_cm / PER_CELL)
-    n = max(length / cell_cm * evidence, 2.0)
-    found: dict[Kind, tuple[float, AnyShape]] = {}
-    for kind, unknowns, shape in _candidates(Points(xy), outline, max_corners, cell_cm):
-        off = _off(shape, xy)
-        spread = float(off @ off) / len(off) + (FLOOR_CELLS * cell_cm) ** 2
-        criterion = n * math.log(spread) + unknowns * math.log(n)
-        if kind not in found or criterion < found[kind][0]:
-            found[kind] = criterion, shape
-    best = min(found, key=lambda kind: found[kind][0])
-    weights = {k: math.exp(-0.5 * (c - found[best][0])) for k, (c, _) in found.items()}
-    total = sum(weights.values())
-    disc, ellipse, rectangle, polygon = (
-        weights.get(kind, 0.0) / total for kind in ("disc", "ellipse", "rectangle", "polygon")
+    most = max(max_corners, MOST_CORNERS)
+    fits = Fits(*shape_misfits(outline.xy_cm, cell_cm / PER_CELL, most, cell_cm))
+    share = confidences(features(fits.length_cm, fits.misfits_cm2, cell_cm), temperature)
+    rows = [*range(FEWEST_CORNERS), _best_polygon(fits, max_corners, cell_cm)]
+    able = [k for k, row in enumerate(rows) if fits.misfits_cm2[row] < math.inf]
+    if not able:
+        raise Degenerate(f"{points.count} points: no shape can be fitted to their hull")
+    best = max(able, key=lambda k: share[k])
+    corners = (0, 0, 4, rows[3])[best]
+    shape = _shape(fits, rows[best], cell_cm)
+    return ShapeDecision(KINDS[best], share[best], shape, corners, *share)
+
+
+def _refuse_far_apart(outline: Polygon, cell_cm: float) -> None:
+    """Raise where the outline spans so many cells that it can be of no pad."""
+    if outline.count == 0:
+        return
+    reach = MOST_CELLS * cell_cm
+    # halves: the difference of the largest numbers is none
+    half = 0.5 * outline.xy_cm.max(axis=0) - 0.5 * outline.xy_cm.min(axis=0)
+    if half.max() > 0.5 * reach:
+        raise Degenerate(
+            f"the points lie more than {MOST_CELLS:,.0f} cells of {cell_cm:g} cm apart; "
+            "is cell_cm right?"
+        )
+
+
+def _best_polygon(fits: Fits, most: int, cell_cm: float) -> int:
+    """Return the number of corners, 3 to ``most``, of the least criterion."""
+    n = max(fits.length_cm / cell_cm * EVIDENCE, 2.0)
+    floor = (FLOOR_CELLS * cell_cm) ** 2
+    misfits = fits.misfits_cm2[: most + 1].tolist()
+    return min(
+        range(FEWEST_CORNERS, most + 1),
+        key=lambda k: n * math.log(misfits[k] + floor) + 2 * k * math.log(n),
     )
-    shape = found[best][1]
-    corners = shape.count if isinstance(shape, Polygon) else 4 * isinstance(shape, Rectangle)
-    return ShapeDecision(
-        best, weights[best] / total, shape, corners, disc, ellipse, rectangle, polygon
-    )
 
 
-def _candidates(
-    xy: Points, outline: Polygon, max_corners: int, cell_cm: float
-) -> list[tuple[Kind, int, AnyShape]]:
-    """Return kind, number of unknowns and fit of each shape that can be fitted."""
-    fits: list[tuple[Kind, int, Callable[[], AnyShape]]] = [
-        ("disc", 3, lambda: fit_circle(xy)),
-        ("ellipse", 5, lambda: fit_ellipse(xy)),
-        ("rectangle", 5, lambda: fit_rectangle(xy, scale_cm=cell_cm)),
-    ]
-    for corners in range(3, min(max_corners, outline.count) + 1):
-        simplify = SimplifyPolygon(corners=corners)
-        fits.append(("polygon", 2 * corners, lambda simplify=simplify: simplify(outline)))  # type: ignore[misc]
-    done: list[tuple[Kind, int, AnyShape]] = []
-    for kind, unknowns, fit in fits:
-        try:
-            done.append((kind, unknowns, fit()))
-        except Degenerate:
-            continue
-    return done
-
-
-def _evenly(corners: Values, step: float) -> tuple[Values, float]:
-    """Return points evenly spread over a polygon's outline about ``step`` apart, and its length."""
-    closed = np.vstack([corners, corners[:1]])
-    sizes = np.hypot(*np.diff(closed, axis=0).T)
-    along = np.concatenate([[0.0], np.cumsum(sizes)])
-    length = float(along[-1])
-    n = max(math.ceil(length / step), 12)
-    at = (np.arange(n) + 0.5) * (length / n)
-    return np.column_stack([np.interp(at, along, closed[:, k]) for k in (0, 1)]), length
-
-
-def _off(shape: AnyShape, xy: Values) -> Values:
-    """Return the points' distances from a shape's outline."""
-    if isinstance(shape, Circle):
-        return np.asarray(np.hypot(xy[:, 0] - shape.x_cm, xy[:, 1] - shape.y_cm) - shape.radius_cm)
-    if isinstance(shape, Ellipse):
-        a, b = shape.semi_major_cm, shape.semi_minor_cm
-        # As seen angles run against those of (x, y) with y down.
-        return distances(np.ascontiguousarray(xy.T), shape.x_cm, shape.y_cm, a, b, -shape.angle_rad)
-    return distance_from_sides(shape.outline_cm(), xy)
-
-
-def distance_from_sides(corners: Values, xy: Values) -> Values:
-    """Return the distances of points, shape (N, 2), from the sides of a polygon."""
-    starts, sides = corners, np.roll(corners, -1, axis=0) - corners
-    sizes = np.maximum((sides * sides).sum(axis=1), 1e-300)
-    off = xy[:, None, :] - starts[None]
-    along = np.clip((off * sides).sum(axis=2) / sizes, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(off - along[..., None] * sides, axis=2).min(axis=1))
+def _shape(fits: Fits, row: int, cell_cm: float) -> AnyShape:
+    rms = math.sqrt(fits.misfits_cm2[row])
+    if row > RECTANGLE:
+        return Polygon(fits.polygons[row, :row].copy())
+    x, y, first, second, angle = fits.shapes[row].tolist()
+    if row == DISC:
+        return FittedCircle(x, y, first, rms, fits.n)
+    if row == RECTANGLE:
+        return rectangle_of(x, y, 2.0 * first, 2.0 * second, angle, rms, fits.n, 0, cell_cm)
+    # As seen angles run against those of (x, y) with y down.
+    return in_order(x, y, first, second, -angle, rms, fits.n, 0)

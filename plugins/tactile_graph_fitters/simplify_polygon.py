@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, TypeAlias
 
 import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
 
-Values = NDArray[np.float64]
+Values: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.int64]
 
 PARALLEL = 0.17  # sine of the angle (10 degrees) below which two sides' lines are not crossed
 
@@ -72,60 +74,92 @@ class SimplifyPolygon:
             raise Degenerate(
                 f"the polygon has {len(xy)} corners, fewer than the {least} it is to keep"
             )
-        kept = _kept(xy, least, self._tolerance)
-        return Polygon(_refined(xy, kept) if self._refine else xy[kept].copy())
+        xy = np.ascontiguousarray(xy, dtype=np.float64)
+        kept = np.arange(len(xy))
+        tolerance = -1.0 if self._tolerance is None else self._tolerance
+        kept = kept[: thinned(xy, kept, len(xy), least, tolerance)]
+        return Polygon(met(xy, kept) if self._refine else xy[kept])
 
 
-def _kept(xy: Values, least: int, tolerance_cm: float | None) -> list[int]:
-    """Return the indices of the corners kept, in order."""
-    kept = list(range(len(xy)))
-    while len(kept) > least:
-        at = xy[kept]
-        before, after = np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)
-        base = after - before
-        twice = np.abs(base[:, 0] * (at - before)[:, 1] - base[:, 1] * (at - before)[:, 0])
-        if tolerance_cm is not None:
-            size = np.hypot(base[:, 0], base[:, 1])
-            height = np.divide(twice, size, out=np.zeros_like(twice), where=size > 0.0)
-            twice = np.where(height <= tolerance_cm, twice, np.inf)
-        worst = int(twice.argmin())
-        if math.isinf(twice[worst]):
+@compiled_as_is
+def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: float) -> int:
+    """Take out of the first ``count`` of ``kept`` the corners that go; return how many are left.
+
+    With a tolerance of 0 or more only corners no further than that from the line between their
+    neighbours go.
+    """
+    while count > least:
+        smallest, at = np.inf, -1
+        for k in range(count):
+            a, b, c = kept[k - 1 if k else count - 1], kept[k], kept[(k + 1) % count]
+            dx, dy = xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
+            twice = abs(dx * (xy[b, 1] - xy[a, 1]) - dy * (xy[b, 0] - xy[a, 0]))
+            if tolerance_cm >= 0.0:
+                size = math.hypot(dx, dy)
+                if size > 0.0 and twice / size > tolerance_cm:
+                    continue
+            if twice < smallest:
+                smallest, at = twice, k
+        if at < 0:
             break
-        del kept[worst]
-    return kept
+        count -= 1
+        for k in range(at, count):
+            kept[k] = kept[k + 1]
+    return count
 
 
-def _refined(xy: Values, kept: list[int]) -> Values:
+@compiled_as_is
+def met(xy: Values, kept: Indices) -> Values:
     """Return where the lines through the outline's parts between kept corners meet."""
-    n = len(kept)
-    lines = [_line(xy, kept[k], kept[(k + 1) % n]) for k in range(n)]
-    out = xy[kept].copy()
-    reach = 0.25 * float(np.ptp(xy, axis=0).max())
+    n = kept.shape[0]
+    lines = np.empty((n, 4))
+    low, high = xy[0].copy(), xy[0].copy()
+    for i in range(xy.shape[0]):
+        for m in range(2):
+            low[m], high[m] = min(low[m], xy[i, m]), max(high[m], xy[i, m])
     for k in range(n):
-        (px, py, dx, dy), (qx, qy, ex, ey) = lines[k - 1], lines[k]
+        line_through(xy, kept[k], kept[(k + 1) % n], lines[k])
+    out = np.empty((n, 2))
+    reach = 0.25 * max(high[0] - low[0], high[1] - low[1])
+    for k in range(n):
+        before = lines[k - 1 if k else n - 1]
+        px, py, dx, dy = before[0], before[1], before[2], before[3]
+        qx, qy, ex, ey = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
+        out[k, 0], out[k, 1] = xy[kept[k], 0], xy[kept[k], 1]
         cross = dx * ey - dy * ex
         if abs(cross) < PARALLEL:
             continue
         along = ((qx - px) * ey - (qy - py) * ex) / cross
-        meet = np.array([px + along * dx, py + along * dy])
-        if math.hypot(*(meet - out[k])) <= reach:
-            out[k] = meet
+        x, y = px + along * dx, py + along * dy
+        if math.hypot(x - out[k, 0], y - out[k, 1]) <= reach:
+            out[k, 0], out[k, 1] = x, y
     return out
 
 
-def _line(xy: Values, start: int, end: int) -> tuple[float, float, float, float]:
-    """Return a point of, and the direction of, the line nearest to the outline from start to end.
+@compiled_as_is
+def line_through(xy: Values, start: int, end: int, line: Values) -> None:
+    """Write a point of, and the direction of, the line nearest to the outline from start to end.
 
     Every point of the outline counts, not its corners: a side is its middle and, along itself, a
     twelfth of its square.
     """
-    n = len(xy)
-    part = xy[[(start + k) % n for k in range((end - start) % n + 1)]]
-    sides = np.diff(part, axis=0)
-    sizes = np.hypot(sides[:, 0], sides[:, 1])
-    middles = 0.5 * (part[1:] + part[:-1])
-    centre = sizes @ middles / sizes.sum()
-    off = middles - centre
-    scatter = (off * sizes[:, None]).T @ off + (sides * sizes[:, None]).T @ sides / 12.0
-    angle = 0.5 * math.atan2(2.0 * scatter[0, 1], scatter[0, 0] - scatter[1, 1])
-    return float(centre[0]), float(centre[1]), math.cos(angle), math.sin(angle)
+    n = xy.shape[0]
+    total = x = y = 0.0
+    for k in range((end - start) % n):
+        i, j = (start + k) % n, (start + k + 1) % n
+        size = math.hypot(xy[j, 0] - xy[i, 0], xy[j, 1] - xy[i, 1])
+        total += size
+        x += 0.5 * size * (xy[i, 0] + xy[j, 0])
+        y += 0.5 * size * (xy[i, 1] + xy[j, 1])
+    x, y = x / total, y / total
+    xx = xy_ = yy = 0.0
+    for k in range((end - start) % n):
+        i, j = (start + k) % n, (start + k + 1) % n
+        dx, dy = xy[j, 0] - xy[i, 0], xy[j, 1] - xy[i, 1]
+        size = math.hypot(dx, dy)
+        u, v = 0.5 * (xy[i, 0] + xy[j, 0]) - x, 0.5 * (xy[i, 1] + xy[j, 1]) - y
+        xx += size * (u * u + dx * dx / 12.0)
+        xy_ += size * (u * v + dx * dy / 12.0)
+        yy += size * (v * v + dy * dy / 12.0)
+    angle = 0.5 * math.atan2(2.0 * xy_, xx - yy)
+    line[0], line[1], line[2], line[3] = x, y, math.cos(angle), math.sin(angle)

@@ -30,16 +30,22 @@ def digital_gradient(
         0 or greater, per cell (not per cm). A difference to a cell that does not exist or is
         invalid counts as 0.
 
+    Raises
+    ------
+    DataError, Degenerate
+        As `partial_differences`.
+
     Notes
     -----
     Backward differences see an edge half a cell too far right and down; `sobel` is centred.
     Source: thesis 3.1.2, after Dougherty and Giardina 1987.
     """
     dx, dy = differences(image)
-    if norm == "euclid":
-        size = np.hypot(dx, dy)
-    elif norm == "sum":
-        size = np.abs(dx) + np.abs(dy)
-    else:
-        size = np.maximum(np.abs(dx), np.abs(dy))
+    with np.errstate(over="ignore", invalid="ignore"):  # `gradient_image` finds them out
+        if norm == "euclid":
+            size = np.hypot(dx, dy)
+        elif norm == "sum":
+            size = np.abs(dx) + np.abs(dy)
+        else:
+            size = np.maximum(np.abs(dx), np.abs(dy))
     return gradient_image(image, size)

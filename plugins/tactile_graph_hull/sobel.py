@@ -28,6 +28,11 @@ def sobel(
         0 or greater, per cell (not per cm): the windows are divided by 8, so that a ramp of one
         unit a cell gives 1. 0 where the 3x3 window leaves the image or holds an invalid cell.
 
+    Raises
+    ------
+    DataError, Degenerate
+        As `partial_differences`.
+
     Notes
     -----
     Edges come out two cells wide. Source: thesis 3.1.2, after Dougherty and Giardina 1987; the
@@ -36,10 +41,11 @@ def sobel(
     values = np.asarray(image.values, dtype=np.float64)
     size = np.zeros_like(values)
     if min(values.shape) >= 3:
-        across = _smoothed(values)  # weights 1 2 1 over three rows
-        along = _smoothed(values.T).T
-        dx, dy = across[:, 2:] - across[:, :-2], along[2:] - along[:-2]
-        size[1:-1, 1:-1] = np.hypot(dx, dy) / 8.0
+        with np.errstate(over="ignore", invalid="ignore"):  # `gradient_image` finds them out
+            across = _smoothed(values)  # weights 1 2 1 over three rows
+            along = _smoothed(values.T).T
+            dx, dy = across[:, 2:] - across[:, :-2], along[2:] - along[:-2]
+            size[1:-1, 1:-1] = np.hypot(dx, dy) / 8.0
         valid = getattr(image, "valid", None)
         if valid is not None:
             size[1:-1, 1:-1] *= _all_of_nine(valid)

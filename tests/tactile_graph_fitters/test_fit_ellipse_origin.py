@@ -11,7 +11,12 @@ from scipy.optimize import minimize
 from helpers_rectangles import off_rad, points, rectangle_xy, seeds, some_ellipse, some_rectangle
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Points, Rectangle
-from tactile_graph_fitters.fit_ellipse_origin import fit_ellipse_origin, radial_error
+from tactile_graph_fitters.fit_ellipse_origin import (
+    _polar,
+    fit_ellipse_origin,
+    radial_error,
+    simplex_search,
+)
 from tactile_graph_fitters.orientation import Orientation
 from tactile_graph_fitters.rotate_points import rotate_points
 
@@ -73,6 +78,18 @@ def test_finds_the_minimum_scipy_finds(seed):
     assert 60 * got.rms_cm**2 == pytest.approx(peer.fun, rel=1e-6)
     axes = sorted(np.abs(peer.x), reverse=True)
     assert (got.semi_major_cm, got.semi_minor_cm) == pytest.approx(axes, rel=1e-4)
+
+
+@pytest.mark.parametrize("times", [(2.0, 2.0), (0.5, 0.5), (0.3, 2.0), (2.0, 0.3)])
+def test_where_the_search_starts_makes_no_difference(times):
+    for seed in range(5):
+        x, y = np.random.default_rng(seed).normal(0.0, [[4.0], [1.5]], (2, 40))
+        scale, a, b, r, cos2, sin2 = _polar(x, y)
+        _, a, b, _, _ = settled = simplex_search(r, cos2, sin2, a, b, 1e-8, 2000)
+        other = simplex_search(r, cos2, sin2, times[0] * a, times[1] * b, 1e-8, 2000)
+        again = simplex_search(r, cos2, sin2, other[1], other[2], 1e-8, 2000)
+        assert again[1:3] == pytest.approx(settled[1:3], rel=1e-5)
+        assert scale > 0.0
 
 
 def test_an_ellipse_longer_across_turns_its_angle_by_a_quarter():

@@ -9,7 +9,7 @@ from helpers_rectangles import covered, points, rectangle_xy
 from tactile_graph import load
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Points, Polygon, Rectangle
-from tactile_graph_fitters.shape_decision import distance_from_sides, shape_decision
+from tactile_graph_fitters.shape_decision import shape_decision
 from tactile_graph_hull.boundary_scan import boundary_scan
 
 
@@ -48,11 +48,24 @@ def test_a_triangle_is_a_polygon_of_three_corners():
     assert (got.kind, got.corners) == ("polygon", 3)
 
 
-def test_less_evidence_makes_every_confidence_more_alike():
+def test_a_higher_temperature_makes_every_confidence_more_alike():
     xy = points(OUTLINES["ellipse"])
-    sure, unsure = (shape_decision(xy, evidence=e, cell_cm=0.8) for e in (1.0, 0.2))
+    sure, unsure = (shape_decision(xy, temperature=t, cell_cm=0.8) for t in (1.0, 5.0))
     assert sure.kind == unsure.kind == "ellipse"
     assert unsure.confidence < sure.confidence
+    logs = [np.log([d.disc, d.ellipse, d.rectangle, d.polygon]) for d in (sure, unsure)]
+    assert np.diff(logs[1]) == pytest.approx(np.diff(logs[0]) / 5.0)
+
+
+@pytest.mark.parametrize("most", [3, 4, 6, 8])
+def test_a_polygon_has_no_more_corners_than_it_may(most):
+    t = 2 * np.pi * np.arange(7) / 7
+    xy = np.column_stack([np.cos(t), np.sin(t)])
+    along = np.linspace(0, 1, 12, endpoint=False)[:, None, None]
+    outline = (xy * (1 - along) + np.roll(xy, -1, axis=0) * along).reshape(-1, 2) * 30
+    got = shape_decision(points(outline), cell_cm=0.5, max_corners=most)
+    assert got.kind != "polygon" or got.corners <= most
+    assert got.corners in (0, 4) or got.corners == min(most, 7)
 
 
 def test_on_a_pad_of_16_cells_the_confidence_says_how_often_it_is_right():
@@ -89,12 +102,6 @@ def test_a_small_blob_of_cells_gets_an_answer_that_is_not_sure():
     assert got.confidence < 0.9
 
 
-def test_distances_from_sides_are_measured_to_the_nearest_side():
-    square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    xy = np.array([[1.0, 0.5], [3.0, 3.0], [1.0, -2.0]])
-    assert distance_from_sides(square, xy) == pytest.approx([0.5, math.sqrt(2), 2.0])
-
-
 def test_points_anywhere_on_the_pad_give_the_same_decision():
     xy = OUTLINES["rectangle"]
     here, there = (
@@ -103,3 +110,10 @@ def test_points_anywhere_on_the_pad_give_the_same_decision():
     )
     assert there.kind == here.kind
     assert there.confidence == pytest.approx(here.confidence, abs=1e-3)
+
+
+@pytest.mark.parametrize("size", [1e6, 2.0**500, 1.7e308])
+def test_points_of_no_pad_are_refused_in_words(size: float) -> None:
+    t = np.linspace(0.0, 6.0, 40)
+    with pytest.raises(Degenerate, match=r"100,000 cells of 1\.3 cm apart; is cell_cm right"):
+        shape_decision(Points(size * np.column_stack([np.cos(t), np.sin(t)])), cell_cm=1.3)

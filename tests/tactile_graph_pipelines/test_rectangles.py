@@ -10,6 +10,17 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Rectangle, load
 from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.wires import Mask
+from tactile_graph_filters.close import Close
+from tactile_graph_filters.subdivide import subdivide
+from tactile_graph_fitters.experiments import (
+    OBJECTS,
+    STATED_CELL_CM,
+    rectangle_frames,
+    signed_errors,
+)
+from tactile_graph_fitters.orientation import Orientation
+from tactile_graph_fitters.rotate_mask import rotate_mask
 
 ORIGIN_CM = (-0.15, -0.15)
 EVERY = ("rectangle-1", "rectangle-2", "rectangle-3", "ellipse-direct")
@@ -46,6 +57,45 @@ def test_rectangle_3_finds_the_angle_within_a_degree_and_the_sides_within_0_4_cm
     found = errors("rectangle-3", 160, seed=1).mean(axis=0)
     assert found[0] < 1.0
     assert found[1:].max() < 0.4
+
+
+def test_read_at_1_cm_a_cell_the_second_evolution_errs_less_than_the_first_as_in_the_thesis() -> (
+    None
+):
+    frames = rectangle_frames(150, seed=1)
+    first, second = (
+        signed_errors(load(name).runner(), frames, STATED_CELL_CM)
+        for name in ("rectangle-1", "rectangle-2")
+    )
+    for name in OBJECTS:
+        before, after = (np.nanmean(np.abs(e[name]), axis=0) for e in (first, second))
+        assert (after[1:3] < before[1:3]).all()
+        assert after[0] == pytest.approx(before[0], rel=0.1)
+
+
+def test_the_pre_filter_of_rectangle_2_fills_a_lost_element_which_one_pass_does_not() -> None:
+    cells = {(r, c) for r in range(5, 11) for c in range(3, 13)} - {(7, 6)}
+    frame = touched(*cells)
+    whole = load("rectangle-2").run(touched(*cells, (7, 6)))["rectangle"]
+    for times, fills in ((8, True), (1, False)):
+        pipeline = load("rectangle-2").with_settings({"filled.times": times})
+        found = pipeline.run(frame)["rectangle"]
+        same = abs(found.length_cm - whole.length_cm) < 0.1
+        assert same == fills
+
+
+@pytest.mark.parametrize(("angle", "enough"), [(0.0, 5), (0.3, 6), (math.pi / 4, 8)])
+def test_eight_passes_fill_a_lost_element_at_any_angle(angle: float, enough: int) -> None:
+    values = np.ones((9, 9), np.bool_)
+    values[4, 4] = False
+    fine = subdivide(Mask(values, (1.3, 1.3), ORIGIN_CM), factor=10)
+    axis = Orientation(angle, 5.7, 5.7, 0.5, 0.1, False)
+    rotated = rotate_mask(fine, axis)
+    row, column = (int((5.7 - rotated.origin_cm[k]) / 0.13) for k in (1, 0))
+    around = slice(row - 20, row + 21), slice(column - 20, column + 21)
+    assert Close(times=enough)(rotated).values[around].all()
+    assert not Close(times=4)(rotated).values[around].all()
+    assert enough <= 8
 
 
 def test_on_an_even_pad_corrected_sides_are_nearer_than_the_full_axes() -> None:
