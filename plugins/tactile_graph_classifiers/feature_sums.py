@@ -46,9 +46,9 @@ def _sums_plain(
     with np.errstate(invalid="ignore", over="ignore"):  # NaN and infinity show in the sums
         total = float(load.sum())
         square = float(((load - total / m) ** 2).mean()) if m else 0.0
+        pressed = np.maximum(load, 0.0)
+        positive = float(pressed.sum())
     v, u = np.nonzero(good)
-    pressed = np.maximum(load, 0.0)
-    positive = float(pressed.sum())
     load_x, load_y = mean_x, mean_y
     if 0.0 < positive < np.inf:
         load_x, load_y = float(u @ pressed) / positive, float(v @ pressed) / positive

@@ -18,6 +18,7 @@ _STEPS = {
     "gain": "gain:Gain",
     "hit_or_miss": "hit_or_miss:HitOrMiss",
     "inpaint": "inpaint:inpaint",
+    "lean_contacts": "lean_contacts:lean_contacts",
     "load": "load:LoadOf",
     "low_pass": "low_pass:LowPass",
     "mask": "mask:mask",
@@ -33,6 +34,7 @@ _STEPS = {
     "threshold_otsu": "threshold_otsu:threshold_otsu",
     "threshold_valley": "threshold_valley:threshold_valley",
     "threshold_variable": "threshold_variable:threshold_variable",
+    "valid_share": "valid_share:valid_share",
     "volts": "volts:Volts",
 }
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_twin_of
 
 STEPS = 2.0**30
+LOWEST = 1e-290  # highest ground that still counts: `STEPS` over less would be no number
 """Into so many heights the smoothed readings are sorted."""
 
 
@@ -51,7 +52,7 @@ def _basins_plain(
     for k, tap in enumerate(taps):
         smooth += tap * across[k : k + rows]
     # Whole numbers: even ground must not be torn by the last bit of a sum.
-    heights = np.floor(smooth * (STEPS / max(smooth.max(), 1e-300)))
+    heights = np.floor(smooth * (STEPS / max(smooth.max(), LOWEST)))
     walled = np.pad(heights, 1, constant_values=-1.0)
     number_of = np.arange(values.size).reshape(values.shape)
     highest, to = np.full(values.shape, -1.0), number_of
@@ -86,7 +87,7 @@ def basins(values, on, taps, labels):  # type: ignore[no-untyped-def]
         for i in range(max(0, reach - k), min(rows, rows + reach - k)):
             for j in range(columns):
                 smooth[i, j] += taps[k] * across[i + k - reach, j]
-    highest = 1e-300
+    highest = LOWEST
     for i in range(rows):
         for j in range(columns):
             highest = max(highest, smooth[i, j])

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
+from annotated_types import Ge, Le
 
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
-from tactile_graph_filters.elements import ElementSetting, parse_element
+from tactile_graph_filters.elements import LARGEST, ElementSetting, parse_element
 from tactile_graph_filters.morphology import make_plan, sweep
 
 
@@ -19,21 +20,34 @@ class Close:
     ----------
     element : str or list of list of int
         The structuring element, as `erode` takes it.
+    times : int
+        How often it dilates, before it erodes as often: the gaps that are filled grow by as much.
     border : bool
         Whether cells outside the mask count as on.
 
+    Raises
+    ------
+    ValueError
+        If the element repeated so often is longer than `LARGEST`.
+
     Notes
     -----
-    Thesis sections 3.1.3 and 4.3.9 (filling voids). The dilation takes the element turned by half
-    a turn, so that closing never turns a cell off and closing twice is closing once, whatever
-    the element. Done as on an endless plane: the dilation may run over the edge of the pad, or a
-    footprint at the edge would be eaten there.
+    Thesis sections 3.1.3 ("can be performed iteratively") and 4.3.9 (filling voids). The dilation
+    takes the element turned by half a turn, so that closing never turns a cell off and closing
+    twice is closing once, whatever the element. Done as on an endless plane: the dilation may run
+    over the edge of the pad, or a footprint at the edge would be eaten there.
     """
 
     stateless = True
 
-    def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
-        parsed = parse_element(element)
+    def __init__(
+        self,
+        *,
+        element: ElementSetting = "cross3",
+        times: Annotated[int, Ge(1), Le(LARGEST)] = 1,
+        border: bool = False,
+    ) -> None:
+        parsed = parse_element(element).repeated(times)
         self._plan = make_plan(parsed.reflected, parsed, dilate=True, border=border)
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:

@@ -14,7 +14,7 @@ from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.crop import Box, cut_image, cut_mask, widened
 from tactile_graph_filters.labels import label
-from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.nan import refuse_unbounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +124,7 @@ def contacts(
     table = label(values, mask.values, connectivity == 8, labels)
     labels.setflags(write=False)
     if not np.isfinite(table).all():
-        refuse_nan(image, infinite=True)
+        refuse_unbounded(image, "the load of a contact, or its moment")
     found = [
         _contact(number, sums, image, labels, margin)
         for number, sums in enumerate(table.tolist(), 1)

@@ -10,6 +10,7 @@ from annotated_types import Ge
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.nan import require_finite
 
 Box = tuple[int, int, int, int]
 """First row, row after the last, first column, column after the last."""
@@ -142,7 +143,10 @@ def crop(
     ------
     Degenerate
         If no cell is on.
+    DataError
+        If a valid cell holds NaN or infinity.
     """
+    require_finite(image)
     box = bounding_box(mask)
     if box is None:
         raise Degenerate("no cell of the mask is on, so there is no contact to crop to")

@@ -63,6 +63,32 @@ class Element:
         """The element turned by half a turn about its origin."""
         return Element(self.name, self.cells[::-1, ::-1].copy())
 
+    def repeated(self, times: int) -> Element:
+        """Return the element that does at once what this one does ``times`` times in a row.
+
+        Parameters
+        ----------
+        times : int
+            1 or more.
+
+        Raises
+        ------
+        ValueError
+            If it would be longer than `LARGEST`.
+        """
+        (down, right), (rows, columns) = self.reach, self.cells.shape
+        if 1 + 2 * times * max(down, right) > LARGEST:
+            raise ValueError(
+                f"structuring element {self.name!r} repeated {times} times is longer than {LARGEST}"
+            )
+        cells = self.cells
+        for _ in range(times - 1):
+            wide = np.zeros((len(cells) + rows - 1, cells.shape[1] + columns - 1), np.bool_)
+            for i, j in np.argwhere(self.cells):
+                wide[i : i + len(cells), j : j + cells.shape[1]] |= cells
+            cells = wide
+        return Element(self.name, cells)
+
 
 def parse_element(spec: Spec) -> Element:
     """Return the element that a name or a matrix describes.

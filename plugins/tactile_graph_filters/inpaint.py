@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
+from tactile_graph_filters.nan import require_finite
 
 DENSE_UP_TO = 400
 
@@ -36,11 +37,14 @@ def inpaint(
     ------
     Degenerate
         If no cell is valid.
+    DataError
+        If a valid cell holds NaN or infinity.
 
     Notes
     -----
     What is filled in is a guess; sums over the image then include it.
     """
+    require_finite(image)
     if image.valid is None:
         return image
     holes = ~image.valid

@@ -46,11 +46,12 @@ def _sums(values: NDArray[np.float64], part: NDArray[np.bool_]) -> list[Any]:
     y, x = np.nonzero(part)
     load = values[part]
     positive = np.where(load > 0, load, 0.0)
-    return [
-        x.size, load.sum(), load.max(), x.sum(), y.sum(),
-        positive.sum(), (x * positive).sum(), (y * positive).sum(),
-        y.min(), y.max(), x.min(), x.max(),
-    ]  # fmt: skip
+    with np.errstate(over="ignore", invalid="ignore"):  # found out by what comes out
+        return [
+            x.size, load.sum(), load.max(), x.sum(), y.sum(),
+            positive.sum(), (x * positive).sum(), (y * positive).sum(),
+            y.min(), y.max(), x.min(), x.max(),
+        ]  # fmt: skip
 
 
 @compiled_twin_of(_label_plain)

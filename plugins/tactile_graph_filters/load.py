@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.wires import Image
-from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.nan import refuse_unbounded
 
 NEWTON_PER_GRAM = 9.80665e-3
 """Weight of one gram under standard gravity."""
@@ -40,7 +41,8 @@ def _measure_plain(
     load = values[on]
     y, x = np.nonzero(on)
     peak = float(load.max()) if load.size else 0.0
-    with np.errstate(invalid="ignore"):  # infinity, to be found out by its sum too
+    # Infinity, and sums too large, to be found out too.
+    with np.errstate(invalid="ignore", over="ignore"):
         return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
 
 
@@ -82,11 +84,19 @@ class LoadOf:
         self._all: dict[tuple[int, int], NDArray[Any]] = {}
 
     def __call__(self, image: Image) -> Load:
-        """Return the load of the image."""
+        """Return the load of the image.
+
+        Raises
+        ------
+        DataError
+            If a valid cell holds NaN or infinity.
+        Degenerate
+            If the load, or its moment, is too large for a number.
+        """
         values = np.ascontiguousarray(image.values, np.float64)
         n, total, peak, moment_x, moment_y = measure(values, self._usable(image), self._above)
-        if not np.isfinite(total):
-            refuse_nan(image, infinite=True)
+        if not math.isfinite(total + moment_x + moment_y):
+            refuse_unbounded(image, "the load, or its moment")
         if total > 0.0:
             (x, y), (pitch_x, pitch_y) = image.origin_cm, image.pitch_cm
             x_cm: float | None = x + (moment_x / total + 0.5) * pitch_x

@@ -12,7 +12,7 @@ from pydantic import AfterValidator
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
-from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.nan import all_finite, refuse_unbounded
 
 
 def _window_mean_plain(
@@ -33,7 +33,8 @@ def _window_mean_plain(
     out[...] = 0.0
     for (i, j), weight in np.ndenumerate(weights):
         window = slice(i, i + rows), slice(j, j + columns)
-        out += weight * padded[window]
+        with np.errstate(over="ignore", invalid="ignore"):  # found out by what comes out
+            out += weight * padded[window]
         total += weight * counted[window]
     np.divide(out, total, out=out, where=total > 0)
 
@@ -113,7 +114,15 @@ class LowPass:
         self._all: dict[tuple[int, int], NDArray[np.float64]] = {}
 
     def __call__(self, image: Image | Mask) -> Annotated[Image, Grid.like("image")]:
-        """Return the smoothed image."""
+        """Return the smoothed image.
+
+        Raises
+        ------
+        DataError
+            If a valid cell holds NaN or infinity.
+        Degenerate
+            If the sum over a window is too large for a number.
+        """
         valid, quantity = (
             (image.valid, image.quantity) if isinstance(image, Image) else (None, "level")
         )
@@ -121,7 +130,7 @@ class LowPass:
         out = np.empty(values.shape)
         window_mean(values, self._usable(image.shape, valid), self._weights, out)
         if not all_finite(out) and isinstance(image, Image):
-            refuse_nan(image, infinite=True)
+            refuse_unbounded(image, "the sum over a window")
         if valid is not None:
             out[~valid] = 0.0
         return Image(out, image.pitch_cm, image.origin_cm, quantity, valid)

@@ -10,6 +10,7 @@ from annotated_types import Ge
 from tactile_graph.errors import DataError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
+from tactile_graph_filters.nan import require_finite
 
 Index = Annotated[int, Ge(0)]
 
@@ -38,7 +39,7 @@ def mask(
     Raises
     ------
     DataError
-        If a listed element is not on the image.
+        If a listed element is not on the image, or one that stays valid holds NaN or infinity.
     """
     valid = np.ones(image.shape, np.bool_) if image.valid is None else image.valid.copy()
     n_rows, n_columns = image.shape
@@ -53,4 +54,6 @@ def mask(
         valid[row, column] = False
     valid[list(rows), :] = False
     valid[:, list(columns)] = False
-    return image.with_values(np.where(valid, image.values, 0.0), valid=valid)
+    masked = image.with_values(np.where(valid, image.values, 0.0), valid=valid)
+    require_finite(masked)
+    return masked

@@ -1,14 +1,14 @@
-"""Find NaN and infinity in an image, and refuse it naming the cell."""
+"""Find NaN and infinity in an image, or made of it, and refuse it naming the cell."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
 
 
@@ -54,3 +54,44 @@ def refuse_nan(image: Image, *, infinite: bool = False) -> None:
             f"must be a number, got {image.values[row, column]}{others};"
             " a missing or broken cell must be marked invalid",
         )
+
+
+def require_finite(image: Image) -> None:
+    """Raise if a valid cell holds NaN or infinity; fast where none does.
+
+    Raises
+    ------
+    DataError
+        As `refuse_nan`.
+    """
+    if not all_finite.call(image.values):
+        refuse_nan(image, infinite=True)
+
+
+def refuse_unbounded(image: Image, what: str) -> NoReturn:
+    """Say why ``what``, made of an image, is not finite.
+
+    Raises
+    ------
+    DataError
+        If a valid cell holds NaN or infinity.
+    Degenerate
+        If all are finite: the result is then too large for a number.
+    """
+    refuse_nan(image, infinite=True)
+    size = float(np.abs(image.filled()).max())
+    raise Degenerate(f"{what} is too large for a number: values reach {size:.3g}")
+
+
+def require_summable(image: Image, readings: NDArray[Any]) -> None:
+    """Raise if readings of an image, or their moments, add up to no number.
+
+    Raises
+    ------
+    DataError, Degenerate
+        As `refuse_unbounded`.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = float(np.abs(readings).sum())
+    if not np.isfinite(total * max(image.shape)):
+        refuse_unbounded(image, "the load of the footprint, or its moment")

@@ -12,7 +12,7 @@ from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts import Contacts
 from tactile_graph_filters.labelled import contacts_of
-from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.nan import require_summable
 
 SMOOTH_CELLS = 1.0
 """Standard deviation of the smoothing of the load map."""
@@ -72,8 +72,7 @@ def split_watershed(
     require_same_shape(image=image, mask=mask)
     if not mask.values.any():
         return Contacts((), 0)
-    if not np.isfinite(image.values[mask.values]).all():
-        refuse_nan(image, infinite=True)
+    require_summable(image, image.values[mask.values])
     bridged = _bridged(mask.values, bridge_cells)
     labels = _flooded(_height(image, mask.values, bridged, by), bridged, neck)
     labels[~mask.values] = 0

@@ -9,6 +9,7 @@ from annotated_types import Ge, Le
 
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
+from tactile_graph_filters.nan import require_finite
 from tactile_graph_filters.subdivide import expand
 
 
@@ -29,10 +30,16 @@ def subdivide_image(
         On a grid of a ``factor`` finer pitch with the same origin. What is a sum over cells
         (the load) becomes factor x factor times as large: each part repeats the whole reading.
 
+    Raises
+    ------
+    DataError
+        If a valid cell holds NaN or infinity.
+
     Notes
     -----
     Thesis section 4.2.5, figure 4.13.
     """
+    require_finite(image)
     if factor == 1:
         return image
     rows, columns = image.shape

@@ -42,6 +42,6 @@ def threshold_otsu(image: Image) -> Thresholded:
     sum_below = np.cumsum(scaled)[:-1]
     n_above = values.size - n_below
     means_apart = (float(scaled.sum()) - sum_below) / n_above - sum_below / n_below
-    between = np.where(np.diff(values) > 0, n_below * n_above * means_apart**2, -1.0)
+    between = np.where(values[1:] > values[:-1], n_below * n_above * means_apart**2, -1.0)
     level = float(values[int(np.argmax(between)) + 1])
     return Thresholded(footprint(image, level), level)

@@ -53,7 +53,8 @@ def threshold_valley(
     """
     values = grey_values(image)
     low, high = float(values.min()), float(values.max())
-    edges = np.linspace(low, high, n_bins + 1)
+    # In halves: the range of the largest numbers is none.
+    edges = 2.0 * np.linspace(0.5 * low, 0.5 * high, n_bins + 1)
     counts = np.histogram(values, edges)[0].astype(np.float64)
     smooth_until_two_peaks(counts, smoothing)
     peaks = _peaks(counts)

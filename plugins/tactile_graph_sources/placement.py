@@ -14,8 +14,15 @@ from tactile_graph_pads.geometry import Geometry
 from tactile_graph_sources.scene import Thing
 
 MOST_TRIES = 2000
+"""For one object, before all are taken off the pad again."""
+MOST_STARTS = 10
+"""With an empty pad, before the scene is given up."""
 _TURNS = np.linspace(0.0, 2.0 * np.pi, 360, endpoint=False)
 _DIRECTIONS = np.stack([np.cos(_TURNS), np.sin(_TURNS)])
+
+
+class _CrowdedError(UsageError):
+    """An object found no place among those before it; with others there it might."""
 
 
 def place(
@@ -36,10 +43,22 @@ def place(
     ------
     UsageError
         If an object cannot come to lie on the pad, or not apart from those before it.
+
+    Notes
+    -----
+    Objects are placed one after another, each anywhere where it fits. Where one finds no place
+    left, the whole scene starts anew with the draws that follow: a scene whose first start
+    succeeds takes the same draws as ever.
     """
-    shapes: list[Shape] = []
-    for number, thing in enumerate(things):
-        shapes.append(_place_one(number, thing, shapes, geometry, apart_cm, rng))
+    for start in range(MOST_STARTS):
+        shapes: list[Shape] = []
+        try:
+            for number, thing in enumerate(things):
+                shapes.append(_place_one(number, thing, shapes, geometry, apart_cm, rng))
+            break
+        except _CrowdedError:
+            if start == MOST_STARTS - 1:
+                raise
     return shapes
 
 
@@ -67,9 +86,9 @@ def _place_one(
     if low is None or high is None or (low > high).any():
         width, height = geometry.size_cm
         raise UsageError(f"{label} does not fit on the pad of {width:g} by {height:g} cm")
-    raise UsageError(
+    raise _CrowdedError(
         f"{label} found no place {apart_cm:g} cm apart from the {len(others)} before it "
-        f"in {MOST_TRIES} tries"
+        f"in {MOST_TRIES} tries, nor after starting anew {MOST_STARTS - 1} times"
     )
 
 

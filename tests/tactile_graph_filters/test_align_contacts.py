@@ -24,6 +24,16 @@ def test_a_quarter_turn_and_a_shift_move_both_centres_and_nothing_else():
     assert (one.area_cm2, one.load, one.box) == (was.area_cm2, was.load, was.box)
 
 
+def test_areas_grow_by_where_the_contact_was_and_no_centre_moves():
+    was = ONES[0]
+    x, y = was.x_cm, was.y_cm
+    log_area = (0.1, 0.2, -0.3, 0.04, 0.05, -0.06)
+    growth = 0.1 + 0.2 * x - 0.3 * y + 0.04 * x**2 + 0.05 * x * y - 0.06 * y**2
+    one = AlignContacts(log_area=log_area)(ONES).contacts[0]
+    assert one.area_cm2 == pytest.approx(math.exp(growth) * was.area_cm2)
+    assert (one.x_cm, one.y_cm) == (x, y)
+
+
 def test_no_contacts_stay_none():
     assert AlignContacts()([]) == ((), 0)
 
@@ -37,3 +47,5 @@ def test_a_matrix_that_flattens_is_refused():
 def test_what_is_not_finite_is_refused(bad):
     with pytest.raises(ValueError, match="must be finite"):
         AlignContacts(shift_cm=(bad, 0.0))
+    with pytest.raises(ValueError, match="must be finite"):
+        AlignContacts(log_area=(0.0, 0.0, 0.0, 0.0, 0.0, bad))

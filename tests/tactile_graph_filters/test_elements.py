@@ -63,3 +63,16 @@ def test_a_setting_is_written_down_as_it_was_given():
     given = TypeAdapter(ElementSetting).validate_python([[0, 1, 0], [1, 1, 1], [0, 1, 0]])
     assert np.array_equal(parse_element(given).cells, parse_element("cross3").cells)
     assert TypeAdapter(ElementSetting).validate_python("disc:9") == "disc:9"
+
+
+def test_repeating_an_element_is_what_dilating_so_often_comes_to():
+    assert parse_element("cross3").repeated(2).cells.sum(axis=1).tolist() == [1, 3, 5, 3, 1]
+    lopsided = parse_element([[0, 1, 1], [0, 0, 0], [0, 0, 0]])
+    assert lopsided.repeated(1).offsets.tolist() == [[-1, 0], [-1, 1]]
+    assert lopsided.repeated(3).offsets.tolist() == [[-3, 0], [-3, 1], [-3, 2], [-3, 3]]
+
+
+def test_an_element_repeated_too_often_is_refused_in_words():
+    with pytest.raises(ValueError, match="'disc5' repeated 64 times is longer than 255"):
+        parse_element("disc5").repeated(64)
+    assert parse_element("cross3").repeated(127).cells.shape == (255, 255)

@@ -165,3 +165,18 @@ def test_big_elements_take_few_sweeps():
     assert len(make_plan(parse_element("square21"))) - 1 <= 10
     assert len(make_plan(parse_element("square:255"))) - 1 <= 16
     assert len(make_plan(parse_element("disc5"))) - 1 <= 7
+
+
+@pytest.mark.parametrize("times", [1, 2, 5])
+@pytest.mark.parametrize(
+    "element", ["cross3", "square3", [[1, 1, 0], [0, 1, 0], [0, 0, 0]]], ids=str
+)
+def test_closing_several_times_dilates_as_often_and_then_erodes_as_often(element, times):
+    mask = mask_of(np.pad(random_mask(times, (17, 20), share=0.3).values, 20))
+    turned = parse_element(element).reflected.cells.astype(int).tolist()
+    expected = mask
+    for _ in range(times):
+        expected = Dilate(element=turned)(expected)
+    for _ in range(times):
+        expected = Erode(element=element)(expected)
+    assert np.array_equal(Close(element=element, times=times)(mask).values, expected.values)

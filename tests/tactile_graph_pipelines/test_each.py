@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from helpers_objects import frames
 from tactile_graph import Circle, Frame, Mask, loads
 
 TEXT = """
@@ -44,3 +46,44 @@ def test_with_no_contact_at_all_both_are_skipped() -> None:
     result = loads(TEXT).run(empty)
     assert not result.failures
     assert len(result) == 0
+
+
+LOCALISERS = {
+    "circle-1": "disc",
+    "circle-2": "disc",
+    "circle-3": "disc",
+    "circle-likelihood": "disc",
+    "bayes-circle": "disc",
+    "ellipse-direct": "disc",
+    "rectangle-1": "rectangle",
+    "rectangle-2": "rectangle",
+    "rectangle-3": "rectangle",
+    "rectangle-likelihood": "rectangle",
+    "bayes-rectangle": "rectangle",
+}
+PER_CONTACT = """
+pipeline: per-contact
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  parts: {step: split_contacts, in: [frame, footprint], with: {margin: 1}}
+  found: {use: %s, in: parts.contacts, each: true}
+outputs: [found]
+"""
+TWO = {
+    "disc": {"shape": "disc", "weight_g": 2200, "radius_cm": 3.6},
+    "rectangle": {"shape": "rectangle", "weight_g": 2200, "length_cm": 9.0, "breadth_cm": 5.5},
+}
+
+
+@pytest.mark.parametrize(("name", "kind"), LOCALISERS.items())
+def test_every_localiser_places_each_of_two_contacts(name: str, kind: str) -> None:
+    turn = {} if kind == "disc" else {"angle_deg": 20.0}
+    objects = [{**TWO[kind], **turn, "place": place} for place in ([5.5, 5.0], [14.5, 15.0])]
+    (frame,) = frames({"objects": objects}, 1, 3, sigma=0.0, voids=0.0)
+    result = loads(PER_CONTACT % name).run(frame)
+    assert not result.failures
+    found = result["found"]
+    if hasattr(found, "_fields"):  # of a pipeline with several outputs: a list for each
+        found = found[0]
+    places = sorted((s.x_cm, s.y_cm) for s in found)
+    assert np.array(places) == pytest.approx(np.array([[5.5, 5.0], [14.5, 15.0]]), abs=0.5)

@@ -10,6 +10,9 @@ import pytest
 from tactile_graph import Frame, load
 from tactile_graph.engine.outcome import Skipped
 from tactile_graph.engine.result import Result
+from tactile_graph.steps import Report
+from tactile_graph_filters.align_contacts import AlignContacts
+from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import ObjectScore, score_objects
 
 CAPCONTACT = Path(__file__).parents[2].parent / "shared/data/capcontact"
@@ -76,25 +79,34 @@ def test_fingers_on_a_panel_that_blurs_are_found_within_half_a_cell() -> None:
         assert score.worst_error_cm < 0.24
 
 
-def test_on_a_real_panel_every_contact_is_found_and_alignment_halves_the_centre_error() -> None:
+def test_on_a_real_panel_contacts_are_counted_and_their_centres_beat_the_plain_centroid() -> None:
     """The alignment was fitted on recordings 0000, 0008, …; measured here on the others."""
     if not CAPCONTACT.is_dir():
         pytest.skip("the CapContact recordings are not here")
-    errors: dict[str, list[float]] = {"plain": [], "aligned": []}
-    pipeline = load("capacitive").with_settings(
-        {
-            "aligned.matrix": ((1.0077, 0.0258), (0.0036, 1.0222)),
-            "aligned.shift_cm": (-0.2703, -0.3339),
-        }
-    )
+    errors: dict[str, list[float]] = {"contacts": [], "sharp": [], "upright": []}
+    areas: dict[str, list[float]] = {"sharp": [], "aligned": []}
+    matrix, shift_cm = ((1.0065, 0.0279), (0.0011, 1.0187)), (-0.2352, -0.2531)
+    log_area = (1.5311, -0.06584, -0.16679, -6e-05, 0.00505, 0.00438)
+    pipeline = load("capacitive").with_settings({"aligned.log_area": log_area})
+    run = pipeline.runner(only=("aligned", *errors))
+    align = AlignContacts(matrix=matrix, shift_cm=shift_cm)
     for path in sorted(CAPCONTACT.glob("*.npz"))[1::2]:
-        for result in pipeline.with_source("recording", path=str(path)).stream(
-            only=("aligned", "contacts")
-        ):
-            for name, found in (("plain", result["contacts"]), ("aligned", result["aligned"])):
-                score = score_objects(result.frame, found.contacts, gate_cm=1.0)
+        for frame in recording(path=path, report=Report()):
+            result = run(frame)
+            assert frame.truth is not None
+            for name, found_errors in errors.items():
+                score = score_objects(frame, align(result[name].contacts).contacts, gate_cm=1.0)
                 assert score.count_right
                 assert score.n_missed == 0
-                errors[name] += [e / 0.4775 for _, _, e in score.pairs]
-    assert np.median(errors["aligned"]) < 0.25
-    assert np.median(errors["aligned"]) < 0.6 * np.median(errors["plain"])
+                found_errors += [e / 0.4775 for _, _, e in score.pairs]
+            for name, found_areas in areas.items():
+                for i, j, _ in score.pairs:
+                    ratio = result[name].contacts[j].area_cm2 / frame.truth[i].shape.area_cm2
+                    found_areas.append(abs(ratio - 1.0))
+    plain, sharp, upright = (float(np.median(e)) for e in errors.values())
+    assert upright < 0.19
+    assert upright < 0.85 * sharp
+    assert upright < 0.75 * plain
+    as_they_are, by_place = (float(np.median(e)) for e in areas.values())
+    assert by_place < 0.13
+    assert by_place < 0.9 * as_they_are

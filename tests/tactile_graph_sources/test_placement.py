@@ -8,10 +8,12 @@ import pytest
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Circle, Ellipse, Rectangle
 from tactile_graph_pads.geometry import Geometry
+from tactile_graph_sources import placement
 from tactile_graph_sources.placement import are_apart, place
 from tactile_graph_sources.scene import Disc, Oval, Plate, Slab
 
 PAD = Geometry()
+ONE = placement._place_one
 THINGS = [
     Disc(weight_g=1.0, radius_cm=7.7),
     Slab(weight_g=1.0, length_cm=16.0, breadth_cm=7.0),
@@ -67,6 +69,37 @@ def test_objects_that_find_no_room_are_named():
     two = [Disc(weight_g=1.0, radius_cm=7.0)] * 2
     with pytest.raises(UsageError, match="object 2 found no place 0 cm apart from the 1 before"):
         place(two, PAD, 0.0, np.random.default_rng(0))
+
+
+FULL = [Disc(weight_g=1.0, radius_cm=2.5)] * 7
+"""Seven discs, of which the first six often leave no place for the last."""
+
+
+def test_a_scene_whose_last_object_finds_no_place_starts_anew(monkeypatch):
+    monkeypatch.setattr(placement, "MOST_TRIES", 40)
+    starts = []
+    for seed in range(8):
+        calls = []
+        monkeypatch.setattr(
+            placement, "_place_one", lambda n, *a, c=calls: c.append(n) or ONE(n, *a)
+        )
+        shapes = place(FULL, PAD, 0.2, np.random.default_rng(seed))
+        assert len(shapes) == len(FULL)
+        for i, one in enumerate(shapes):
+            assert all(are_apart(one, other, 0.2) for other in shapes[:i])
+        starts.append(calls.count(0))
+        assert place(FULL, PAD, 0.2, np.random.default_rng(seed)) == shapes
+    assert max(starts) > 1
+
+
+def test_a_scene_that_needs_one_start_draws_as_one_object_after_the_other():
+    rng = np.random.default_rng(3)
+    shapes = []
+    for thing in FULL[:3]:
+        shapes.append(ONE(len(shapes), thing, shapes, PAD, 0.2, rng))
+    again = np.random.default_rng(3)
+    assert place(FULL[:3], PAD, 0.2, again) == shapes
+    assert again.random() == rng.random()
 
 
 @pytest.mark.parametrize(
