@@ -1,0 +1,1 @@
+"""The parts of ``benchmarks/suite.py``: families of measurements, their file, tables and plots."""
