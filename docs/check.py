@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
+from unittest.mock import patch
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = sorted(
@@ -41,6 +42,8 @@ def docstrings(module: ModuleType) -> Iterator[str]:
     """Yield where a documented parameter list and the signature differ (PR01, PR02)."""
     from numpydoc.validate import validate
 
+    from tactile_graph.compiled import Kernel
+
     tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
     for node in tree.body:
         if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
@@ -48,7 +51,12 @@ def docstrings(module: ModuleType) -> Iterator[str]:
         text = ast.get_docstring(node) or ""
         if "Parameters\n" not in text:
             continue
-        for code, message in validate(f"{module.__name__}.{node.name}")["errors"]:
+        found = getattr(module, node.name)
+        # a compiled kernel hides the signature that its text documents
+        plain = found.reference if isinstance(found, Kernel) else found
+        with patch.object(module, node.name, plain):
+            errors = validate(f"{module.__name__}.{node.name}")["errors"]
+        for code, message in errors:
             if code in CHECKS:
                 yield f"{module.__file__}:{node.lineno}: {node.name}: {code} {message}"
 

@@ -16,6 +16,8 @@ from tactile_graph.wires.frame import TrueObject
 
 Values = NDArray[np.float64]
 LEVEL_V = 0.01
+LARGEST_CM = 15.0
+"""Of radii and half sides on 16x16 elements, for who asks for it."""
 DISC5 = np.array(
     [[0, 0, 1, 0, 0], [0, 1, 1, 1, 0], [1, 1, 1, 1, 1], [0, 1, 1, 1, 0], [0, 0, 1, 0, 0]], np.uint8
 )
@@ -37,7 +39,14 @@ class Contestant:
 def ours(name: str, pad: dict[str, Any]) -> Contestant:
     """Return a shipped pipeline, set to the pad at hand."""
     pipeline = load(name)
-    on_pad = {f"{node.name}.pad": pad for node in pipeline.nodes.values() if "pad" in node.settings}
+    wide = LARGEST_CM * pad["geometry"]["rows"] / 16  # the objects grow with the pad
+    at_hand = {"pad": pad, "largest_cm": wide}
+    on_pad = {
+        f"{node.name}.{setting}": value
+        for node in pipeline.nodes.values()
+        for setting, value in at_hand.items()
+        if setting in node.settings
+    }
     pipeline = pipeline.with_settings(on_pad) if on_pad else pipeline
     return Contestant(name, pipeline.runner(), shapes_of, pipeline)
 

@@ -17,8 +17,8 @@ from tactile_graph.engine.result import Result
 from tactile_graph.errors import TactileGraphError
 
 PIPELINES = (
-    "contacts", "circle-1", "circle-2", "circle-3", "circle-likelihood", "rectangle-1",
-    "rectangle-2", "rectangle-3", "ellipse-direct", "objects", "bayes-circle",
+    "contacts", "circle-1", "circle-2", "circle-3", "circle-likelihood", "adaptive",
+    "rectangle-1", "rectangle-2", "rectangle-3", "ellipse-direct", "objects", "bayes-circle",
 )  # fmt: skip
 TOO_SLOW_S = 2.0
 """A contestant that takes longer for one frame is left out on larger pads."""

@@ -27,6 +27,8 @@ class Measured:
     ``rounds_us`` are microseconds a call, one figure a round; the rounds of the contestants of a
     case were taken in turn, so that the same round of two of them can be paired. ``errors`` are
     absolute, by quantity, one for each answer, in the order of the frames; None for no answer.
+    Where the case is a part of a stream, ``at`` are its frames' places in that, and ``frames_us``
+    the time of each, the median of the rounds.
     """
 
     family: str
@@ -37,6 +39,8 @@ class Measured:
     nodes_run: float | None = None
     nodes: int | None = None
     note: str = ""
+    at: tuple[int, ...] = ()
+    frames_us: tuple[float, ...] = ()
 
     @property
     def median_us(self) -> float:
@@ -123,6 +127,8 @@ def read(path: Path) -> Results:
             **{
                 **m,
                 "rounds_us": tuple(m["rounds_us"]),
+                "at": tuple(m.get("at", ())),
+                "frames_us": tuple(m.get("frames_us", ())),
                 "errors": {q: tuple(e) for q, e in m["errors"].items()},
             }
         )

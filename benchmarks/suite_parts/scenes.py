@@ -35,7 +35,7 @@ SCENES = ("empty", "clean", "noisy", "broken", "two objects", "saturated", "dead
 def scene(name: str, size: int, frames: int, seed: int) -> Scene:
     """Return the frames of a scene on a pad of ``size`` by ``size`` elements."""
     rng = np.random.default_rng([seed, size, SCENES.index(name)])
-    pad = _pad(name, size, rng)
+    pad = pad_of(name, size, rng)
     settings = {"scene": {"objects": _objects(name, size)}, "pad": pad, "frames": frames}
     if name == "two objects":
         settings["scene"]["apart_cm"] = 1.3
@@ -66,7 +66,8 @@ def _objects(name: str, size: int) -> list[dict[str, Any]]:
     return [disc]
 
 
-def _pad(name: str, size: int, rng: np.random.Generator) -> dict[str, Any]:
+def pad_of(name: str, size: int, rng: np.random.Generator) -> dict[str, Any]:
+    """Return the thesis' pad in a size, as it is in a scene."""
     from tactile_graph.pipeline.document import read_document
     from tactile_graph.plugins.registry import installed
 

@@ -8,11 +8,13 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from suite_parts.frame_times import frame_times
 from suite_parts.records import Measured, Results
 from suite_parts.verdict import Verdict, references
 
 MAIN_ERROR = {
     "scenes": "centre_cm",
+    "stream": "centre_cm",
     "circle fits": "radius_cm",
     "ellipse fits": "semi_major_cm",
     "rectangle fits": "length_cm",
@@ -26,9 +28,8 @@ def print_tables(results: Results, console: Console) -> None:
         cases = list(dict.fromkeys(m.case for m in results.of(family)))
         grouped: dict[str, list[str]] = {}
         for case in cases:
-            grouped.setdefault(case.rpartition(" ")[0] if family == "scenes" else "", []).append(
-                case
-            )
+            scene = case.rpartition(" ")[0] if family == "scenes" else case.rpartition(": ")[0]
+            grouped.setdefault(scene, []).append(case)
         for name, members in grouped.items():
             title = f"{family}: {name}" if name else family
             console.print(_table(results, family, members, title))
@@ -46,7 +47,8 @@ def _table(results: Results, family: str, cases: list[str], title: str) -> Table
     )
     table.add_column("contestant", no_wrap=True)
     for case in cases:
-        table.add_column(case.rpartition(" ")[2] if family == "scenes" else case, justify="right")
+        column = case.rpartition(" " if family == "scenes" else ": ")[2]
+        table.add_column(column, justify="right")
     for name in dict.fromkeys(m.contestant for m in found):
         cells = [_cell(held.get((name, c)), base.get((family, c)), quantity) for c in cases]
         table.add_row(name, *cells)
@@ -91,9 +93,15 @@ def _summary(found: list[Verdict]) -> str:
 
 
 def draw(results: Results, folder: Path) -> list[Path]:
-    """Draw one plot a family: error against time, a marker a contestant, a panel a case."""
+    """Draw one plot a family: error against time, a marker a contestant, a panel a case.
+
+    Of a stream also the time of each of its frames.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    return [_scatter(results, family, folder) for family in results.families]
+    found = [_scatter(results, family, folder) for family in results.families]
+    if any(m.at for m in results.of("stream")):
+        found.append(frame_times(results, folder / "stream-frames.png"))
+    return found
 
 
 def _scatter(results: Results, family: str, folder: Path) -> Path:
@@ -114,7 +122,8 @@ def _scatter(results: Results, family: str, folder: Path) -> Path:
         cases.sort(key=lambda c: c.rpartition(" ")[0])
     columns = sizes if family == "scenes" else min(4, len(cases))
     rows = -(-len(cases) // columns)
-    figure = Figure(figsize=(3.0 * columns + 2.2, max(2.6 * rows, 3.6)))
+    wide = 3.0 if len(cases) > 1 else 5.0
+    figure = Figure(figsize=(wide * columns + 2.2, max(2.6 * rows, 3.8)))
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     colours = matplotlib.colormaps["tab20"].colors  # type: ignore[attr-defined]
     for axis, case in zip(axes.flat, cases, strict=False):

@@ -15,6 +15,7 @@ from tactile_graph_filters.contacts import Contacts
 from tactile_graph_filters.joined_basins import joined
 from tactile_graph_filters.labelled import contacts_of
 from tactile_graph_filters.nan import require_summable
+from tactile_graph_filters.object_scale import Cells, split_by_scale
 from tactile_graph_filters.straight_cuts import joined_and_cut
 
 
@@ -56,16 +57,20 @@ class SplitContacts:
     cut_above, join_below : float
         Log odds of two objects over one above which a group is cut, and below which two groups
         are joined. Lower: more objects.
+    working_cells : int
+        Parts of a footprint of more cells are looked at on coarser ones, see
+        `tactile_graph_filters.object_scale`: the other settings fit objects of this many cells
+        at most, and readings of several elements together are less uneven.
 
     Notes
     -----
-    Objects are taken to be convex, 3 to 14 cells wide, with cells in contact counted as they
+    Objects are taken to be convex, 3 cells wide or more, with cells in contact counted as they
     come: a mask subdivided first needs ``usual_cells`` and ``min_cells`` to match. The settings
     were chosen on simulated scenes of the thesis pad (``benchmarks/objects.py`` measures on
-    others), the regression fitted on others again. Three objects that touch in a row are often
-    taken for two or one: any first cut leaves a long piece, which speaks against it. The energy
-    is in the manner of a description length: Leclerc 1989,
-    10.1007/BF00054839.
+    others), the regression fitted on others again (``benchmarks/split_weights.py``). Three
+    objects that touch in a row are often taken for two or one: any first cut leaves a long
+    piece, which speaks against it. The energy is in the manner of a description length: Leclerc
+    1989, 10.1007/BF00054839.
     """
 
     stateless = True
@@ -83,12 +88,14 @@ class SplitContacts:
         recut: bool = True,
         cut_above: float = 0.0,
         join_below: float = -1.0,
+        working_cells: Annotated[int, Ge(16)] = 100,
     ) -> None:
         self._rules = np.array([voids, weak, usual_cells, hold, 0.0])
         self._weak, self._recut = weak, recut
         self._cut_above, self._join_below = cut_above, join_below
         self._taps = [taps_of(sigma) for sigma in smooth_cells]
         self._min_cells, self._margin = min_cells, margin
+        self._working_cells = working_cells
 
     def __call__(self, image: Image, mask: Annotated[Mask, Grid.like("image")]) -> Contacts:
         """Return a contact for each object.
@@ -113,20 +120,25 @@ class SplitContacts:
         if not readings.size:
             return Contacts((), 0)
         require_summable(image, readings)
-        return contacts_of(self._labels(image, on, readings), image, self._min_cells, self._margin)
-
-    def _labels(
-        self, image: Image, on: NDArray[np.bool_], readings: NDArray[np.float64]
-    ) -> NDArray[np.int32]:
-        """Return the number of each cell's object, 0 where the cell is off."""
         values = np.where(on, np.maximum(image.values, 0.0), 0.0)
-        known = on | True if image.valid is None else image.valid | on
-        middle = float(np.median(np.maximum(readings, 0.0)))
+        cells = Cells(values, on, on | True if image.valid is None else image.valid | on)
+        if readings.size <= self._working_cells:
+            labels = self._labels(cells)
+        else:
+            labels = split_by_scale(cells, self._labels, self._working_cells)
+        return contacts_of(labels, image, self._min_cells, self._margin)
+
+    def _labels(self, cells: Cells) -> NDArray[np.int32]:
+        """Return the number of each cell's object, 0 where the cell is off."""
+        values, on, known = cells
+        best, energy = np.zeros(on.shape, np.int32), np.inf
+        if not on.any():
+            return best
+        middle = float(np.median(values[on]))
         rules = self._rules.copy()
         rules[4] = self._weak * middle
         # One strong element is no object of its own: readings above the middle count as it.
         flat = np.minimum(values, middle) if middle > 0 else on.astype(np.float64)
-        best, energy = np.zeros(on.shape, np.int32), np.inf
         for taps in self._taps:
             owner = np.empty(on.shape, np.int32)
             count = basins(flat, on, taps, owner)

@@ -19,12 +19,14 @@ from tactile_graph_filters.hull_terms import (
     hull_terms,
 )
 
-# Fitted by logistic regression to the best cuts of single objects and of touching pairs,
-# simulated on the thesis' pad; `log_odds` says what each one weighs.
-CONSTANT = 3.68
-PER_HULL_GAP, PER_NOTCH, PER_WEAK = 3.08, 2.44, 9.55
-PER_SEAM, PER_SEAM_LOG, PER_LENGTH = -1.42, -0.659, -3.24
-PER_INVERSE_CELLS, PER_LOG_FEWER, PER_LOG_CELLS = -22.6, -1.84, -0.211
+NAMES = (
+    "constant", "hull gap", "notches", "weak cells", "seam", "seam's readings", "length",
+    "inverse of fewer cells", "log of fewer cells", "log of all cells",
+)  # fmt: skip
+"""Of the terms in `cut_terms`."""
+WEIGHTS = np.array([3.68, 3.08, 2.44, 9.55, -1.42, -0.659, -3.24, -22.6, -1.84, -0.211])
+"""What each one weighs: fitted by logistic regression to the best cuts of single objects and of
+touching pairs, simulated on the thesis' pad; ``benchmarks/split_weights.py --fit`` does it anew."""
 NO_SEAM = -1.0
 """Taken for the seam's logarithm where the two do not touch."""
 
@@ -44,24 +46,35 @@ def log_odds(
     contact counts fully; for the others see `hull_terms`. Nobody else's cells matter. Of the
     best cut there is, the result is a log odds; of any cut, a score.
     """
+    terms = cut_terms(owner, one, two, values, known, weak, full, floor, both)
+    odds = 0.0
+    for k in range(len(terms)):
+        odds += WEIGHTS[k] * terms[k]
+    return odds
+
+
+@compiled_as_is
+def cut_terms(
+    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
+    floor: float, both: Reals,
+) -> Reals:  # fmt: skip
+    """Return what `log_odds` weighs, shape (10,), in the order of `NAMES`."""
     a = hull_terms(owner, one, one, values, known, weak, floor)
     b = hull_terms(owner, two, two, values, known, weak, floor)
     length, on_seam, logs = seam(owner, one, two, values, full, floor)
     n = both[CELLS]
     fewer, root = min(a[CELLS], b[CELLS]), np.sqrt(n)
-    low = logs / on_seam - both[LOGS] / n if on_seam > 0 else NO_SEAM
-    return float(
-        CONSTANT
-        + PER_HULL_GAP * (both[AREA] - a[AREA] - b[AREA]) / root
-        + PER_NOTCH * (both[NOTCHES] - a[NOTCHES] - b[NOTCHES]) / root
-        + PER_WEAK * (both[WEAK] - a[WEAK] - b[WEAK]) / root
-        + PER_SEAM * length / root
-        + PER_SEAM_LOG * low
-        + PER_LENGTH * max(a[LONG], b[LONG])
-        + PER_INVERSE_CELLS / fewer
-        + PER_LOG_FEWER * np.log(fewer)
-        + PER_LOG_CELLS * np.log(n)
-    )
+    terms = np.ones(10)
+    terms[1] = (both[AREA] - a[AREA] - b[AREA]) / root
+    terms[2] = (both[NOTCHES] - a[NOTCHES] - b[NOTCHES]) / root
+    terms[3] = (both[WEAK] - a[WEAK] - b[WEAK]) / root
+    terms[4] = length / root
+    terms[5] = logs / on_seam - both[LOGS] / n if on_seam > 0 else NO_SEAM
+    terms[6] = max(a[LONG], b[LONG])
+    terms[7] = 1.0 / fewer
+    terms[8] = np.log(fewer)
+    terms[9] = np.log(n)
+    return terms
 
 
 @compiled_as_is

@@ -81,7 +81,7 @@ def rectangle_frames(n: int, seed: int = 0, **source: Any) -> list[Frame]:
     ----------
     n : int
     seed : int
-    source
+    **source
         Settings of `simulate` other than the scene ``rectangles``.
     """
     from tactile_graph import load

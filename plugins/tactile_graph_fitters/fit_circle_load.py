@@ -26,6 +26,7 @@ class EvenCircle(Circle):
 
     Parameters
     ----------
+    x_cm, y_cm, radius_cm : float
     uneven : float
         Root mean square of the elements' loads off the disc's, each over what it should bear: a
         few hundredths where only the readings scatter.
@@ -103,7 +104,8 @@ class FitCircleLoad:
         ValueError
             If the cells are not square, the gap leaves no element, or a valid cell is not finite.
         Degenerate
-            If fewer than 4 elements bear a load, or these leave the disc open.
+            If fewer than 4 elements bear a load, these leave the disc open, or a load is too large
+            to be summed.
         """
         (across, down), (x, y) = image.pitch_cm, image.origin_cm
         if abs(across - down) > 1e-9 * across:
@@ -117,13 +119,15 @@ class FitCircleLoad:
         loads[~usable] = 0.0
         if not np.isfinite(loads).all():
             raise ValueError("a valid cell holds NaN or infinity")
+        if loads.size and loads.max() > np.finfo(np.float64).max / loads.size**2:
+            raise Degenerate(f"loads of up to {loads.max():.3g} are too large for their moments")
         loads[loads < self._least] = 0.0
         half = 0.5 * self._gap_cm
         grid = np.array([x + half, y + half, across, across - self._gap_cm])
-        status, *found = even_disc.call(loads, usable, grid, self._least)
+        status, *measures, n, rounds = even_disc.call(loads, usable, grid, self._least)
         if status != OK:
-            raise Degenerate(_why(status, found[7]))
-        x, y, radius, full, uneven, centre_std, radius_std, n, rounds = found
+            raise Degenerate(_why(status, n))
+        x, y, radius, full, uneven, centre_std, radius_std = map(float, measures)
         return EvenCircle(x, y, radius, uneven, centre_std, radius_std, full, n, rounds)
 
 

@@ -86,6 +86,8 @@ def orientation(
     along, across = principal_variances(xx / n, xy / n, yy / n)
     if not along > 0.0:
         raise Degenerate(f"{n} points, all at one place: no direction")
+    if not 12.0 * along < math.inf:
+        raise Degenerate(f"{n} points, some not finite or too large: no direction")
     length, breadth = math.sqrt(12.0 * along), math.sqrt(12.0 * across)
     pitch = cell_cm
     if pitch is None:
@@ -131,10 +133,15 @@ def scatter_of(footprint: Mask | Points) -> Sums:
 @compiled_as_is
 def principal_variances(xx: float, xy: float, yy: float) -> tuple[float, float]:
     """Return the larger and the smaller eigenvalue of a covariance matrix; none below 0."""
-    middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+    middle, off = 0.5 * xx + 0.5 * yy, math.hypot(0.5 * xx - 0.5 * yy, xy)
     larger = middle + off
+    if not 0.0 < larger < math.inf:
+        return larger, 0.0
+    # By a power of two into a range where products are numbers: that costs no digit.
+    power = math.frexp(larger)[1]
+    a, b, c = math.ldexp(xx, -power), math.ldexp(xy, -power), math.ldexp(yy, -power)
     # The product of the two is exact where their difference would cancel.
-    smaller = (xx * yy - xy * xy) / larger if larger > 0.0 else 0.0
+    smaller = math.ldexp((a * c - b * b) / math.ldexp(larger, -power), power)
     # What is left of a line by rounding is a line.
     return larger, smaller if smaller > 64.0 * 2.0**-52 * larger else 0.0
 

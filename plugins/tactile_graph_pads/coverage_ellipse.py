@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 
 Area = NDArray[np.float64]
 
@@ -81,6 +81,51 @@ def _reference(
     return np.asarray(np.clip(below[1] - below[0], 0.0, element_cm**2))
 
 
+@compiled_as_is
+def primitive(x: float, radius: float) -> float:
+    """Return the area under a half circle from its middle to x, |x| <= radius."""
+    root = math.sqrt((radius - x) * (radius + x))
+    if abs(x) < root:
+        angle = math.asin(x / radius)
+    else:
+        angle = math.copysign(0.5 * math.pi - math.asin(root / radius), x)
+    return 0.5 * (x * root + radius * radius * angle)
+
+
+@compiled_as_is
+def _line(h: float, A: float, B: float, m: float, k: float, stretch: float, line: Area) -> None:
+    """Write a horizontal line's height, half length, start, end and the primitive at both."""
+    line[0], line[1], line[2], line[3] = h, 0.0, A, A
+    if -B < h < B:
+        half = k * math.sqrt((B - h) * (B + h))
+        line[1] = half
+        line[2] = min(max((m * h - half) * stretch, -A), A)
+        line[3] = min(max((m * h + half) * stretch, -A), A)
+        line[4], line[5] = primitive(line[2], A), primitive(line[3], A)
+
+
+@compiled_as_is
+def _below(
+    line: Area, A: float, B: float, m: float, k: float, u: float, v: float, P0: float, P1: float
+) -> float:
+    """Return the area of the ellipse below a line and between x = u and v."""
+    h, s, e = line[0], line[2], line[3]
+    if h <= -B:
+        return 0.0
+    if h >= B:
+        return 2.0 * k * (P1 - P0)
+    below = 0.0
+    if u < s and h > -m * A:
+        below += 2.0 * k * ((P1 if v < s else line[4]) - P0)
+    if v > e and h > m * A:
+        below += 2.0 * k * (P1 - (P0 if u > e else line[5]))
+    if v > s and u < e:
+        a, Pa = (u, P0) if u > s else (s, line[4])
+        b, Pb = (v, P1) if v < e else (e, line[5])
+        below += (b - a) * (h - 0.5 * m * (b + a)) + k * (Pb - Pa)
+    return below
+
+
 @compiled_twin_of(_reference)
 def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
     x_cm: float,
@@ -102,56 +147,33 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
     B = math.hypot(a * sin, b * cos)
     m = (a - b) * (a + b) * cos * sin / A**2
     k = a * b / A**2
-    stretch = (A / B) ** 2
-    x0, x1 = np.empty(columns), np.empty(columns)
-    P0, P1 = np.empty(columns), np.empty(columns)
-    first, last = columns, 0
-    for c in range(columns):
+    stretch, full = (A / B) ** 2, element_cm**2
+    first = max(math.floor(max((x_cm - A - element_cm) / pitch_cm, -1.0)) + 1, 0)
+    last = min(math.ceil(min((x_cm + A) / pitch_cm, float(columns))), columns)
+    strips = np.empty((4, columns))  # left, right, and the primitive there
+    for c in range(first, last):
         left = c * pitch_cm - x_cm
-        if left + element_cm <= -A or left >= A:
-            continue
-        first, last = min(first, c), c + 1
-        x0[c], x1[c] = max(left, -A), min(left + element_cm, A)
-        root = math.sqrt((A - x0[c]) * (A + x0[c]))
-        P0[c] = 0.5 * (x0[c] * root + A**2 * math.atan2(x0[c], root))
-        root = math.sqrt((A - x1[c]) * (A + x1[c]))
-        P1[c] = 0.5 * (x1[c] * root + A**2 * math.atan2(x1[c], root))
+        strips[0, c], strips[1, c] = min(max(left, -A), A), min(max(left + element_cm, -A), A)
+        strips[2, c], strips[3, c] = primitive(strips[0, c], A), primitive(strips[1, c], A)
+    low, high = np.empty(6), np.empty(6)  # a row's lines: height, half length, start, end, ...
     for r in range(rows):
         top = r * pitch_cm - y_cm
         if top + element_cm <= -B or top >= B:
             continue
-        for side in range(2):
-            h = top + side * element_cm
-            if h <= -B:
+        _line(top, A, B, m, k, stretch, low)
+        _line(top + element_cm, A, B, m, k, stretch, high)
+        # elements between both lines' ends are covered whole, the outline being convex
+        inner = max(math.ceil((x_cm + max(low[2], high[2])) / pitch_cm), first)
+        outer = math.floor((x_cm + min(low[3], high[3]) - element_cm) / pitch_cm) + 1
+        outer = min(outer, last) if low[1] > 0.0 and high[1] > 0.0 else inner
+        c = first
+        while c < last:
+            if inner <= c < outer:
+                areas[r, c:outer] = full
+                c = outer
                 continue
-            sign = 2.0 * side - 1.0
-            if h >= B:
-                for c in range(first, last):
-                    areas[r, c] += sign * 2.0 * k * (P1[c] - P0[c])
-                continue
-            half = k * math.sqrt((B - h) * (B + h))
-            s = min(max((m * h - half) * stretch, -A), A)
-            e = min(max((m * h + half) * stretch, -A), A)
-            root = math.sqrt((A - s) * (A + s))
-            Ps = 0.5 * (s * root + A**2 * math.atan2(s, root))
-            root = math.sqrt((A - e) * (A + e))
-            Pe = 0.5 * (e * root + A**2 * math.atan2(e, root))
-            left_below = h > -m * A
-            right_below = h > m * A
-            for c in range(first, last):
-                u, v = x0[c], x1[c]
-                below = 0.0
-                if u < s and left_below:
-                    below += 2.0 * k * ((P1[c] if v < s else Ps) - P0[c])
-                if v > e and right_below:
-                    below += 2.0 * k * (P1[c] - (P0[c] if u > e else Pe))
-                if v > s and u < e:
-                    c0, Pc0 = (u, P0[c]) if u > s else (s, Ps)
-                    c1, Pc1 = (v, P1[c]) if v < e else (e, Pe)
-                    below += (c1 - c0) * (h - 0.5 * m * (c1 + c0)) + k * (Pc1 - Pc0)
-                areas[r, c] += sign * below
-    full = element_cm**2
-    for r in range(rows):
-        for c in range(first, last):
-            areas[r, c] = min(max(areas[r, c], 0.0), full)
+            u, v, P0, P1 = strips[0, c], strips[1, c], strips[2, c], strips[3, c]
+            area = _below(high, A, B, m, k, u, v, P0, P1) - _below(low, A, B, m, k, u, v, P0, P1)
+            areas[r, c] = min(max(area, 0.0), full)
+            c += 1
     return areas

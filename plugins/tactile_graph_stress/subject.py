@@ -46,6 +46,8 @@ class Subject:
         For each port what it is wired to: a feed's name or a supplying step's.
     plugin : str
         Who offers the step.
+    signature : Signature
+        Its ports and settings.
     """
 
     name: str

@@ -20,7 +20,8 @@ from tactile_graph.cli.endings import INTERRUPTED
 from tactile_graph.errors import UsageError
 
 if TYPE_CHECKING:
-    from tactile_graph.compare.audit import Audit, Auditor, GuardAudit
+    from tactile_graph.compare.audit import Auditor
+    from tactile_graph.compare.audit_records import Audit, GuardAudit
     from tactile_graph.compare.tables import Table
 
 EPILOG = """\b

@@ -245,7 +245,7 @@ class _Run:
         from tactile_graph.compare.close import close
         from tactile_graph.compare.shown import show
 
-        comparison = close(self.session, self.report, interrupted, self.notes)
+        comparison = close(self.session, self.report, interrupted, self.notes, self.span.start)
         if interrupted:
             self.people.print("interrupted", style="bold red")
         show(comparison, self.people)

@@ -8,115 +8,25 @@ any variants: merged into one graph, so that only what a guard keeps from runnin
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from tactile_graph.compare.audit_records import Audit, GuardAudit
 from tactile_graph.compare.close import close
 from tactile_graph.compare.keep import Keeper
 from tactile_graph.compare.own import OwnResult
-from tactile_graph.compare.records import Comparison, Difference
+from tactile_graph.compare.records import Comparison
+from tactile_graph.compare.score_records import Difference
 from tactile_graph.compare.session import WARM_FRAMES, Session, VariantLog
+from tactile_graph.compare.shadows import shadows_of
 from tactile_graph.compare.variants import Prepared
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.result import Result
 from tactile_graph.engine.rows import as_data
-from tactile_graph.pipeline.node import Node, NodeKind
 from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.wires.frame import Frame
-
-
-@dataclass(frozen=True)
-class GuardAudit:
-    """What one guard, or one hand-over, saved and what it cost.
-
-    Parameters
-    ----------
-    node : str
-        The guarded node, or the ``first_of``.
-    kind : str
-        ``when`` or ``first_of``.
-    text : str
-        The condition, or the choices that were left out.
-    n_stopped : int
-        Frames in which it kept something from running.
-    saved_us : float
-        Time saved per frame, mean over all frames of the sample: that of the nodes which ran in
-        the shadow only, less that of nodes only the guard itself needs.
-    saved_share : float
-        The same as a share of the time per frame without it.
-    saved_when_us : float
-        Time saved per frame in which it stopped something.
-    differences : tuple of Difference
-        For each quantity, the pipeline's absolute error less the shadow's: what the guard brought
-        in. ``n_only_reference`` counts the answers it cost.
-    n_false_prevented : int
-        Frames in which truly nothing lay on the pad and only the shadow answered.
-    n_failed_prevented : int
-        Frames in which an output failed in the shadow only.
-    n_changed : int
-        Frames in which an output came out otherwise in any way.
-    """
-
-    node: str
-    kind: str
-    text: str
-    n_stopped: int
-    saved_us: float
-    saved_share: float
-    saved_when_us: float
-    differences: tuple[Difference, ...]
-    n_false_prevented: int
-    n_failed_prevented: int
-    n_changed: int
-
-
-@dataclass(frozen=True, eq=False)
-class Audit:
-    """All guards of a pipeline, on one sample of frames.
-
-    ``everything`` is the comparison of the pipeline with its shadows; ``whole`` tells that a step
-    keeps state, so that every frame had to be taken.
-    """
-
-    pipeline: Pipeline
-    guards: tuple[GuardAudit, ...]
-    n_frames: int
-    n_seen: int
-    median_us: float
-    everything: Comparison
-    whole: bool
-
-
-@dataclass(frozen=True, eq=False)
-class _Shadow:
-    node: str
-    kind: str
-    text: str
-    pipeline: Pipeline
-
-
-def shadows_of(pipeline: Pipeline) -> list[_Shadow]:
-    """Return a shadow for each guard and each hand-over that something asked for may meet."""
-    unused = set(pipeline.unused)
-    found = []
-    for name, node in pipeline.nodes.items():
-        if name in unused:
-            continue
-        if node.guard is not None:
-            changed = _with(pipeline, replace(node, guard=None))
-            found.append(_Shadow(name, "when", node.guard.text, changed))
-        if node.kind is NodeKind.FIRST_OF:
-            for i in range(1, len(node.choices)):
-                left = ", ".join(map(str, node.choices[:i]))
-                changed = _with(pipeline, replace(node, choices=node.choices[i:]))
-                found.append(_Shadow(name, "first_of", f"without {left}", changed))
-    return found
-
-
-def _with(pipeline: Pipeline, node: Node) -> Pipeline:
-    return replace(pipeline, nodes={**pipeline.nodes, node.name: node})
 
 
 class Auditor:
@@ -140,10 +50,10 @@ class Auditor:
         self.shadows = shadows_of(pipeline)
         asked = asked or tuple(pipeline.outputs)
         rows = [(pipeline.name, pipeline)]
-        rows += [(_label(s), s.pipeline) for s in self.shadows]
+        rows += [(s.label, s.pipeline) for s in self.shadows]
         prepared = [Prepared(label, p, asked, pipeline.name) for label, p in rows]
         self.session = Session(prepared, seed, Keeper(n_regular=0, most=0))
-        self.whole = self.session.runners[0].stateful
+        self.whole = self.session.stateful
         self.sample = sample
         self.n_seen = 0
         self._rng = np.random.default_rng(seed)
@@ -247,10 +157,6 @@ def _spent_us(log: VariantLog, times_us: Mapping[str, float]) -> dict[str, float
     }
 
 
-def _label(shadow: _Shadow) -> str:
-    return f"{shadow.node} {shadow.kind} {shadow.text}"
-
-
 def _told(outcome: Any) -> Any:
     """Return an outcome as plain data; of skips and failures only that they are."""
     return outcome.__class__.__name__ if outcome.__class__ in NO_VALUE else as_data(outcome)
@@ -295,7 +201,11 @@ def audit(
     -----
     Guards inside a pipeline that is run over a list (``use`` with ``each``) are not audited.
     """
+    if frames is None:
+        frames = pipeline.frames(seed)
+    else:
+        pipeline = replace(pipeline, source=None)
     auditor = Auditor(pipeline, asked, sample, seed)
-    for frame in pipeline.frames(seed) if frames is None else frames:
+    for frame in frames:
         auditor.add(frame)
     return auditor.close()

@@ -11,17 +11,11 @@ import numpy as np
 from tactile_graph.compare.chosen import chosen_frames
 from tactile_graph.compare.graph_records import Saving, Timeline
 from tactile_graph.compare.lineage import difference_images, nodes_between
+from tactile_graph.compare.lineage_records import Evolution
 from tactile_graph.compare.merged_graph import merged_graph
 from tactile_graph.compare.one_source import given_of
-from tactile_graph.compare.records import (
-    Comparison,
-    Difference,
-    Evolution,
-    FrameTable,
-    Score,
-    TimeDifference,
-    Variant,
-)
+from tactile_graph.compare.records import Comparison, FrameTable, Variant
+from tactile_graph.compare.score_records import Difference, Score, TimeDifference
 from tactile_graph.compare.session import Session, VariantLog
 from tactile_graph.compare.statistics import (
     difference_of,
@@ -42,6 +36,7 @@ def close(
     report: Report | None = None,
     interrupted: bool = False,
     notes: Sequence[str] = (),
+    start: int = 0,
 ) -> Comparison:
     """Return what the comparison found out so far.
 
@@ -54,6 +49,8 @@ def close(
         Whether frames are missing.
     notes : sequence of str
         What people should know.
+    start : int
+        How many frames of the source were left out before the first.
     """
     variants = tuple(_variant(i, log) for i, log in enumerate(session.logs, 1))
     scores = with_pareto(
@@ -79,7 +76,7 @@ def close(
         time_differences=times,
         lineage=tuple(_evolutions(variants, differences, times, chosen)),
         chosen=chosen,
-        provenance=_provenance(session, report or Report(), interrupted),
+        provenance=_provenance(session, report or Report(), interrupted, start),
         seconds=session.last - session.started,
         interrupted=interrupted,
         notes=tuple(notes),
@@ -124,7 +121,7 @@ def _frames(session: Session) -> FrameTable:
 def _source(session: Session) -> str:
     source = session.merged.pipeline.source
     if source is None:
-        return "frames"
+        return "frames handed in"
     name, given = given_of(source)
     told = ", ".join(f"{k}: {as_yaml(v)}" for k, v in given.items())
     told = told if len(told) <= LONGEST_SOURCE else told[: LONGEST_SOURCE - 1] + "…"
@@ -214,7 +211,7 @@ def _evolutions(
 # -- how it was made -------------------------------------------------------------------------
 
 
-def _provenance(session: Session, report: Report, interrupted: bool) -> dict[str, Any]:
+def _provenance(session: Session, report: Report, interrupted: bool, start: int) -> dict[str, Any]:
     """Return how to make it again: as of a run, with the pipeline of every variant."""
     from tactile_graph.cli.provenance import provenance
 
@@ -227,7 +224,7 @@ def _provenance(session: Session, report: Report, interrupted: bool) -> dict[str
     return {
         "command": [*sys.argv],
         "complete": not interrupted,
-        "frames": session.n,
+        "frames": {"from": start, "to": start + session.n},
         "seed": session.seed,
         "source": first["source"],
         "versions": first["versions"],

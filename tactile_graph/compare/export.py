@@ -12,7 +12,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.compare.records import Comparison, Evolution, Score, Variant
+from tactile_graph.compare.lineage_records import Evolution
+from tactile_graph.compare.records import Comparison, Variant
+from tactile_graph.compare.score_records import Score
 from tactile_graph.pipeline.pipeline import plain
 
 Row = Sequence[Any]

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from tactile_graph.compare.frame_records import ChosenFrame, DifferenceImage
-from tactile_graph.compare.records import NodeChange, SettingChange
+from tactile_graph.compare.lineage_records import NodeChange, SettingChange
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.node import Node
 from tactile_graph.pipeline.pipeline import Pipeline, plain

@@ -49,10 +49,10 @@ class Merged:
     pipeline: Pipeline
     members: tuple[Member, ...]
 
-    def starting_with(self, first: int) -> Pipeline:
-        """Return the same pipeline with another member's nodes first, the others' behind."""
+    def in_order(self, members: Sequence[int]) -> Pipeline:
+        """Return the same pipeline with the nodes of its members, by number, in another order."""
         order: dict[str, None] = {}
-        for member in (*self.members[first:], *self.members[:first]):
+        for member in (self.members[k] for k in members):
             order |= dict.fromkeys(member.names[i.name] for i in member.plan.nodes)
         nodes = {name: self.pipeline.nodes[name] for name in order}
         return replace(self.pipeline, nodes=nodes)

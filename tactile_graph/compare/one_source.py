@@ -74,6 +74,11 @@ def on_source(prepared: Sequence[Prepared], step: str, settings: Mapping[str, An
     return placed
 
 
+def without_source(prepared: Sequence[Prepared]) -> list[Prepared]:
+    """Return the variants as they are on frames handed in: with no source of their own."""
+    return [replace(p, pipeline=replace(p.pipeline, source=None)) for p in prepared]
+
+
 def _same_source(a: Pipeline, b: Pipeline) -> bool:
     if a.source is None or b.source is None:
         return a.source is b.source

@@ -9,24 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compare.frame_records import ChosenFrame, DifferenceImage
+from tactile_graph.compare.frame_records import ChosenFrame
 from tactile_graph.compare.graph_records import MergedGraph, Saving, Timeline
+from tactile_graph.compare.lineage_records import Evolution
+from tactile_graph.compare.score_records import Difference, Score, TimeDifference, Times
 from tactile_graph.pipeline.pipeline import Pipeline
-
-
-@dataclass(frozen=True, eq=False)
-class Times:
-    """Time per frame of one variant: the sum of the times of the nodes it needed.
-
-    ``per_frame_us`` has shape (n_frames,), in microseconds; frames equal to the one before, which
-    cost nothing, hold NaN and are left out of the figures. The rest of a frame's cost (reading
-    it, the engine's own hops) is the same for all and stands in `Comparison.fixed_us`.
-    """
-
-    per_frame_us: NDArray[np.float64]
-    median_us: float
-    p95_us: float
-    mean_us: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,151 +58,6 @@ class Variant:
 
 
 @dataclass(frozen=True, eq=False)
-class Score:
-    """How far one variant's quantity is off, over all true objects it could have answered for.
-
-    Errors are found less true, in ``unit``; that of a centre is the distance, of an identity 1
-    where it is wrong and 0 where it is right.
-
-    Parameters
-    ----------
-    variant, quantity, unit : str
-        ``unit`` is cm, °, cm² or empty.
-    positions : ndarray of int64, shape (n,)
-        Row of each target's frame.
-    objects : ndarray of int64, shape (n,)
-        Number of the true object within its frame's truth; -1 where the quantity is of the whole
-        frame (count), or nobody can say which of several was meant.
-    errors : ndarray of float64, shape (n,)
-        Signed error; NaN where there was no answer.
-    mean, median, p95, largest : float or None
-        Of the absolute errors; None without any answer.
-    bias : float or None
-        Mean of the signed errors; of centres the length of the mean offset.
-    n_answered, n_missing : int
-        True objects with and without an answer.
-    n_extra : int
-        Answers with nothing there to answer for.
-    pareto : bool
-        Whether no other variant that answers as often or more is better in mean error without
-        being slower, or faster without being worse.
-    """
-
-    variant: str
-    quantity: str
-    unit: str
-    positions: NDArray[np.int64]
-    objects: NDArray[np.int64]
-    errors: NDArray[np.float64]
-    mean: float | None
-    median: float | None
-    p95: float | None
-    largest: float | None
-    bias: float | None
-    n_answered: int
-    n_missing: int
-    n_extra: int
-    pareto: bool = False
-
-    @property
-    def absolute(self) -> NDArray[np.float64]:
-        """Absolute errors of the answers, shape (n_answered,)."""
-        return np.abs(self.errors[~np.isnan(self.errors)])
-
-
-@dataclass(frozen=True)
-class Difference:
-    """A variant's absolute error less its reference's, on targets that both answered.
-
-    ``low`` and ``high`` bound the mean at ``level``; None where fewer than two frames tell.
-    Negative is better.
-    """
-
-    variant: str
-    reference: str
-    quantity: str
-    unit: str
-    mean: float | None
-    low: float | None
-    high: float | None
-    level: float
-    method: str
-    """``bootstrap over frames`` or ``normal over frames``."""
-    n_both: int
-    n_only_variant: int
-    n_only_reference: int
-    n_neither: int
-
-    @property
-    def verdict(self) -> str:
-        """``better``, ``worse`` or ``no clear difference``: whether the interval leaves out 0."""
-        if self.low is not None and self.high is not None:
-            if self.high < 0.0:
-                return "better"
-            if self.low > 0.0:
-                return "worse"
-        return "no clear difference"
-
-
-@dataclass(frozen=True)
-class TimeDifference:
-    """A variant's time per frame against its reference's, over the same frames.
-
-    ``low_us`` and ``high_us`` bound the median difference at 95 %; None below six frames. Medians,
-    since a frame in which the machine did something else may take a hundred times as long.
-    """
-
-    variant: str
-    reference: str
-    median_us: float
-    """Median over frames of the variant's time less the reference's."""
-    low_us: float | None
-    high_us: float | None
-    ratio: float
-    """Median over frames of the variant's time by the reference's."""
-
-
-@dataclass(frozen=True)
-class SettingChange:
-    """What of a node is another: a setting by its name, or ``step``, ``in``, ``when`` …"""
-
-    what: str
-    before: Any
-    after: Any
-
-    def __str__(self) -> str:
-        return f"{self.what}: {self.before} -> {self.after}"
-
-
-@dataclass(frozen=True)
-class NodeChange:
-    """A node that parent and child both have by name, and what differs."""
-
-    node: str
-    changes: tuple[SettingChange, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Evolution:
-    """One step of the lineage: what the child did to its parent, and what that did.
-
-    ``added``, ``removed`` and ``kept`` are node names; ``kept`` nodes are the same in themselves,
-    though what they read may have changed. ``images`` are the difference images of the chosen
-    frames, where the two differ.
-    """
-
-    parent: str
-    child: str
-    added: tuple[str, ...]
-    removed: tuple[str, ...]
-    changed: tuple[NodeChange, ...]
-    kept: tuple[str, ...]
-    differences: tuple[Difference, ...]
-    time: TimeDifference
-    images: tuple[DifferenceImage, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class FrameTable:
     """The frames everything was run on; a row of every array over frames is one of them."""
 
@@ -245,7 +87,7 @@ class Comparison:
         In the order they were named.
     frames : FrameTable
     source : str
-        The source step and what was set of it.
+        The source step and what was set of it; ``frames handed in`` where there was none.
     graph : MergedGraph
     saving : Saving
     fixed_us : float

@@ -14,6 +14,7 @@ from tactile_graph.compare.keep import Keeper
 from tactile_graph.compare.merge import Member, merge
 from tactile_graph.compare.own import OwnResult
 from tactile_graph.compare.targets import Scorer
+from tactile_graph.compare.turns import orders
 from tactile_graph.compare.variants import Prepared
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
 from tactile_graph.engine.result import Result
@@ -96,8 +97,12 @@ class Session:
         self.prepared = tuple(prepared)
         self.seed = seed
         self.merged = merge([p.pipeline for p in prepared], [p.asked for p in prepared])
-        self.runners = self._runners()
-        self.plan = self.runners[0].plan
+        first = self.merged.pipeline.runner(seed=seed)
+        self.plan = first.plan
+        self.stateful = first.stateful
+        self.runners = self._runners(first)
+        self._runner: Runner | None = None
+        self._turns = np.random.default_rng(seed)
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
@@ -114,21 +119,18 @@ class Session:
         self.started = time.perf_counter()
         self.last = self.started
 
-    def _runners(self) -> list[Runner]:
-        """Return runners that take the variants in turn first.
+    def _runners(self, first: Runner) -> list[Runner]:
+        """Return runners that take the variants in different orders.
 
         Whoever comes first finds the caches of the processor cold: in one fixed order the first
-        of three equal variants of circle-3 took 2.4 times as long as the others. Steps that keep
-        state have to stay in one runner, and so in one order.
+        of three equal variants of circle-3 took 2.4 times as long as the others. So does, a
+        little, whoever comes behind a variant that computes much. Steps that keep state have to
+        stay in one runner, and so in one order.
         """
-        first = self.merged.pipeline.runner(seed=self.seed)
-        n = len(self.prepared)
-        if first.stateful or n == 1:
+        if first.stateful:
             return [first]
-        turns = sorted({round(i * n / MOST_TURNS) for i in range(MOST_TURNS)} if n > MOST_TURNS
-                       else range(n))  # fmt: skip
-        others = (self.merged.starting_with(k).runner(seed=self.seed) for k in turns if k)
-        return [first, *others]
+        turns = orders(len(self.prepared), MOST_TURNS)
+        return [self.merged.in_order(turn).runner(seed=self.seed) for turn in turns]
 
     @property
     def n(self) -> int:
@@ -167,7 +169,7 @@ class Session:
             If the frame's quantity, shape or pitch breaks a rule of some variant's step.
         """
         self._check(frame)
-        runner = self.runners[self.n % len(self.runners)]
+        runner = self._runner_for(frame)
         start = time.perf_counter()
         result = runner(frame)
         whole_us = 1e6 * (time.perf_counter() - start)
@@ -178,6 +180,18 @@ class Session:
         self._note(frame, result, whole_us, times_us)
         self.last = time.perf_counter()
         return result
+
+    def _runner_for(self, frame: Frame) -> Runner:
+        """Return the one that ran last if it need not run again, else one drawn at random.
+
+        Drawn, not in turn: what lies on the pad may come in turn, too.
+        """
+        last = self._runner
+        if last is None or not last.repeats(frame):
+            self._runner = self.runners[int(self._turns.integers(len(self.runners)))]
+            self._runner.forget()  # what it saw last was not the frame before
+        assert self._runner is not None
+        return self._runner
 
     def _note(
         self, frame: Frame, result: Result, whole_us: float, times_us: dict[str, float]

@@ -9,7 +9,14 @@ from typing import Any
 
 from tactile_graph.compare.close import close
 from tactile_graph.compare.keep import Keeper
-from tactile_graph.compare.one_source import COUNT, first_source, given_of, makes_frames, on_source
+from tactile_graph.compare.one_source import (
+    COUNT,
+    first_source,
+    given_of,
+    makes_frames,
+    on_source,
+    without_source,
+)
 from tactile_graph.compare.records import Comparison
 from tactile_graph.compare.session import WARM_FRAMES, Session
 from tactile_graph.compare.sweeps import Sweep
@@ -81,6 +88,8 @@ def compare(
         frames = prepared[0].pipeline.frames(seed, report)
     elif source is not None:
         raise UsageError("give frames or a source, not both")
+    else:
+        prepared = without_source(prepared)
     session = Session(prepared, seed, keeper)
     run_all(session, islice(iter(frames), n_frames))
     return close(session, report, notes=notes)

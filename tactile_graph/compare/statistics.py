@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compare.quantities import QUANTITIES
-from tactile_graph.compare.records import Difference, Score, TimeDifference, Times
+from tactile_graph.compare.score_records import Difference, Score, TimeDifference, Times
 from tactile_graph.compare.targets import Targets
 
 Reals = NDArray[np.float64]

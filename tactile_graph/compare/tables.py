@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from tactile_graph.compare.lineage_records import Evolution
 from tactile_graph.compare.quantities import DECIMALS
-from tactile_graph.compare.records import Comparison, Difference, Evolution, Score
+from tactile_graph.compare.records import Comparison
+from tactile_graph.compare.score_records import Difference, Score
 
 LEFT = ("variant", "against", "quantity", "verdict", "guard")
 """Columns of words; all others hold numbers."""

@@ -57,6 +57,20 @@ class Runner:
         """Whether a step keeps something from frame to frame."""
         return self.plan.stateful
 
+    def repeats(self, frame: Frame) -> bool:
+        """Return whether the frame would reuse the last one's result."""
+        last = self._last
+        image = frame.image
+        return (
+            last is not None
+            and image.values.tobytes() == last[0]
+            and _alike(image, last[1].frame.image)
+        )
+
+    def forget(self) -> None:
+        """Forget the last frame: the next one is computed, whatever it holds."""
+        self._last = None
+
     def __call__(self, frame: Frame) -> Result:
         """Return the result for the frame.
 

@@ -38,7 +38,7 @@ class Document:
     _switches: dict[Path, str] = field(default_factory=dict)
 
     def spelled(self, *path: str | int) -> str:
-        """Return how a yes/no is written: a condition may be called ``on``, which YAML reads as one.
+        """Return how a yes/no is written: a condition may be called ``on``, a yes to YAML.
 
         ``true`` and ``false`` in any case come back as conditions spell them: True, False.
         """

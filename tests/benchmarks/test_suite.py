@@ -11,9 +11,11 @@ import pytest
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 sys.path.insert(0, str(FOLDER))
-from suite_parts import fits, frames, records  # noqa: E402
+from suite_parts import fits, frames, records, stream  # noqa: E402
 from suite_parts.scenes import SCENES, scene  # noqa: E402
 from suite_parts.verdict import references, verdicts  # noqa: E402
+
+from tactile_graph import load  # noqa: E402
 
 
 def results(
@@ -115,6 +117,36 @@ def test_a_small_run_measures_pipelines_and_peers_alike(monkeypatch: pytest.Monk
     assert circle["clean 16"].error("radius_cm") is not None
     assert (circle["empty 16"].nodes_run or 0) < (circle["clean 16"].nodes_run or 0) == 7
     assert all(len(m.rounds_us) == 3 for m in found)
+
+
+def test_a_stream_is_mostly_empty_and_mixed() -> None:
+    made = stream.stream(100, seed=0)
+    counts = {c: made.classes.count(c) for c in made.classes}
+    assert counts == {"empty": 80, "clean": 15, **dict.fromkeys(stream.HARD, 1)}
+    assert [f.index for f in made.frames] == list(range(100))
+    assert all(
+        bool(f.truth) is (c != "empty") for f, c in zip(made.frames, made.classes, strict=True)
+    )
+    assert made.classes != tuple(sorted(made.classes))
+    assert made.at("hard") == tuple(i for i, c in enumerate(made.classes) if c in stream.HARD)
+    assert made.at(stream.WHOLE) == tuple(range(100))
+    assert stream.stream(100, seed=1).classes != made.classes
+
+
+def test_a_stream_is_measured_whole_and_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Empty frames are cheap, counted as false alarms; each frame's time is in one part."""
+    circle = load("circle-3")
+    monkeypatch.setattr(stream, "pipelines", lambda: {"a": circle, "b": stream.ungated(circle)})
+    found = {(m.contestant, m.case): m for m in stream.measured(40, 3, 0, lambda _: None)}
+    whole, empty, hard = (found["a", c] for c in (stream.WHOLE, "empty", "hard"))
+    parts = [m for (who, _), m in found.items() if who == "a" and m.at]
+    assert sorted(i for m in parts for i in m.at) == list(range(43))
+    assert all(len(m.frames_us) == len(m.at) for m in parts)
+    assert len(whole.errors["centre_cm"]) == 6 + len(hard.errors["centre_cm"]) == 11
+    assert empty.errors == {"false alarms": (0.0,) * 32}
+    assert empty.nodes_run == 1
+    assert (found["b", "empty"].nodes_run or 0) > 1
+    assert found["b", "clean"].errors == found["a", "clean"].errors
 
 
 def test_fits_are_scored_on_known_shapes() -> None:

@@ -8,7 +8,7 @@ from helpers_objects import footprint, frames
 from tactile_graph_filters.hull_terms import AREA, CELLS, LOGS, LONG, NOTCHES, WEAK, hull_terms
 from tactile_graph_filters.split_contacts import SplitContacts
 from tactile_graph_filters.straight_cuts import joined_and_cut
-from tactile_graph_filters.two_or_one import log_odds, seam
+from tactile_graph_filters.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
 
 LOBES = drawn("""
     .###...###.
@@ -86,6 +86,25 @@ def test_the_cut_at_the_neck_is_likelier_than_beside_it_and_a_slab_has_none():
     assert odds(LOBES, 5) > 0
     assert odds(LOBES, 5) > max(odds(LOBES, 3), odds(LOBES, 8))
     assert max(odds(SLAB, at) for at in range(2, 10)) < -1
+
+
+def test_the_odds_weigh_what_the_terms_say():
+    """A square of 4 by 4, even and whole, cut in a row of four and three rows of four."""
+    owner = np.ones((4, 4), np.int32)
+    owner[0] = 2
+    load, known = np.ones((4, 4)), np.ones((4, 4), bool)
+    both = hull_terms(owner, 1, 2, load, known, 0.5, 1e-3)
+    settings = (owner, 1, 2, load, known, 0.5, 0.5, 1e-3, both)
+    terms = dict(zip(NAMES, cut_terms(*settings), strict=True))
+    assert terms["constant"] == 1.0
+    assert terms["hull gap"] == pytest.approx((9 - 6 - 0) / 4)
+    assert terms["notches"] == terms["weak cells"] == terms["seam's readings"] == 0.0
+    assert terms["seam"] == pytest.approx((4 + 6 * 0.7) / 4)
+    assert terms["length"] == pytest.approx(np.log(4))
+    assert terms["inverse of fewer cells"] == 0.25
+    assert terms["log of fewer cells"] == pytest.approx(np.log(4))
+    assert terms["log of all cells"] == pytest.approx(np.log(16))
+    assert log_odds(*settings) == pytest.approx(WEIGHTS @ list(terms.values()))
 
 
 def test_low_readings_along_the_cut_make_it_likelier():

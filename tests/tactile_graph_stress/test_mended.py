@@ -133,3 +133,14 @@ def test_a_floating_pads_faintest_readings_are_decoupled():
 def test_a_dividers_impossible_sums_are_invalid():
     found = came("decouple", image(np.full((4, 4), 1e308)))
     assert not found.value.valid.any()
+
+
+@pytest.mark.parametrize("pitch", [1e-100, 1e78, 1e140])
+def test_a_masks_orientation_is_the_same_at_any_pitch(pitch):
+    on = np.array([[1, 1, 0], [1, 1, 1]], dtype=np.bool_)
+    sized, plain = (
+        came("orientation", Mask(on, (p, 1.3 * p), (0.0, 0.0)), feed="mask").value
+        for p in (pitch, 1.0)
+    )
+    assert sized.elongation == pytest.approx(plain.elongation, rel=1e-12)
+    assert sized.angle_rad == pytest.approx(plain.angle_rad, rel=1e-12)

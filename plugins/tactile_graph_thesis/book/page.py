@@ -14,7 +14,8 @@ from tactile_graph_thesis.item import Compared, Finding
 from tactile_graph_thesis.making import Outcome
 
 STYLE = Path(__file__).parent / "book.css"
-BROAD = 1.8
+BROAD, TALL = 1.8, 1.3
+"""Width by height from which a picture is broad, and up to which it is tall."""
 TITLE = "The thesis' tables and figures, made again"
 
 
@@ -123,16 +124,16 @@ def _section(outcome: Outcome, svg: bytes | None) -> str:
 
 def _picture(svg: bytes, words: str) -> str:
     data = base64.b64encode(svg).decode()
-    kind = " class=broad" if _is_broad(svg) else ""
+    kind = f" class={name}" if (name := _kind(svg)) else ""
     source = f"data:image/svg+xml;base64,{data}"
     return f'<figure{kind}><img alt="{escape(words)}" src="{source}"></figure>\n'
 
 
-def _is_broad(svg: bytes) -> bool:
-    """Return whether a picture is so broad that a phone must not shrink it to its width."""
+def _kind(svg: bytes) -> str:
+    """Return whether a picture is too broad for a phone, or too tall for half a printed page."""
     box = re.search(rb'viewBox="([^"]*)"', svg)
     width, height = (float(v) for v in box[1].split()[2:]) if box else (1.0, 1.0)
-    return width > BROAD * height
+    return "broad" if width > BROAD * height else "tall" if width < TALL * height else ""
 
 
 def _compared(compared: Sequence[Compared]) -> str:

@@ -202,8 +202,11 @@ _RECTANGLES = (
     "as both take it from the same step; so are ours, but for readings without an answer."
 )
 _EIGHT = (
-    " What the opening leaves depends on what the pre-filter has filled before; the thesis does "
-    "not say how often its pre-filter was applied."
+    " The thesis does not say how often its pre-filter is applied. Here it makes eight passes, "
+    "which fill a lost element too; after one pass the opening often leaves nothing of "
+    "RECTANGLE II, of which the thesis' table shows no trace. Whether the second algorithm betters "
+    "the first also depends on what a cell is taken for: at the pad's true pitch it does not, "
+    "with a cell read as a whole centimetre it does (docs/objects.md)."
 )
 
 ITEMS = (

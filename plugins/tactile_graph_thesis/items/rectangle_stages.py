@@ -191,8 +191,9 @@ ITEMS = (
         "An ellipse or a rectangle?",
         "Both fitted to the same boundary of a rectangle.",
         _figure_4_22,
-        ONE + " Fitted to boundary points alone a rectangle gains little; the pipeline "
-        "rectangle-3, which weighs the load of every cell, gains much.",
+        ONE + " The thesis judges by its one picture; the errors here are means over many "
+        "readings of the same rectangle. The pipeline rectangle-3, which weighs the load of every "
+        "cell, gains more still.",
     ),
     Item(
         "figure-4.24",

@@ -117,7 +117,7 @@ def _figure_4_36(work: Work) -> Made:
     return Made(figure=finish(figure, axes, [f"{points.count} boundary points"]))
 
 
-_OFTEN = " How often the pre-filter is applied is not given."
+_OFTEN = " How often the pre-filter is applied is not given; here it makes eight passes."
 ITEMS = (
     Item(
         "figure-4.30",
@@ -144,7 +144,7 @@ ITEMS = (
     Item(
         "figure-4.33",
         "The pre-filter",
-        "Dilated, then eroded: rounding voids are filled.",
+        "Dilated eight times, then eroded as often: voids are filled.",
         _figure_4_33,
         ONE + " The order of the two is not given; the other one would erase the "
         "image, as the thesis itself says." + _OFTEN,

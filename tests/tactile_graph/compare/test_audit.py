@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Frame, loads
-from tactile_graph.compare.audit import audit, shadows_of
+from tactile_graph.compare.audit import audit
+from tactile_graph.compare.shadows import shadows_of
 from tactile_graph.wires import TrueObject
 
 pytestmark = pytest.mark.usefixtures("hand_made")
@@ -93,3 +94,12 @@ def test_a_sample_is_seeded_and_takes_its_share():
     assert indices[0] == indices[1]
     other = audit(pipeline, sample=0.2, seed=4).everything.frames.indices.tolist()
     assert other != indices[0]
+
+
+def test_frames_handed_in_are_not_told_as_the_pipelines_own_source():
+    pipeline = loads(HANDED)
+    frames = list(pipeline.frames())[:5]
+    found = audit(pipeline, frames)
+    assert found.n_frames == 5
+    assert found.everything.source == "frames handed in"
+    assert "step" not in found.everything.provenance["source"]

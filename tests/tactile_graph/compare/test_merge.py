@@ -17,6 +17,7 @@ from helpers_graphs import CALLS, STEPS, cases, documents, frame, registry, show
 from tactile_graph import Pipeline, compiled, load, loads
 from tactile_graph.compare.merge import Merged, merge
 from tactile_graph.compare.own import FAILED, NOT_SETTLED, RAN, SKIPPED, OwnResult
+from tactile_graph.compare.turns import orders
 from tactile_graph.engine.outcome import NOT_ASKED, Failed, Skipped
 from tactile_graph.engine.rows import as_data
 from tactile_graph.plugins.registry import installed
@@ -107,7 +108,7 @@ def check(pipelines: list[Pipeline], frames: list[Any], seed: int = 0) -> Merged
     merged = merge(pipelines, [list(p.outputs) for p in pipelines])
     turns = [merged.pipeline.runner(seed=seed)]
     if not turns[0].stateful:
-        turns += [merged.starting_with(k).runner(seed=seed) for k in range(1, len(pipelines))]
+        turns += [merged.in_order(turn).runner(seed=seed) for turn in orders(len(pipelines), 8)]
     alone = [p.runner(seed=seed) for p in pipelines]
     called: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
     for i, one in enumerate(frames):

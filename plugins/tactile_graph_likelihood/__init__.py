@@ -1,0 +1,23 @@
+"""Localisation through the pad's own physics: a likelihood of outlines, and its posterior."""
+
+from collections.abc import Mapping
+
+from tactile_graph import hookimpl
+
+_STEPS = {
+    "choose_shape": "choose_shape:ChooseShape",
+    "fit_footprint": "fit_footprint:FitFootprint",
+    "follow_footprint": "follow_footprint:FollowFootprint",
+    "footprint_by_order": "footprint_by_order:FootprintByOrder",
+    "fit_footprints": "fit_footprints:FitFootprints",
+    "footprint_disc": "footprint_of:FootprintDisc",
+    "footprint_ellipse": "footprint_of:FootprintEllipse",
+    "footprint_rectangle": "footprint_of:FootprintRectangle",
+    "identify_footprint": "identify_footprint:IdentifyFootprint",
+}
+
+
+@hookimpl
+def tactile_graph_steps() -> Mapping[str, str]:
+    """Offer the fits by likelihood."""
+    return {name: f"{__name__}.{home}" for name, home in _STEPS.items()}

@@ -1,0 +1,126 @@
+"""Whether an image looks like the model's at all: two numbers that are normal where it does."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.covered import blurred, covered, window
+from tactile_graph_likelihood.element_terms import (
+    FOAM,
+    LEAST,
+    ON,
+    ROOT_TWO_PI,
+    SIGMA,
+    SPAN,
+    SQRT_HALF,
+    STRAYS,
+    UNKNOWN,
+    VOIDS,
+    States,
+)
+from tactile_graph_likelihood.log_posterior import Places, foam_margin, noise_at
+from tactile_graph_likelihood.outlines import Values, unknowns
+from tactile_graph_likelihood.patterns import dome, neighbours_alike, trend
+
+SURE = 1.5  # standard deviations of ln gain by which a covered element's load exceeds the least
+SEEN = -1.0  # the same, for what reads a load at all
+MOST = 3.5  # a stray's residual counts as no more
+DENSITY = 1.0 / ROOT_TWO_PI
+
+
+@compiled_as_is
+def leaning_of(u: float, z: float, tail: float, density: float) -> float:
+    """Return a residual of mean 0 and variance 1, given that it shows, which it does above -z.
+
+    ``tail`` and ``density`` are Phi(z) and phi(z).
+    """
+    ratio = density / tail
+    scaled = (u - ratio) / math.sqrt(1.0 - ratio * (z + ratio))
+    return min(max(scaled, -MOST), MOST)
+
+
+@compiled_as_is
+def misfit(
+    kind: int,
+    corners: int,
+    p: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    estimated: Places,
+) -> tuple[float, float]:
+    """Return how surprising an image is, and how much neighbours' gains are alike.
+
+    Parameters
+    ----------
+    kind, corners, p, grid, logs, states, noise, estimated
+        As in `log_posterior.log_likelihood`; the point is the posterior mean.
+
+    Returns
+    -------
+    (float, float)
+        The log likelihood less its expectation under the model, less half the number of
+        unknowns that were fitted, in its standard deviations: below -3 the readings are worse
+        than the model's own. And what patterns the residuals have, the larger of two: how alike
+        neighbours are, and how much they lean to a side or to the rim (see `patterns`), each in
+        its standard deviations. Above 4 the model takes for many bumps what is one, or the load
+        is not spread evenly over the outline, as under a tilt, foam or a curved face.
+
+    Notes
+    -----
+    Expectation and variance of an element's term are in closed form: with u normal and cut at
+    -z, the mean of u**2 is ``Phi(z) - z phi(z)`` and that of u**4
+    ``3 Phi(z) - (z**3 + 3 z) phi(z)``.
+    """
+    first = unknowns(kind, corners)
+    rows, columns = states.shape
+    here = noise_at(p, first + 1, noise, estimated)
+    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, here))
+    share = np.zeros((max(box[2], 0), max(box[3], 0)))
+    if box[2] > 0 and box[3] > 0:
+        share = covered(kind, corners, p, grid, box)
+        if here[FOAM] > 0.0:
+            share = blurred(share, here[FOAM], box, rows, columns)
+    sigma, voids, strays = here[SIGMA], here[VOIDS], here[STRAYS]
+    level = math.log((1.0 - strays) * (1.0 - voids) / (sigma * ROOT_TWO_PI))
+    stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
+    mean_bare = strays * stray + (1.0 - strays) * bare
+    var_bare = strays * stray**2 + (1.0 - strays) * bare**2 - mean_bare**2
+    got = mean = variance = 0.0
+    residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
+    for i in range(rows):
+        for j in range(columns):
+            if states[i, j] == UNKNOWN:
+                continue
+            on = states[i, j] == ON
+            r, c = i - box[0], j - box[1]
+            inside = 0 <= r < box[2] and 0 <= c < box[3]
+            if not inside or share[r, c] <= 0.0:
+                got += stray if on else bare
+                mean += mean_bare
+                variance += var_bare
+                continue
+            mu = math.log(share[r, c]) + p[first]
+            z = min(max((mu - here[LEAST]) / sigma, -40.0), 40.0)
+            tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
+            none = 1.0 - (1.0 - voids) * tail
+            off = bare + math.log(none)
+            if on:
+                u = (logs[i, j] - mu) / sigma
+                got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
+                residuals[i, j] = u if z > SURE else 0.0
+                leaning[i, j] = leaning_of(u, z, tail, density) if z > SEEN else 0.0
+            else:
+                got += off
+            second = tail - z * density
+            fourth = 3.0 * tail - (z * z * z + 3.0 * z) * density
+            one = (1.0 - voids) * (level * tail - 0.5 * second) + none * off
+            two = (1.0 - voids) * (level * level * tail - level * second + 0.25 * fourth)
+            mean += one
+            variance += two + none * off * off - one * one
+    alike = max(neighbours_alike(residuals), trend(leaning, box[0], box[1], dome(share)))
+    return (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance), alike

@@ -1,0 +1,77 @@
+"""Where else an outline with sides may end: a void at an end looks like the end itself."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.element_terms import States
+from tactile_graph_likelihood.log_posterior import Places, log_likelihood, log_rest
+from tactile_graph_likelihood.outlines import ELLIPSE, OVAL, RECTANGLE, Values
+from tactile_graph_likelihood.oval import as_ellipse, to_oval
+
+SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
+FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
+
+
+@compiled_as_is
+def widen(
+    kind: int,
+    corners: int,
+    p: Values,
+    top: float,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    estimated: Places,
+    guess: Values,
+    prior: Values,
+    belief: Values,
+    precision: Values,
+    covariance: Values,
+) -> None:
+    """Widen a covariance, in place, towards each side's other likely places.
+
+    Parameters
+    ----------
+    kind, corners, p, grid, logs, states, noise, estimated, guess, prior, belief, precision
+        As in `log_posterior`; ``p`` is the most likely point.
+    top : float
+        Log posterior there.
+    covariance : ndarray, shape (K, K)
+        Of the posterior around ``p``.
+
+    Notes
+    -----
+    Each side of a rectangle, each end of an ellipse's axes, is moved by itself, by up to 1.2
+    pitches. The outer product of each move is added, by the square root of how likely it is.
+    """
+    if kind not in (RECTANGLE, ELLIPSE, OVAL):
+        return
+    at = as_ellipse(p) if kind == OVAL else p
+    move, trial = np.zeros(5), p.copy()
+    for side in range(4):
+        axis = side // 2
+        way = 1.0 if side % 2 == 0 else -1.0
+        turn = at[4] + 0.5 * math.pi * axis
+        for shift in SHIFTS:
+            half = 0.5 * shift * grid[2]
+            move[0], move[1] = way * half * math.cos(turn), -way * half * math.sin(turn)
+            move[2], move[3], move[4] = half * (1 - axis), half * axis, 0.0
+            for k in range(5):
+                trial[k] = at[k] + move[k]
+            if kind == OVAL:
+                to_oval(trial)
+                for k in range(5):
+                    move[k] = trial[k] - p[k]
+            here = log_rest(kind, corners, trial, guess, prior, belief, precision)
+            if here == -math.inf:
+                continue
+            here += log_likelihood(kind, corners, trial, grid, logs, states, noise, estimated)
+            share = math.exp(FLATTER * min(here - top, 0.0))
+            for k in range(5):
+                for m in range(5):
+                    covariance[k, m] += share * move[k] * move[m]

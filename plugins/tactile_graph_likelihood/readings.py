@@ -1,0 +1,117 @@
+"""``Readings``: an image as the kernels take it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.element_terms import OFF, ON, UNKNOWN, States
+from tactile_graph_likelihood.outlines import Values
+
+FAINT = 0.015
+"""Share of a loaded element's reading below which another counts as nothing. A column of a divider
+that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
+LARGEST = 1e100
+"""Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
+RANK = 8
+"""Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
+
+
+class Readings(NamedTuple):
+    """What an image says, and where its elements lie.
+
+    ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
+    zeros (a climb's own); ``logs`` and ``states`` are as in `element_terms`.
+    """
+
+    grid: Values
+    logs: Values
+    states: States
+    touched: int
+
+    @property
+    def size_cm(self) -> tuple[float, float]:
+        """Width and height from the first element's edge to the last one's."""
+        rows, columns = self.states.shape
+        gap = self.grid[2] - self.grid[3]
+        return columns * self.grid[2] - gap, rows * self.grid[2] - gap
+
+
+def _split(values: Values, least: float, logs: Values, states: States) -> int:
+    """Write logarithms and states of readings; return how many show, -1 if one is NaN."""
+    if not np.isfinite(values).all():
+        return -1
+    shows = (values > 0.0) & (values >= least)
+    logs[...] = np.log(np.where(shows, values, 1.0))
+    states[...] = np.where(shows, ON, OFF)
+    return int(shows.sum())
+
+
+@compiled_twin_of(_split)
+def split(values: Values, least: float, logs: Values, states: States) -> int:
+    """Do the same in loops."""
+    count = 0
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if value - value != 0.0:
+                return -1
+            if value > 0.0 and value >= least:
+                logs[i, j] = np.log(value)
+                states[i, j] = ON
+                count += 1
+            else:
+                logs[i, j] = 0.0
+                states[i, j] = OFF
+    return count
+
+
+def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT) -> Readings:
+    """Return an image's readings.
+
+    Parameters
+    ----------
+    image : Image
+        Loads, in any unit; invalid cells say nothing either way.
+    gap_cm : float
+        Distance of neighbouring elements' edges; less than the pitch.
+    least : float
+        Readings below it count as nothing.
+    faint : float
+        So do those below this share of the eighth largest reading, as beside saturated elements.
+
+    Raises
+    ------
+    ValueError
+        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
+        beyond 1e100.
+    Degenerate
+        If nothing is touched.
+    """
+    across, down = image.pitch_cm
+    if abs(across - down) > 1e-9 * across:
+        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if not gap_cm < across:
+        raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
+    logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
+    if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
+        least = max(least, faint * float(np.partition(values, -RANK, axis=None)[-RANK]))
+    touched = split.call(values, least, logs, states)
+    if touched < 0:
+        raise ValueError("a valid cell holds NaN or infinity")
+    if values.size and values.max() > LARGEST:
+        raise ValueError(f"readings must be at most {LARGEST:g}, got {values.max():g}")
+    if image.valid is not None:
+        states[~image.valid] = UNKNOWN
+        touched = int((states == ON).sum())
+    if touched == 0:
+        raise Degenerate("no element bears a load: no outline fits")
+    x, y = image.origin_cm
+    half = 0.5 * gap_cm
+    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
+    return Readings(grid, logs, states, touched)

@@ -1,0 +1,189 @@
+"""``adaptive`` goes only as far as a frame needs, and says why it went no further."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, Frame, Pipeline, load
+from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.engine.outcome import NO_VALUE, Skipped
+from tactile_graph.engine.result import Result
+from tactile_graph.pipeline.node import NodeKind
+from tactile_graph_fitters.fit_circle_load import EvenCircle
+from tactile_graph_likelihood.likely import LikelyCircle
+
+DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
+SATURATED = 10e3  # g/cm^2, where an element's law ends at 10 kg
+BAYES = {f"bayes/{n}" for n in ("levels", "restored", "closed", "object", "outline", "hull")}
+CHEAP = {"cells", "footprint", "siemens", "grams", "even"}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def compiled() -> None:
+    if have_compiler():
+        warm_up()
+
+
+def frames(n: int, seed: int = 5, g_cm2: float = 0.0, **settings: Any) -> list[Frame]:
+    """Discs of table 4.2 on the thesis' pad; ``settings`` are the source's or the scene's."""
+    discs = [
+        {"shape": "disc", "name": "disc", "weight_g": g_cm2 * math.pi * r**2 or w, "radius_cm": r}
+        for w, r in DISCS
+    ]
+    scene = {"in_turn": [[d] for d in settings.pop("discs", discs)]}
+    scene |= {"foam_cm": settings.pop("foam_cm")} if "foam_cm" in settings else {}
+    source = load("contacts").with_source("simulate", scene=scene, frames=n, **settings)
+    return list(source.frames(seed))
+
+
+def empty(n: int) -> list[Frame]:
+    source = load("contacts").with_source("simulate", scene={"objects": []}, frames=n)
+    return list(source.frames(3))
+
+
+def results(pipeline: Pipeline, given: list[Frame]) -> Iterator[Result]:
+    return map(pipeline.runner(), given)
+
+
+def ran(result: Result) -> set[str]:
+    """Names of the steps that ran."""
+    return {name for name, t in result.times_us.items() if t > 0.0}
+
+
+def off(result: Result) -> float:
+    (true,) = result.frame.truth or ()
+    found = result["circle"]
+    assert isinstance(true.shape, Circle)
+    centre = math.hypot(found.x_cm - true.shape.x_cm, found.y_cm - true.shape.y_cm)
+    return max(centre, abs(found.radius_cm - true.shape.radius_cm))
+
+
+def ungated(pipeline: Pipeline) -> Pipeline:
+    """Return it with every step run in every frame; which answer is taken stays."""
+    nodes = {
+        name: node if node.kind is NodeKind.FIRST_OF else replace(node, guard=None)
+        for name, node in pipeline.nodes.items()
+    }
+    return replace(pipeline, nodes=nodes)
+
+
+def test_on_an_empty_pad_only_the_gates_run() -> None:
+    for result in results(load("adaptive"), empty(10)):
+        assert ran(result) == {"cells", "footprint"}
+        outcome = result.outcome("siemens")
+        assert isinstance(outcome, Skipped)
+        assert outcome.reason == "when touched is false (footprint.count = 0)"
+        assert isinstance(result.outcome("circle"), Skipped)
+
+
+def test_of_a_frame_that_is_mostly_lost_nothing_is_computed() -> None:
+    (frame,) = frames(1)
+    values = np.where(np.arange(16) < 9, np.nan, frame.image.values)
+    lost = Frame.of(values, frame.image.pitch_cm, frame.image.origin_cm, "volt")
+    (result,) = results(load("adaptive"), [lost])
+    assert ran(result) == {"cells"}
+    outcome = result.outcome("footprint")
+    assert isinstance(outcome, Skipped)
+    assert outcome.reason == "when legible is false (cells.share = 0.4375)"
+
+
+def test_where_load_is_even_the_cheap_fit_answers_and_nothing_else_runs() -> None:
+    for result in results(load("adaptive"), frames(12, sigma=0.0, voids=0.0)):
+        assert ran(result) == CHEAP
+        assert type(result["circle"]) is EvenCircle
+        assert off(result) < 0.03
+        for node in ("likely", "soft", "bayes/restored"):
+            outcome = result.outcome(node)
+            assert isinstance(outcome, Skipped)
+            assert outcome.reason == "nothing asked for it"
+
+
+def test_on_an_uneven_pad_the_likelihood_answers_and_bayes_does_not_run() -> None:
+    for result in results(load("adaptive"), frames(12)):
+        assert ran(result) == {*CHEAP, "likely"}
+        assert type(result["circle"]) is LikelyCircle
+        outcome = result.outcome("plain")
+        assert isinstance(outcome, Skipped)
+        assert "certain is false (even.uneven = 0." in outcome.reason
+
+
+def test_under_foam_the_likelihood_with_foam_answers() -> None:
+    given = frames(12, foam_cm=1.3)
+    found = list(results(load("adaptive"), given))
+    soft = [r for r in found if "soft" in ran(r) and r["circle"] is r.outcome("soft")]
+    assert len(soft) >= 9
+    assert all(not r.outcome("likely").fits for r in soft)
+    sure = results(load("circle-likelihood"), given)
+    assert np.mean([off(r) for r in found]) < 0.4 * np.mean([off(r) for r in sure])
+
+
+def test_beyond_saturation_the_likelihood_answers_still() -> None:
+    for result in results(load("adaptive"), frames(6, g_cm2=SATURATED)):
+        assert type(result["circle"]) is LikelyCircle
+        assert not ran(result) & BAYES
+        assert off(result) < 0.3
+
+
+def test_what_no_disc_explains_is_left_to_bayes() -> None:
+    """Elements a thousand times as uneven as the model has them."""
+    given = frames(6, sigma=3.0)
+    plain = list(results(load("bayes-circle"), given))
+    found = list(zip(results(load("adaptive"), given), plain, strict=True))
+    last = [(r, other) for r, other in found if ran(r) & BAYES]
+    assert 0 < len(last) < len(given)
+    for result, other in last:
+        assert result["likely"].surprise <= -20.0
+        outcome = result.outcome("nearly")
+        assert isinstance(outcome, Skipped)
+        assert "(likely.surprise = -2" in outcome.reason
+        assert result["circle"] == other["circle"]
+
+
+def test_a_small_residual_of_few_elements_is_not_trusted() -> None:
+    """Four unknowns fit seven uneven elements well; the centre is off all the same."""
+    disc = [{"shape": "disc", "name": "disc", "weight_g": 400.0, "radius_cm": 1.2}]
+    found = list(results(load("adaptive"), frames(40, discs=disc)))
+    few = [e for r in found if isinstance(e := r.outcome("even"), EvenCircle) and e.uneven < 0.1]
+    assert few
+    assert all(e.n_cells <= 12 for e in few)
+    assert all(type(r.outcome("circle")) is not EvenCircle for r in found)
+
+
+@pytest.mark.parametrize(
+    "settings", [{}, {"sigma": 0.0, "voids": 0.0}, {"foam_cm": 1.0}], ids=["uneven", "even", "foam"]
+)
+def test_what_is_skipped_would_not_have_changed_the_answer(settings: dict[str, Any]) -> None:
+    given = frames(4, seed=9, **settings)
+    pipeline = load("adaptive")
+    lazy, eager = results(pipeline, given), results(ungated(pipeline), given)
+    for one, all_of_it in zip(lazy, eager, strict=True):
+        a, b = one["circle"], all_of_it["circle"]
+        assert (a.x_cm, a.y_cm, a.radius_cm) == (b.x_cm, b.y_cm, b.radius_cm)
+
+
+def test_on_an_empty_pad_the_gates_also_spare_false_answers() -> None:
+    """Whoever restores noise finds something in it."""
+    given, pipeline = empty(4), load("adaptive")
+    lazy, eager = results(pipeline, given), results(ungated(pipeline), given)
+    for one, all_of_it in zip(lazy, eager, strict=True):
+        assert one.outcome("circle").__class__ in NO_VALUE
+        assert "bayes/restored" in ran(all_of_it)
+        assert isinstance(all_of_it["circle"], Circle)
+
+
+@pytest.mark.parametrize("settings", [{}, {"foam_cm": 1.0}, {"g_cm2": SATURATED}, {"sigma": 3.0}],
+                         ids=["uneven", "foam", "saturated", "wild"])  # fmt: skip
+def test_on_hard_frames_it_answers_as_the_full_one(settings: dict[str, Any]) -> None:
+    given = frames(4, seed=11, **settings)
+    full = load("circle-full")
+    for one, other in zip(results(load("adaptive"), given), results(full, given), strict=True):
+        a, b = one["circle"], other["circle"]
+        assert (a.x_cm, a.y_cm, a.radius_cm) == (b.x_cm, b.y_cm, b.radius_cm)
+        assert ran(other) >= {"likely", "soft", "bayes/restored"}
+        assert not {"likely", "soft", "bayes/restored"} <= ran(one)
