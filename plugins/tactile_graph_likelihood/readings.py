@@ -110,8 +110,17 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
         states[~image.valid] = UNKNOWN
         touched = int((states == ON).sum())
     if touched == 0:
-        raise Degenerate("no element bears a load: no outline fits")
+        raise Degenerate(_why(float(values.max(initial=0.0)), least))
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
     return Readings(grid, logs, states, touched)
+
+
+def _why(peak: float, least: float) -> str:
+    if 0.0 < peak < least:
+        return (
+            f"no reading reaches {least:.3g}, the least that shows (see shows_from); the largest "
+            f"is {peak:.3g}: no outline fits"
+        )
+    return "no element bears a load: no outline fits"

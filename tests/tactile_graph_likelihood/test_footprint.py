@@ -212,3 +212,15 @@ def test_one_touched_element_gives_an_answer_that_is_not_sure_of_itself():
     found = FootprintDisc()(Image(values, (1.3, 1.3), (-0.15, -0.15), "gram"))
     assert math.hypot(found.x_cm - 8.3, found.y_cm - 7.0) < 0.3
     assert found.centre_std_cm > 0.2
+
+
+def test_an_image_in_another_unit_is_told_which_setting_says_what_shows() -> None:
+    image = Image(np.full((16, 16), 0.4), (1.3, 1.3), (-0.15, -0.15), "raw")
+    with pytest.raises(Degenerate, match=r"no reading reaches 5, .*shows_from.* largest is 0\.4"):
+        FootprintDisc()(image)
+
+
+def test_readings_that_are_no_numbers_of_a_pad_are_refused() -> None:
+    image = Image(np.full((16, 16), 1e150), (1.3, 1.3), (-0.15, -0.15), "raw")
+    with pytest.raises(ValueError, match=r"readings must be at most 1e\+100, got 1e\+150"):
+        FootprintDisc()(image)

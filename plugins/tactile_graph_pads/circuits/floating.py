@@ -19,6 +19,9 @@ from tactile_graph_pads.circuits.newton import solve_log
 
 Array = NDArray[np.float64]
 
+NEGLIGIBLE = 1e-100
+"""Conductance over the frame's largest below which an element conducts nothing."""
+
 
 def _equivalent(siemens: Array) -> Array:
     """Return the conductance between each row and column through the whole network.
@@ -160,8 +163,8 @@ class Floating:
         Parameters
         ----------
         ratio : ndarray of float64, shape (rows, columns)
-            Measured volts over supply volts; 0 or less stands for an element that does not
-            conduct.
+            Measured volts over supply volts; 0 or less, or 1e-100 of the largest, stands for an
+            element that does not conduct.
         start : ndarray of float64, shape (rows, columns), optional
             Conductances to start from, such as the last frame's: takes a third of the time.
 
@@ -184,6 +187,7 @@ class Floating:
         if not unit > 0.0:
             return Inverse(np.zeros(ratio.shape), valid)
         target /= unit
+        on &= target > NEGLIGIBLE
         siemens = np.zeros(ratio.shape)
         last: dict[str, Array] = {}
 

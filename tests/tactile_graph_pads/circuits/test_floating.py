@@ -105,3 +105,12 @@ def test_the_compiled_twin_agrees_with_the_reference():
     np.testing.assert_allclose(
         equivalent_s.compiled(siemens), equivalent_s.reference(siemens), rtol=1e-12, atol=0
     )
+
+
+@pytest.mark.parametrize("ratio", [2.2e-311, 1e-300, 1e-150])
+def test_readings_of_next_to_nothing_stand_for_elements_that_do_not_conduct(ratio):
+    measured = np.full((3, 3), 0.1)
+    measured[1, 1] = measured[0, 2] = ratio
+    found = Floating().inverse(measured)
+    assert found.valid.all()
+    assert (found.siemens[[1, 0], [1, 2]] == 0.0).all()
