@@ -43,6 +43,33 @@ def leaning_of(u: float, z: float, tail: float, density: float) -> float:
 
 
 @compiled_as_is
+def moments_of_strays(strays: float) -> tuple[float, float]:
+    """Return mean and variance of the term of an element on which nothing is expected."""
+    stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
+    mean = strays * stray + (1.0 - strays) * bare
+    return mean, strays * stray**2 + (1.0 - strays) * bare**2 - mean**2
+
+
+@compiled_as_is
+def moments_of_term(
+    z: float, tail: float, density: float, level: float, present: float, bare: float
+) -> tuple[float, float, float]:
+    """Return the term of an expected element that reads nothing, and all terms' mean and variance.
+
+    ``level`` is the largest log likelihood of a reading, ``present`` the share of elements that
+    are no voids. With u normal and cut at -z, the mean of u**2 is ``Phi(z) - z phi(z)`` and that
+    of u**4 ``3 Phi(z) - (z**3 + 3 z) phi(z)``.
+    """
+    none = 1.0 - present * tail
+    off = bare + math.log(none)
+    second = tail - z * density
+    fourth = 3.0 * tail - (z * z * z + 3.0 * z) * density
+    one = present * (level * tail - 0.5 * second) + none * off
+    two = present * (level * level * tail - level * second + 0.25 * fourth)
+    return off, one, two + none * off * off - one * one
+
+
+@compiled_as_is
 def misfit(
     kind: int,
     corners: int,
@@ -67,14 +94,8 @@ def misfit(
         unknowns that were fitted, in its standard deviations: below -3 the readings are worse
         than the model's own. And what patterns the residuals have, the larger of two: how alike
         neighbours are, and how much they lean to a side or to the rim (see `patterns`), each in
-        its standard deviations. Above 4 the model takes for many bumps what is one, or the load
+        its standard deviations. Above 3 the model takes for many bumps what is one, or the load
         is not spread evenly over the outline, as under a tilt, foam or a curved face.
-
-    Notes
-    -----
-    Expectation and variance of an element's term are in closed form: with u normal and cut at
-    -z, the mean of u**2 is ``Phi(z) - z phi(z)`` and that of u**4
-    ``3 Phi(z) - (z**3 + 3 z) phi(z)``.
     """
     first = unknowns(kind, corners)
     rows, columns = states.shape
@@ -88,8 +109,7 @@ def misfit(
     sigma, voids, strays = here[SIGMA], here[VOIDS], here[STRAYS]
     level = math.log((1.0 - strays) * (1.0 - voids) / (sigma * ROOT_TWO_PI))
     stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
-    mean_bare = strays * stray + (1.0 - strays) * bare
-    var_bare = strays * stray**2 + (1.0 - strays) * bare**2 - mean_bare**2
+    mean_bare, var_bare = moments_of_strays(strays)
     got = mean = variance = 0.0
     residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
     for i in range(rows):
@@ -107,8 +127,7 @@ def misfit(
             mu = math.log(share[r, c]) + p[first]
             z = min(max((mu - here[LEAST]) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-            none = 1.0 - (1.0 - voids) * tail
-            off = bare + math.log(none)
+            off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
             if on:
                 u = (logs[i, j] - mu) / sigma
                 got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
@@ -116,11 +135,7 @@ def misfit(
                 leaning[i, j] = leaning_of(u, z, tail, density) if z > SEEN else 0.0
             else:
                 got += off
-            second = tail - z * density
-            fourth = 3.0 * tail - (z * z * z + 3.0 * z) * density
-            one = (1.0 - voids) * (level * tail - 0.5 * second) + none * off
-            two = (1.0 - voids) * (level * level * tail - level * second + 0.25 * fourth)
             mean += one
-            variance += two + none * off * off - one * one
+            variance += spread
     alike = max(neighbours_alike(residuals), trend(leaning, box[0], box[1], dome(share)))
     return (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance), alike

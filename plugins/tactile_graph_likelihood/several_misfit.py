@@ -19,7 +19,7 @@ from tactile_graph_likelihood.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.misfit import DENSITY, SURE
+from tactile_graph_likelihood.misfit import DENSITY, SURE, moments_of_strays, moments_of_term
 from tactile_graph_likelihood.outlines import Values
 
 
@@ -41,14 +41,14 @@ def misfit_of_load(
     Returns
     -------
     (float, float)
-        As of `misfit.misfit`.
+        As of `misfit.misfit`, but of the patterns only how alike neighbours are, not over the
+        residuals' own variance.
     """
     rows, cols = states.shape
     sigma, present, strays = noise[SIGMA], 1.0 - noise[VOIDS], noise[STRAYS]
     level = math.log((1.0 - strays) * present / (sigma * ROOT_TWO_PI))
     stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
-    mean_bare = strays * stray + (1.0 - strays) * bare
-    var_bare = strays * stray**2 + (1.0 - strays) * bare**2 - mean_bare**2
+    mean_bare, var_bare = moments_of_strays(strays)
     got = mean = variance = pairs = product = 0.0
     residuals = np.zeros((rows + 1, cols + 1))
     for i in range(rows):
@@ -64,20 +64,15 @@ def misfit_of_load(
             mu = math.log(expected[i, j])
             z = min(max((mu - noise[LEAST]) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-            none = 1.0 - present * tail
-            off = bare + math.log(none)
+            off, one, spread = moments_of_term(z, tail, density, level, present, bare)
             if on:
                 u = (logs[i, j] - mu) / sigma
                 got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
                 residuals[i, j] = u if z > SURE else 0.0
             else:
                 got += off
-            second = tail - z * density
-            fourth = 3.0 * tail - (z * z * z + 3.0 * z) * density
-            one = present * (level * tail - 0.5 * second) + none * off
-            two = present * (level * level * tail - level * second + 0.25 * fourth)
             mean += one
-            variance += two + none * off * off - one * one
+            variance += spread
     for i in range(rows):
         for j in range(cols):
             for other in (residuals[i + 1, j], residuals[i, j + 1]):
