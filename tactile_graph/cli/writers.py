@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import json
-import math
 import sys
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
@@ -15,7 +14,7 @@ import click
 from tactile_graph.engine.columns import OutputColumns, outcome_word, values_of
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.result import Result
-from tactile_graph.engine.rows import as_data
+from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.truth import errors_against, nearest
 
 FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv"}
@@ -40,7 +39,7 @@ class JsonLines:
 
     def line(self, result: Result) -> str:
         """Return a frame's line."""
-        return json.dumps(_clean(json_row(result)), ensure_ascii=False, allow_nan=False) + "\n"
+        return json.dumps(without_nan(json_row(result)), ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def json_row(result: Result) -> dict[str, Any]:
@@ -67,15 +66,6 @@ def json_row(result: Result) -> dict[str, Any]:
     row["errors"] = errors
     row["truth"] = [{"kind": type(t.shape).__name__, **as_data(t)} for t in frame.truth]
     return row
-
-
-def _clean(data: Any) -> Any:
-    """Return data with null for NaN, which JSON has not."""
-    if isinstance(data, float):
-        return data if math.isfinite(data) else None
-    if isinstance(data, dict):
-        return {k: _clean(v) for k, v in data.items()}
-    return [_clean(v) for v in data] if isinstance(data, list) else data
 
 
 class Csv:

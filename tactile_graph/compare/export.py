@@ -15,6 +15,7 @@ from typing import Any
 from tactile_graph.compare.lineage_records import Evolution
 from tactile_graph.compare.records import Comparison, Variant
 from tactile_graph.compare.score_records import Score
+from tactile_graph.engine.rows import without_nan
 from tactile_graph.pipeline.pipeline import plain
 
 Row = Sequence[Any]
@@ -133,7 +134,9 @@ def as_json(comparison: Comparison) -> str:
         ],
         "provenance": c.provenance,
     }  # fmt: skip
-    return json.dumps(_clean(plain(data)), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return (
+        json.dumps(without_nan(plain(data)), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    )
 
 
 def _named(record: Score | Any, names: Sequence[str]) -> dict[str, Any]:
@@ -177,15 +180,6 @@ def _node(node: Any) -> dict[str, Any]:
              "output_of", "stateful", "n_ran", "n_skipped", "n_failed", "n_not_asked", "time_us",
              "total_s")  # fmt: skip
     return _named(node, names)
-
-
-def _clean(data: Any) -> Any:
-    """Return data with null for NaN, which JSON has not."""
-    if isinstance(data, float):
-        return data if math.isfinite(data) else None
-    if isinstance(data, dict):
-        return {k: _clean(v) for k, v in data.items()}
-    return [_clean(v) for v in data] if isinstance(data, list) else data
 
 
 def write_whole(path: str | Path, text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any
 
 import numpy as np
@@ -84,3 +85,12 @@ def _record(value: Any) -> Any:
     for name in getattr(value, "columns_shown", ()):
         data.setdefault(name, as_data(getattr(value, name)))
     return data if data else str(value)
+
+
+def without_nan(data: Any) -> Any:
+    """Return data with null for NaN, which JSON has not."""
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, dict):
+        return {k: without_nan(v) for k, v in data.items()}
+    return [without_nan(v) for v in data] if isinstance(data, list) else data
