@@ -166,9 +166,9 @@ def test_values_that_json_has_no_words_for_become_null(tmp_path):
 
 
 def test_infinity_and_nan_are_null_for_json_has_neither():
-    from tactile_graph.cli.writers import _clean
+    from tactile_graph.engine.rows import without_nan
 
-    cleaned = _clean({"a": [{"b": float("inf"), "c": float("nan")}]})
+    cleaned = without_nan({"a": [{"b": float("inf"), "c": float("nan")}]})
     assert cleaned == {"a": [{"b": None, "c": None}]}
 
 
