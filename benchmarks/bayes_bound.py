@@ -25,6 +25,7 @@ from tactile_graph_likelihood.footprint_of import Footprint, FootprintDisc, Foot
 from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.model import Model
 from tactile_graph_likelihood.outlines import unpacked
+from tactile_graph_likelihood.problem import problem_of
 from tactile_graph_likelihood.readings import readings_of
 
 Values = NDArray[np.float64]
@@ -40,12 +41,11 @@ def chain(
     """Return the mean of a Metropolis chain after its first fifth."""
     np.random.seed(seed)  # noqa: NPY002
     n = start.shape[0]
-    none, no_guess = np.zeros(0, np.int64), np.zeros((0, 2))
-    belief, precision = np.zeros(n - 1), np.zeros((n - 1, n - 1))
+    problem = problem_of(kind, 0, grid, logs, states, noise, prior)
     p, mean, kept = start.copy(), np.zeros(n), 0
-    now = log_rest(kind, 0, p, no_guess, prior, belief, precision)
+    now = log_rest(problem, p)
     if now > -math.inf:
-        now += log_likelihood(kind, 0, p, grid, logs, states, noise, none)
+        now += log_likelihood(problem, p)
     for t in range(steps):
         length = 2.0 / math.sqrt(n) * (0.3, 1.0, 1.0, 3.0)[np.random.randint(4)]  # noqa: NPY002
         trial = p.copy()
@@ -53,9 +53,9 @@ def chain(
             z = length * np.random.standard_normal()  # noqa: NPY002
             for m in range(k, n):
                 trial[m] += root[m, k] * z
-        new = log_rest(kind, 0, trial, no_guess, prior, belief, precision)
+        new = log_rest(problem, trial)
         if new > -math.inf:
-            new += log_likelihood(kind, 0, trial, grid, logs, states, noise, none)
+            new += log_likelihood(problem, trial)
         if math.log(np.random.random()) < new - now:  # noqa: NPY002
             p, now = trial, new
         if 5 * t >= steps:

@@ -52,14 +52,6 @@ class Laid:
     def load_g(self) -> Values:
         return self.shared(self.covered * self.gains)
 
-    @property
-    def radii(self) -> Values:
-        """How far each element's middle lies from the disc's, over its radius."""
-        off = np.hypot(
-            GEOMETRY.x_cm[None, :] - self.disc.x_cm, GEOMETRY.y_cm[:, None] - self.disc.y_cm
-        )
-        return np.asarray(off / self.disc.radius_cm)
-
 
 Kind = Callable[[Laid, np.random.Generator], Values]
 """Return each element's load in grams."""
@@ -104,10 +96,24 @@ def sand(laid: Laid, rng: np.random.Generator) -> Values:
     return contact.load_g(laid.disc, laid.weight_g, GEOMETRY, laid.gains)
 
 
-def curved(laid: Laid, rng: np.random.Generator) -> Values:
-    """A ball's pressure: a half ellipse over the radius, nothing at the rim (Hertz)."""
-    pressure = np.sqrt(np.maximum(1.0 - laid.radii**2, 0.01))
-    return laid.shared(laid.covered * laid.gains * pressure)
+def ball(power: float) -> Kind:
+    """A curved face: the pressure falls to nothing at the rim as ``(1 - r**2) ** power``.
+
+    A power of 1/2 is a ball on an elastic pad (Hertz), 1 a ball on a soft layer. Integrated over
+    each element's covered part.
+    """
+
+    def loads(laid: Laid, rng: np.random.Generator) -> Values:
+        steps = (np.arange(24) + 0.5) / 24.0 - 0.5
+        off = (steps * (GEOMETRY.pitch_cm - GEOMETRY.gap_cm))[None, :]
+        across = (GEOMETRY.x_cm[:, None] + off - laid.disc.x_cm).ravel()
+        down = (GEOMETRY.y_cm[:, None] + off - laid.disc.y_cm).ravel()
+        r2 = (across[None, :] ** 2 + down[:, None] ** 2) / laid.disc.radius_cm**2
+        pressure = np.maximum(1.0 - r2, 0.0) ** power
+        rows, columns = laid.covered.shape
+        return laid.shared(laid.gains * pressure.reshape(rows, 24, columns, 24).mean(axis=(1, 3)))
+
+    return loads
 
 
 def cup(laid: Laid, rng: np.random.Generator) -> Values:
@@ -167,7 +173,8 @@ KINDS: dict[str, tuple[Kind, Pad]] = {
     "saturated, 300 x weight": (times(300.0), THESIS),
     "exponent 2.2, not 1.46": (as_designed, law(exponent=2.2)),
     "exponent 1, not 1.46": (as_designed, law(exponent=1.0)),
-    "ball: load falls to rim": (curved, THESIS),
+    "ball on an elastic pad": (ball(0.5), THESIS),
+    "ball on a soft layer": (ball(1.0), THESIS),
     "cup: rim alone touches": (cup, THESIS),
     "second, small object": (second_object, THESIS),
     "4 % strays": (strays, THESIS),

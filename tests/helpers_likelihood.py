@@ -8,11 +8,11 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.covered import covered
 from tactile_graph_likelihood.noise import Noise
 from tactile_graph_likelihood.outlines import packed
+from tactile_graph_likelihood.problem import problem_of
 from tactile_graph_likelihood.readings import readings_of
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
 NOISE = Noise(0.48, 0.16, 1e-3, 5.0)
-NOTHING = (np.zeros(0, np.int64),)
 
 
 def drawn(shape, load_g, rng, sigma=0.48, voids=0.16, least_g=5.0, side=16):
@@ -25,9 +25,12 @@ def drawn(shape, load_g, rng, sigma=0.48, voids=0.16, least_g=5.0, side=16):
     return Image(load, (1.3, 1.3), (-0.15, -0.15), "gram")
 
 
-def kernel_arguments(shape, load_g, rng, noise=NOISE):
+def problem_and_point(shape, load_g, rng, noise=NOISE):
     """Return what `log_likelihood` takes for a shape and an image drawn from it."""
     readings = readings_of(drawn(shape, load_g, rng), 0.3, noise.least)
     kind, corners, p = packed(shape)
     point = np.append(p, np.log(load_g))
-    return kind, corners, point, readings.grid, readings.logs, readings.states, noise.vector(1.3)
+    size, prior = readings.size_cm, np.zeros(9)
+    prior[:6] = *readings.grid[:2], *size, 0.5, 20.0
+    problem = problem_of(kind, corners, *readings[:3], noise.vector(1.3), prior)
+    return problem._replace(estimated=noise.places, guess=noise.guess(1.3)), point

@@ -22,9 +22,9 @@ OFF, ON, UNKNOWN = range(3)
 
 States: TypeAlias = NDArray[np.uint8]
 
-SIGMA, VOIDS, STRAYS, LEAST, FOAM = range(5)
+SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y = range(8)
 """Places in a noise vector: width of ln gain, share of voids, probability of a stray, logarithm
-of the least load that shows, width of a foam blur in cells."""
+of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean."""
 
 SPAN = math.log(1e4)
 """Width of the logarithm of a stray's load, and of the prior of a covered element's load."""
@@ -55,7 +55,7 @@ def _terms(
         Logarithm of each reading that shows.
     states : ndarray of uint8, the same shape
         `OFF`, `ON` or `UNKNOWN`.
-    noise : ndarray, shape (5,)
+    noise : ndarray, shape (8,)
         As named by `SIGMA`, `VOIDS`, `STRAYS`, `LEAST`.
 
     Notes

@@ -10,6 +10,7 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from tactile_graph.steps import Quantity
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
+from tactile_graph_likelihood.any_pressure import AnyPressure
 from tactile_graph_likelihood.likely import LikelyCircle, LikelyEllipse, LikelyRectangle, likely
 from tactile_graph_likelihood.model import Model
 from tactile_graph_likelihood.noise import noise_of
@@ -17,7 +18,7 @@ from tactile_graph_likelihood.outlines import DISC, ELLIPSE, RECTANGLE
 
 Positive = Annotated[float, Gt(0)]
 Share = Annotated[float, Gt(0), Lt(1)]
-Part = Literal["sigma", "voids", "foam"]
+Part = Literal["sigma", "voids", "foam", "fall", "lean"]
 Load = Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
 
 
@@ -42,7 +43,10 @@ class Footprint:
     shows_from : float, optional
         Readings below it count as nothing, in the image's unit.
     estimate : list
-        What of sigma, voids and foam is estimated with the object.
+        What of sigma, voids, foam and the pressure's fall and lean is estimated with the object.
+    pressure : "any" or "even"
+        Whether the object may press unevenly: leaning, less towards its rim, or through foam.
+        Looked at where an even face leaves that pattern over, and weighed by the evidence.
     on_pad : "whole" or "partly"
         Whether the whole outline lies on the pad, or its centre only.
     smallest_cm, largest_cm : float, optional
@@ -69,6 +73,7 @@ class Footprint:
         gap_cm: Annotated[float, Ge(0)] | None = None,
         shows_from: Annotated[float, Ge(0)] | None = None,
         estimate: list[Part] = [],  # noqa: B006 - settings are never changed
+        pressure: Literal["any", "even"] = "any",
         on_pad: Literal["whole", "partly"] = "partly",
         smallest_cm: Positive | None = None,
         largest_cm: Positive | None = None,
@@ -80,6 +85,8 @@ class Footprint:
             self._kind, 0, pad, sigma, voids, strays, foam_cm, gap_cm, shows_from, estimate,
             on_pad, smallest_cm, largest_cm, precision, most_points, seed,
         )  # fmt: skip
+        model = AnyPressure(self.model) if pressure == "any" else self.model
+        self.posterior = model.posterior
 
 
 def model_of(
@@ -140,7 +147,7 @@ class FootprintDisc(Footprint):
         Degenerate
             If nothing is touched, or no disc on the pad explains what is.
         """
-        found = likely(self.model.posterior(image, start))
+        found = likely(self.posterior(image, start))
         assert isinstance(found, LikelyCircle)
         return found
 
@@ -152,7 +159,7 @@ class FootprintRectangle(Footprint):
 
     def __call__(self, image: Load, start: Rectangle | None = None) -> LikelyRectangle:
         """Return the rectangle; parameters and errors as for a disc."""
-        found = likely(self.model.posterior(image, start))
+        found = likely(self.posterior(image, start))
         assert isinstance(found, LikelyRectangle)
         return found
 
@@ -164,6 +171,6 @@ class FootprintEllipse(Footprint):
 
     def __call__(self, image: Load, start: Ellipse | None = None) -> LikelyEllipse:
         """Return the ellipse; parameters and errors as for a disc."""
-        found = likely(self.model.posterior(image, start))
+        found = likely(self.posterior(image, start))
         assert isinstance(found, LikelyEllipse)
         return found

@@ -1,4 +1,4 @@
-"""Whether an image looks like the model's at all: two numbers that are normal where it does."""
+"""Whether an image looks like the model's at all: numbers that are normal where it does."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.covered import blurred, covered, window
+from tactile_graph_likelihood.covered import window
 from tactile_graph_likelihood.element_terms import (
-    FOAM,
     LEAST,
     ON,
     ROOT_TWO_PI,
@@ -19,11 +18,12 @@ from tactile_graph_likelihood.element_terms import (
     STRAYS,
     UNKNOWN,
     VOIDS,
-    States,
 )
-from tactile_graph_likelihood.log_posterior import Places, foam_margin, noise_at
+from tactile_graph_likelihood.log_posterior import noise_at
 from tactile_graph_likelihood.outlines import Values, unknowns
 from tactile_graph_likelihood.patterns import dome, neighbours_alike, trend
+from tactile_graph_likelihood.problem import Problem
+from tactile_graph_likelihood.shares import foam_margin, shares_of
 
 SURE = 1.5  # standard deviations of ln gain by which a covered element's load exceeds the least
 SEEN = -1.0  # the same, for what reads a load at all
@@ -70,42 +70,33 @@ def moments_of_term(
 
 
 @compiled_as_is
-def misfit(
-    kind: int,
-    corners: int,
-    p: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-) -> tuple[float, float]:
-    """Return how surprising an image is, and how much neighbours' gains are alike.
+def misfit(problem: Problem, p: Values) -> tuple[float, float, float, float]:
+    """Return how surprising an image is, and what patterns it leaves over.
 
     Parameters
     ----------
-    kind, corners, p, grid, logs, states, noise, estimated
+    problem, p
         As in `log_posterior.log_likelihood`; the point is the posterior mean.
 
     Returns
     -------
-    (float, float)
+    (float, float, float, float)
         The log likelihood less its expectation under the model, less half the number of
         unknowns that were fitted, in its standard deviations: below -3 the readings are worse
-        than the model's own. And what patterns the residuals have, the larger of two: how alike
-        neighbours are, and how much they lean to a side or to the rim (see `patterns`), each in
-        its standard deviations. Above 3 the model takes for many bumps what is one, or the load
-        is not spread evenly over the outline, as under a tilt, foam or a curved face.
+        than the model's own. How alike neighbours' residuals are, how much they lean to a
+        side, and how much they fall to the rim (see `patterns`), each in its standard deviations;
+        a lean has 0 where there is none, by and large. Above 3 the model
+        takes for many bumps what is one, or the load is not spread over the outline as it
+        thinks, as under a tilt, foam or a curved face.
     """
-    first = unknowns(kind, corners)
+    kind, corners, grid = problem.kind, problem.corners, problem.grid
+    logs, states, first = problem.logs, problem.states, unknowns(problem.kind, problem.corners)
     rows, columns = states.shape
-    here = noise_at(p, first + 1, noise, estimated)
+    here = noise_at(problem, p)
     box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, here))
     share = np.zeros((max(box[2], 0), max(box[3], 0)))
     if box[2] > 0 and box[3] > 0:
-        share = covered(kind, corners, p, grid, box)
-        if here[FOAM] > 0.0:
-            share = blurred(share, here[FOAM], box, rows, columns)
+        share = shares_of(kind, corners, p, grid, here, box, rows, columns)
     sigma, voids, strays = here[SIGMA], here[VOIDS], here[STRAYS]
     level = math.log((1.0 - strays) * (1.0 - voids) / (sigma * ROOT_TWO_PI))
     stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
@@ -137,5 +128,6 @@ def misfit(
                 got += off
             mean += one
             variance += spread
-    alike = max(neighbours_alike(residuals), trend(leaning, box[0], box[1], dome(share)))
-    return (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance), alike
+    surprise = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
+    lean, fall = trend(leaning, box[0], box[1], dome(share))
+    return surprise, neighbours_alike(residuals), lean, fall

@@ -11,13 +11,12 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Shape
-from tactile_graph_likelihood.element_terms import States
 from tactile_graph_likelihood.even_points import even_points
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.noise import Noise
 from tactile_graph_likelihood.outlines import ELLIPSE, FREE, OVAL, REGULAR, Values, packed, unknowns
 from tactile_graph_likelihood.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.posterior import Posterior
+from tactile_graph_likelihood.problem import Places, Problem
 from tactile_graph_likelihood.readings import Readings, readings_of
 from tactile_graph_likelihood.sampling import spread_of
 from tactile_graph_likelihood.search import (
@@ -35,24 +34,9 @@ BLOCK = 32
 
 SMALLEST_PITCHES = 0.4
 
+Start = Shape | Values | None
+
 NO_START = np.zeros(0)
-
-
-class Inputs(NamedTuple):
-    """What the kernels of a search take first, in their order."""
-
-    kind: int
-    corners: int
-    grid: Values
-    logs: Values
-    states: States
-    noise: Values
-    estimated: Places
-    guess: Values
-    prior: Values
-    belief: Values
-    precision: Values
-    table: Values
 
 
 class Top(NamedTuple):
@@ -109,7 +93,7 @@ class Model:
     def posterior(
         self,
         image: Image,
-        start: Shape | None = None,
+        start: Start = None,
         belief: tuple[Values, Values] | None = None,
     ) -> Posterior:
         """Return the posterior of the outline.
@@ -118,8 +102,8 @@ class Model:
         ----------
         image : Image
             Loads.
-        start : Shape, optional
-            Where to begin, of this kind of outline.
+        start : Shape or ndarray, optional
+            Where to begin: an outline of this kind, or a whole point.
         belief : (ndarray, ndarray), optional
             Mean and precision matrix of a normal belief about the outline's numbers.
 
@@ -135,64 +119,62 @@ class Model:
     def posterior_of(
         self,
         readings: Readings,
-        start: Shape | None = None,
+        start: Start = None,
         belief: tuple[Values, Values] | None = None,
     ) -> Posterior:
         """Return the same from readings."""
-        inputs = self._inputs(readings, belief)
-        return self._answer(
-            readings, inputs.kind,
-            searched.call(*inputs, BLOCK, self.precision**-2, self._begin(start, readings, inputs)),
-        )  # fmt: skip
+        problem = self._problem(readings, belief)
+        begin = self._begin(start, readings, problem)
+        table = self._table(problem)
+        found = searched.call(problem, table, BLOCK, self.precision**-2, begin)
+        return self._answer(readings, problem.kind, found)
 
     def top_of(self, readings: Readings, before: Top | None = None) -> Top:
         """Return the most likely outline, by one attempt, or two more after an earlier one."""
-        inputs = self._inputs(readings, None)
+        problem = self._problem(readings, None)
+        table = self._table(problem)
         if before is None:
-            n = inputs.table.shape[1]
+            n = table.shape[1]
             before = Top(-math.inf, -math.inf, np.zeros(n), np.zeros((n, n)), True)
             attempts = 0, 1
         else:
             attempts = 1, ATTEMPTS
         p, root = before.p.copy(), before.root.copy()
-        height, unsure, _ = topped.call(
-            *inputs, NO_START, attempts, before.height, p, root
-        )  # fmt: skip
+        height, unsure = topped.call(problem, table, NO_START, attempts, before.height, p, root)
         possible = height > -math.inf
-        evidence = height + log_volume.call(inputs.kind, p, root) if possible else height
+        evidence = height + log_volume.call(problem.kind, p, root) if possible else height
         return Top(evidence, height, p, root, unsure)
 
     def around(self, readings: Readings, top: Top) -> Posterior:
         """Return the posterior around a top that is possible."""
-        inputs = self._inputs(readings, None)
+        problem = self._problem(readings, None)
         found = spread_out.call(
-            *inputs, BLOCK, self.precision**-2, top.p, top.root, top.height
-        )  # fmt: skip
-        return self._answer(readings, inputs.kind, found)
+            problem, self._table(problem), BLOCK, self.precision**-2, top.p, top.root, top.height
+        )
+        return self._answer(readings, problem.kind, found)
 
-    def _inputs(self, readings: Readings, belief: tuple[Values, Values] | None) -> Inputs:
+    def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
         kind, n = self.kind, unknowns.call(self.kind, self.corners)
         if kind == ELLIPSE and belief is None:
             kind = OVAL
         mean, precision = (np.zeros(n), np.zeros((n, n))) if belief is None else belief
-        return Inputs(
+        return Problem(
             kind, self.corners, readings.grid, readings.logs, readings.states, noise, places, guess,
-            self._prior(readings), mean, precision, self._table(n + 1 + len(places)),
+            self._prior(readings), mean, precision,
         )  # fmt: skip
 
     def _answer(self, readings: Readings, kind: int, found: Found) -> Posterior:
-        (used, top, points, _, weights, mean, covariance, evidence, equal, _, surprise, alike,
-         _) = found  # fmt: skip
-        if used == 0:
+        if found.used == 0:
             raise Degenerate(
                 f"{readings.touched} touched elements: no such outline on the pad explains them"
             )
+        top, mean, covariance = found.likeliest, found.mean, found.covariance
         if kind == OVAL:
-            top, mean, covariance = _as_ellipses(top, points, weights)
+            top, mean, covariance = _as_ellipses(top, found.points, found.weights)
         return Posterior(
-            self.kind, self.corners, mean, covariance, points, weights, top,
-            evidence, equal, surprise, alike,
+            self.kind, self.corners, mean, covariance, found.points, found.weights, top,
+            found.evidence, found.equal, found.surprise, found.alike, found.lean, found.fall,
         )  # fmt: skip
 
     def range_cm(self, readings: Readings) -> tuple[float, float]:
@@ -229,20 +211,26 @@ class Model:
     def _kept(self) -> dict[float, tuple[Values, Places, Values]]:
         return {}
 
-    def _table(self, n: int) -> Values:
+    def _table(self, problem: Problem) -> Values:
+        n = unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated)
         return _table(max(1, math.ceil(self.most_points / BLOCK)) * BLOCK, n, self.seed)
 
-    def _begin(self, start: Shape | None, readings: Readings, inputs: Inputs) -> Values:
+    def _begin(self, start: Start, readings: Readings, problem: Problem) -> Values:
         if start is None:
             return NO_START
+        if not isinstance(start, Shape):
+            begin = start.copy()
+            if problem.kind == OVAL:
+                to_oval.call(begin)
+            return begin
         kind, corners, p = packed(start)
         if kind == FREE and self.kind == REGULAR and corners == self.corners:
             p = _as_regular(start)
         elif kind != self.kind or (kind == FREE and corners != self.corners):
             raise ValueError(f"start: a {type(start).__name__} is not of the shape to be fitted")
         load = moments.call(readings.grid, readings.logs, readings.states)[6]
-        begin = np.concatenate([p, [load], inputs.guess[:, 0]])
-        if inputs.kind == OVAL:
+        begin = np.concatenate([p, [load], problem.guess[:, 0]])
+        if problem.kind == OVAL:
             to_oval.call(begin)
         return begin
 

@@ -7,20 +7,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_graph_likelihood.element_terms import FOAM, SIGMA, VOIDS
-from tactile_graph_likelihood.log_posterior import Places
+from tactile_graph_likelihood.element_terms import (
+    FALL,
+    FOAM,
+    LEAN_X,
+    LEAN_Y,
+    SIGMA,
+    VOIDS,
+)
 from tactile_graph_likelihood.outlines import Values
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_pads.pad import Pad
 
-ESTIMATED = {"sigma": SIGMA, "voids": VOIDS, "foam": FOAM}
-"""What may be estimated with an object, and its place in a noise vector."""
+ESTIMATED = {
+    "sigma": (SIGMA,),
+    "voids": (VOIDS,),
+    "foam": (FOAM,),
+    "fall": (FALL,),
+    "lean": (LEAN_X, LEAN_Y),
+}
+"""What may be estimated with an object, and its places in a noise vector."""
 
 LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS = 0.05, 1e-3, 0.9
 """What a model is held to: no pad is more even than this, and each element may fail."""
 
 DEVIATIONS = 5.0  # of the converter's noise that hardly any element of a frame exceeds
-SPREADS = {"sigma": 0.4, "voids": 0.8, "foam": 0.7}
-"""Standard deviations of ln sigma, the voids' log odds and ln foam, before a frame is read."""
+SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7}
+"""Standard deviations of ln sigma, the voids' log odds, ln foam, and of the pressure's fall and
+lean (see `pressure`), before a frame is read."""
+
+FALL_GUESSED = 0.5
+"""The middle of the guess: a ball's (Hertz)."""
 
 GUESSED_FOAM = 0.5
 """Pitches; the middle of the guess where foam is estimated and none is given."""
@@ -43,8 +60,8 @@ class Noise:
     foam_cm : float
         Width (standard deviation) over which foam spreads the load.
     estimated : tuple of str
-        Which of sigma, voids and foam are estimated with the object; their values here are then
-        the middle of the guess.
+        Which of sigma, voids, foam, fall and lean are estimated with the object; the values here
+        are then the middle of the guess. A pressure whose fall or lean is not estimated has none.
     """
 
     sigma: float = 0.5
@@ -66,22 +83,28 @@ class Noise:
                 self.strays,
                 math.log(self.least) if self.least > 0.0 else -700.0,
                 foam,
+                FALL_GUESSED if "fall" in self.estimated else 0.0,
+                0.0,
+                0.0,
             ]
         )
 
     @property
     def places(self) -> Places:
         """Which places of the vector are estimated."""
-        return np.array([ESTIMATED[name] for name in self.estimated], dtype=np.int64)
+        found = [place for name in self.estimated for place in ESTIMATED[name]]
+        return np.array(found, dtype=np.int64)
 
     def guess(self, pitch_cm: float) -> Values:
         """Return mean and standard deviation of each estimated coordinate, shape (M, 2)."""
         vector = self.vector(pitch_cm)
-        out = np.empty((len(self.estimated), 2))
-        for k, name in enumerate(self.estimated):
-            value = vector[ESTIMATED[name]]
-            middle = math.log(value / (1.0 - value)) if name == "voids" else math.log(value)
-            out[k] = middle, SPREADS[name]
+        places = self.places
+        out = np.empty((len(places), 2))
+        for k, place in enumerate(places):
+            middle = vector[place]
+            if place < FALL:
+                middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
+            out[k] = middle, SPREADS[place]
         return out
 
 

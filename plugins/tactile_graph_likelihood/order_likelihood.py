@@ -31,9 +31,9 @@ from tactile_graph_likelihood.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.log_posterior import foam_margin
 from tactile_graph_likelihood.outline_prior import log_prior
 from tactile_graph_likelihood.outlines import Values, unknowns
+from tactile_graph_likelihood.shares import foam_margin
 
 Order = NDArray[np.int64]
 

@@ -7,37 +7,22 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.element_terms import States
-from tactile_graph_likelihood.log_posterior import Places, log_likelihood, log_rest
+from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.outlines import ELLIPSE, OVAL, RECTANGLE, Values
 from tactile_graph_likelihood.oval import as_ellipse, to_oval
+from tactile_graph_likelihood.problem import Problem
 
 SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
 
 
 @compiled_as_is
-def widen(
-    kind: int,
-    corners: int,
-    p: Values,
-    top: float,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    covariance: Values,
-) -> None:
+def widen(problem: Problem, p: Values, top: float, covariance: Values) -> None:
     """Widen a covariance, in place, towards each side's other likely places.
 
     Parameters
     ----------
-    kind, corners, p, grid, logs, states, noise, estimated, guess, prior, belief, precision
+    problem, p
         As in `log_posterior`; ``p`` is the most likely point.
     top : float
         Log posterior there.
@@ -49,6 +34,7 @@ def widen(
     Each side of a rectangle, each end of an ellipse's axes, is moved by itself, by up to 1.2
     pitches. The outer product of each move is added, by the square root of how likely it is.
     """
+    kind, grid = problem.kind, problem.grid
     if kind not in (RECTANGLE, ELLIPSE, OVAL):
         return
     at = as_ellipse(p) if kind == OVAL else p
@@ -67,10 +53,10 @@ def widen(
                 to_oval(trial)
                 for k in range(5):
                     move[k] = trial[k] - p[k]
-            here = log_rest(kind, corners, trial, guess, prior, belief, precision)
+            here = log_rest(problem, trial)
             if here == -math.inf:
                 continue
-            here += log_likelihood(kind, corners, trial, grid, logs, states, noise, estimated)
+            here += log_likelihood(problem, trial)
             share = math.exp(FLATTER * min(here - top, 0.0))
             for k in range(5):
                 for m in range(5):

@@ -83,8 +83,8 @@ def dome(share: Values) -> Values:
 
 
 @compiled_as_is
-def trend(residuals: Values, row: int, column: int, domes: Values) -> float:
-    """Return how much residuals lean to a side, or to the rim, in standard deviations.
+def trend(residuals: Values, row: int, column: int, domes: Values) -> tuple[float, float]:
+    """Return how much residuals lean to a side, and fall to the rim, in standard deviations.
 
     Parameters
     ----------
@@ -97,11 +97,10 @@ def trend(residuals: Values, row: int, column: int, domes: Values) -> float:
 
     Notes
     -----
-    Residuals are regressed on row and column, and on what these leave of the dome. The number of
-    residuals times the explained share of their squares, s, is chi squared with k = 2 and k = 1
-    degrees of freedom, and ``sqrt(2 s) - sqrt(2 k - 1)`` nearly normal (R. A. Fisher). The larger
-    of the two is returned: score tests of a load that is tilted, and of one that falls or rises
-    towards the rim.
+    Residuals are regressed on row and column, and on what these leave of the dome: score tests of
+    a load that leans, and of one that falls or rises towards the rim. For the lean, the number of
+    residuals times the explained share of their squares, s, is chi squared with 2 degrees of
+    freedom, and ``sqrt(2 s) - sqrt(3)`` nearly normal (R. A. Fisher).
     """
     means, values = np.zeros(4), np.empty(4)
     matrix, right, root = np.zeros((3, 3)), np.zeros(3), np.zeros((3, 3))
@@ -127,13 +126,11 @@ def trend(residuals: Values, row: int, column: int, domes: Values) -> float:
                         matrix[k, m] += values[k] * values[m]
         if turn == 0:
             if count < FEWEST:
-                return 0.0
+                return 0.0, 0.0
             means /= count
     if squares <= 0.0 or not cholesky(matrix, root):
-        return 0.0
+        return 0.0, 0.0
     squared_length(root, right, values)
     scale = 2.0 * count / squares
     tilt = math.sqrt(scale * (values[0] * values[0] + values[1] * values[1])) - math.sqrt(3.0)
-    towards_rim = math.sqrt(scale) * abs(values[2]) - 1.0
-    larger: float = max(tilt, towards_rim)
-    return larger
+    return tilt, math.sqrt(0.5 * scale) * values[2]

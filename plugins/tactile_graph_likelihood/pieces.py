@@ -6,8 +6,8 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.element_terms import States
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.outlines import Values, unknowns
+from tactile_graph_likelihood.problem import Places, problem_of
 from tactile_graph_likelihood.search import begun
 from tactile_graph_likelihood.several_climb import climbed_softly, climbed_together
 from tactile_graph_likelihood.several_posterior import WIDTH
@@ -48,11 +48,7 @@ def fitted(
     """
     first = unknowns(kind, corners)
     start = np.zeros(first + 1)
-    nothing, none = np.zeros(first), np.zeros((first, first))
-    begun(
-        kind, corners, grid, logs, piece, noise, np.zeros(0, np.int64), np.zeros((0, 2)), prior,
-        nothing, none, table, tries, start,
-    )  # fmt: skip
+    begun(problem_of(kind, corners, grid, logs, piece, noise, prior), table, tries, start)
     kinds, sides, points = np.empty(1, np.int64), np.empty(1, np.int64), np.zeros((1, WIDTH))
     kinds[0], sides[0] = kind, corners
     points[0, : first + 1] = start

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -49,8 +50,11 @@ class Posterior:
         Logarithm of the frame's likelihood under this kind of outline, over that of a bare pad.
     equal_points : float
         How many equally weighted points the weights are worth.
-    surprise, alike : float
-        The two numbers of `misfit`.
+    surprise, alike, lean, fall : float
+        The numbers of `misfit`.
+    pressures : dict of str to float
+        How likely the pressure is even, leaning, falling to the rim, or spread by foam, of what
+        was looked at.
     """
 
     kind: int
@@ -64,11 +68,19 @@ class Posterior:
     equal_points: float
     surprise: float
     alike: float
+    lean: float = -math.inf
+    fall: float = 0.0
+    pressures: Mapping[str, float] = field(default_factory=lambda: {"even": 1.0})
 
     @property
     def fits(self) -> bool:
         """Whether the frame looks like the model's: no great surprise, no pattern left over."""
-        return self.surprise > UNLIKELY and self.alike < ALIKE
+        return self.surprise > UNLIKELY and max(self.alike, self.trend) < ALIKE
+
+    @property
+    def trend(self) -> float:
+        """How much the residuals lean to a side, or fall or rise to the rim."""
+        return max(self.lean, math.sqrt(2.0) * abs(self.fall) - 1.0)
 
     @cached_property
     def reach(self) -> float:

@@ -13,11 +13,11 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.element_terms import States
 from tactile_graph_likelihood.linear import cholesky, squared_length
-from tactile_graph_likelihood.log_posterior import Places, log_likelihood, log_rest
+from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.outlines import DISC, OVAL, Values
 from tactile_graph_likelihood.oval import log_stretch
+from tactile_graph_likelihood.problem import Problem
 
 FREEDOM = 8.0  # of Student's t
 WIDER = 1.3  # the proposal's variance over the posterior's
@@ -162,17 +162,7 @@ def spread_of(points: Values, weights: Values, count: int, mean: Values, matrix:
 
 @compiled_as_is
 def sampled(
-    kind: int,
-    corners: int,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
+    problem: Problem,
     centre: Values,
     covariance: Values,
     table: Values,
@@ -188,7 +178,7 @@ def sampled(
 
     Parameters
     ----------
-    kind, corners, grid, logs, states, noise, estimated, guess, prior, belief, precision
+    problem : Problem
         As in `log_posterior`.
     centre, covariance : ndarray, shape (K,) and (K, K)
         First proposal.
@@ -208,7 +198,7 @@ def sampled(
     (int, float, float)
         Points used, log evidence, number of equal weights; -inf and 0 if no point is possible.
     """
-    n, most = centre.shape[0], table.shape[0]
+    kind, n, most = problem.kind, centre.shape[0], table.shape[0]
     root = np.zeros((n, n))
     centres, roots = np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n))
     levels, drawn = np.empty(PROPOSALS), np.zeros(PROPOSALS)
@@ -243,11 +233,9 @@ def sampled(
                 for m in range(k + 1):
                     place += roots[now, k, m] * table[i, m]
                 points[i, k] = place
-            here = log_rest(kind, corners, points[i], guess, prior, belief, precision)
+            here = log_rest(problem, points[i])
             if here > -math.inf:
-                here += log_likelihood(
-                    kind, corners, points[i], grid, logs, states, noise, estimated
-                )
+                here += log_likelihood(problem, points[i])
                 if kind == OVAL:
                     here += log_stretch(points[i])
             logs_p[i] = here

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.climb import climbed
-from tactile_graph_likelihood.element_terms import STRAYS, States
+from tactile_graph_likelihood.element_terms import STRAYS
 from tactile_graph_likelihood.linear import inverted
-from tactile_graph_likelihood.log_posterior import LN_TWO_PI, Places, log_likelihood, log_rest
+from tactile_graph_likelihood.log_posterior import LN_TWO_PI, log_likelihood, log_rest
 from tactile_graph_likelihood.misfit import misfit
 from tactile_graph_likelihood.other_tops import widen
 from tactile_graph_likelihood.outline_prior import TURN, pulled_in
 from tactile_graph_likelihood.outlines import OVAL, Values, period, sizes, unknowns
 from tactile_graph_likelihood.oval import log_stretch
+from tactile_graph_likelihood.problem import Problem, believed, read_by
 from tactile_graph_likelihood.sampling import sampled
 from tactile_graph_likelihood.start import first_outline, moments, turns
 
@@ -30,38 +32,41 @@ TRIES = 24  # outlines tried around the moments own, in attempts after the first
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
 
-Found = tuple[
-    int, Values, Values, Values, Values, Values, Values, float, float, float, float, float, int
-]
-"""Points used (0: none), most likely point, points, their log posterior, weights, mean,
-covariance, log evidence, number of equal weights, log posterior at the most likely point, the two
-numbers of `misfit`, rounds climbed."""
+
+class Found(NamedTuple):
+    """A posterior as weighted points.
+
+    ``used`` points made it, 0 if no outline is possible; ``likeliest`` is the one with the
+    largest density, ``height`` its log posterior; ``equal`` says how many equally weighted points
+    they are worth; the last four numbers are those of `misfit`.
+    """
+
+    used: int
+    likeliest: Values
+    points: Values
+    weights: Values
+    mean: Values
+    covariance: Values
+    evidence: float
+    equal: float
+    height: float
+    surprise: float
+    alike: float
+    lean: float
+    fall: float
 
 
 @compiled_as_is
-def begun(
-    kind: int,
-    corners: int,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    table: Values,
-    tries: int,
-    p: Values,
-) -> None:
+def begun(problem: Problem, table: Values, tries: int, p: Values) -> None:
     """Write the likeliest of a few outlines around the touched elements' moments into ``p``."""
-    found = moments(grid, logs, states)
+    kind, corners, grid, guess = problem.kind, problem.corners, problem.grid, problem.guess
+    found = moments(grid, problem.logs, problem.states)
     first = unknowns(kind, corners)
     for k in range(guess.shape[0]):
         p[first + 1 + k] = guess[k, 0]
     best, trial = -math.inf, p.copy()
-    loose = prior.copy()
+    loose = problem.prior.copy()
+    near = believed(problem, loose)
     n, pitch = sizes(kind), grid[2]
     ways = turns(kind, corners)
     for t in range(ways + tries):
@@ -74,49 +79,29 @@ def begun(
                     trial[k] += TURN_OFF * table[t, k]
                 else:
                     trial[k] += PLACE_OFF * pitch * table[t, k]
-        pulled_in(kind, corners, trial, prior)
+        pulled_in(kind, corners, trial, problem.prior)
         if period(kind, corners) > 0.0:
             loose[TURN] = trial[2 + n]
-        here = log_rest(kind, corners, trial, guess, loose, belief, precision)
+        here = log_rest(near, trial)
         if here > -math.inf:
-            here += log_likelihood(kind, corners, trial, grid, logs, states, noise, estimated)
+            here += log_likelihood(problem, trial)
         if here > best or t == 0:
             best = here
             p[:] = trial
 
 
 @compiled_as_is
-def _climbed_twice(
-    kind: int,
-    corners: int,
-    p: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    root: Values,
-) -> tuple[float, int]:
+def _climbed_twice(problem: Problem, p: Values, root: Values) -> float:
     """Climb with elements that feel a little beyond their edge, then with the true ones.
 
     Otherwise a touched element that is not covered would not pull at all.
     """
-    soft, strict = grid.copy(), noise.copy()
-    soft[4], soft[5] = SOFT, grid[2]
+    soft, strict = problem.grid.copy(), problem.noise.copy()
+    soft[4], soft[5] = SOFT, problem.grid[2]
     strict[STRAYS] = NO_STRAYS
-    _, first = climbed(
-        kind, corners, p, soft, logs, states, strict, estimated, guess, prior, belief, precision,
-        ROUNDS, ROUGH, root,
-    )  # fmt: skip
-    top, second = climbed(
-        kind, corners, p, grid, logs, states, noise, estimated, guess, prior, belief, precision,
-        ROUNDS, ENOUGH, root,
-    )  # fmt: skip
-    return top, first + second
+    climbed(read_by(problem, soft, strict), p, ROUNDS, ROUGH, root)
+    top, _ = climbed(problem, p, ROUNDS, ENOUGH, root)
+    return top
 
 
 @compiled_as_is
@@ -144,30 +129,14 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
 
 @compiled_as_is
 def topped(
-    kind: int,
-    corners: int,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    table: Values,
-    start: Values,
-    attempts: tuple[int, int],
-    top: float,
-    p: Values,
-    root: Values,
-) -> tuple[float, bool, int]:
+    problem: Problem, table: Values, start: Values, attempts: tuple[int, int], top: float,
+    p: Values, root: Values,
+) -> tuple[float, bool]:  # fmt: skip
     """Write the most likely outline and the root of its information, after some attempts.
 
     Parameters
     ----------
-    kind, corners, grid, logs, states, noise, estimated, guess, prior, belief, precision
-        As in `log_posterior`.
+    problem : Problem
     table : ndarray, shape (N, K)
         As in `sampling.sampled`.
     start : ndarray, shape (0,) or (K,)
@@ -181,76 +150,49 @@ def topped(
 
     Returns
     -------
-    (float, bool, int)
+    (float, bool)
         Log posterior there, -inf where no outline is possible; whether another attempt is worth
-        its time; rounds climbed.
+        its time.
     """
     n = p.shape[0]
     trial, its_root = np.zeros(n), np.zeros((n, n))
-    rounds = 0
     for attempt in range(attempts[0], attempts[1]):
         if attempt == 0 and start.shape[0] == n:
             trial[:] = start
         else:
-            begun(
-                kind, corners, grid, logs, states, noise, estimated, guess, prior, belief,
-                precision, table, attempt * TRIES, trial,
-            )  # fmt: skip
-        here, made = _climbed_twice(
-            kind, corners, trial, grid, logs, states, noise, estimated, guess, prior, belief,
-            precision, its_root,
-        )  # fmt: skip
-        rounds += made
+            begun(problem, table, attempt * TRIES, trial)
+        here = _climbed_twice(problem, trial, its_root)
         again = attempt > 0 and abs(here - top) < SAME
         if here > top:
             top = here
             p[:] = trial
             root[:] = its_root
         if top > -math.inf:
-            surprise, _ = misfit(kind, corners, p, grid, logs, states, noise, estimated)
+            surprise, _, _, _ = misfit(problem, p)
             if surprise > POOR or again:
-                return top, False, rounds
-    return top, attempts[1] < ATTEMPTS, rounds
+                return top, False
+    return top, attempts[1] < ATTEMPTS
 
 
 @compiled_as_is
 def spread_out(
-    kind: int,
-    corners: int,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    table: Values,
-    block: int,
-    worth: float,
-    p: Values,
-    root: Values,
-    top: float,
+    problem: Problem, table: Values, block: int, worth: float, p: Values, root: Values, top: float
 ) -> Found:
-    """Return the posterior around a top, as `topped` gives it; the rounds come out as 0."""
-    n = p.shape[0]
-    near = prior.copy()
-    if period(kind, corners) > 0.0:
+    """Return the posterior around a top, as `topped` gives it."""
+    kind, n = problem.kind, p.shape[0]
+    near = problem.prior.copy()
+    if period(kind, problem.corners) > 0.0:
         near[TURN] = p[2 + sizes(kind)]
+    around = believed(problem, near)
     count = table.shape[0]
     points, logs_p, weights = np.empty((count, n)), np.empty(count), np.empty(count)
     mean, matrix = np.empty(n), np.empty((n, n))
-    surprise, alike, most_likely = 0.0, 0.0, p.copy()
+    surprise, alike, lean, fall, likeliest = 0.0, 0.0, 0.0, 0.0, p.copy()
     covariance = inverted(root)
-    widen(
-        kind, corners, p, top, grid, logs, states, noise, estimated, guess, near, belief,
-        precision, covariance,
-    )  # fmt: skip
+    widen(around, p, top, covariance)
     used, evidence, equal = sampled(
-        kind, corners, grid, logs, states, noise, estimated, guess, near, belief, precision,
-        p, covariance, table, block, worth, points, logs_p, weights, mean, matrix,
-    )  # fmt: skip
+        around, p, covariance, table, block, worth, points, logs_p, weights, mean, matrix
+    )
     if equal <= 0.0:
         used = 0
     if kind == OVAL:
@@ -258,61 +200,32 @@ def spread_out(
     for i in range(used):
         if logs_p[i] > top:
             top = logs_p[i]
-            most_likely[:] = points[i]
+            likeliest[:] = points[i]
     if used > 0:
-        surprise, alike = misfit(kind, corners, mean, grid, logs, states, noise, estimated)
-    return (
-        used, most_likely, points[:used], logs_p[:used], weights[:used], mean, matrix, evidence,
-        equal, top, surprise, alike, 0,
+        surprise, alike, lean, fall = misfit(problem, mean)
+    return Found(
+        used, likeliest, points[:used], weights[:used], mean, matrix, evidence, equal, top,
+        surprise, alike, lean, fall,
     )  # fmt: skip
 
 
 @compiled_as_is
-def searched(
-    kind: int,
-    corners: int,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    estimated: Places,
-    guess: Values,
-    prior: Values,
-    belief: Values,
-    precision: Values,
-    table: Values,
-    block: int,
-    worth: float,
-    start: Values,
-) -> Found:
+def searched(problem: Problem, table: Values, block: int, worth: float, start: Values) -> Found:
     """Return the posterior of one outline.
 
     Parameters
     ----------
-    kind, corners, grid, logs, states, noise, estimated, guess, prior, belief, precision
-        As in `log_posterior`.
+    problem : Problem
     table, block, worth
         As in `sampling.sampled`.
     start : ndarray, shape (0,) or (K,)
         Where to begin; empty for the touched elements' moments.
     """
-    n = unknowns(kind, corners) + 1 + estimated.shape[0]
+    n = unknowns(problem.kind, problem.corners) + 1 + problem.estimated.shape[0]
     p, root = np.zeros(n), np.zeros((n, n))
-    top, _, rounds = topped(
-        kind, corners, grid, logs, states, noise, estimated, guess, prior, belief, precision,
-        table, start, (0, ATTEMPTS), -math.inf, p, root,
-    )  # fmt: skip
+    top, _ = topped(problem, table, start, (0, ATTEMPTS), -math.inf, p, root)
     if top == -math.inf:
-        return (
-            0, p, np.empty((0, n)), np.empty(0), np.empty(0), p, root, top, 0.0, top, 0.0, 0.0,
-            rounds,
+        return Found(
+            0, p, np.empty((0, n)), np.empty(0), p, root, top, 0.0, top, 0.0, 0.0, 0.0, 0.0
         )  # fmt: skip
-    (used, likeliest, points, logs_p, weights, mean, matrix, evidence, equal, top, surprise, alike,
-     _) = spread_out(
-        kind, corners, grid, logs, states, noise, estimated, guess, prior, belief, precision,
-        table, block, worth, p, root, top,
-    )  # fmt: skip
-    return (
-        used, likeliest, points, logs_p, weights, mean, matrix, evidence, equal, top, surprise,
-        alike, rounds,
-    )  # fmt: skip
+    return spread_out(problem, table, block, worth, p, root, top)

@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.climb import STEP, steps_of
 from tactile_graph_likelihood.element_terms import STRAYS, States
+from tactile_graph_likelihood.information import STEP, steps_of
 from tactile_graph_likelihood.linear import cholesky, solved
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.outline_prior import pulled_in
 from tactile_graph_likelihood.outlines import Values, sizes, unknowns
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_likelihood.several_posterior import (
     MIDDLE,
     SPREAD,

@@ -9,9 +9,9 @@ import numpy as np
 
 from tactile_graph_likelihood.cuts import ANGLES, components, cuts
 from tactile_graph_likelihood.element_terms import States
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.outlines import ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.pieces import piece_states
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_likelihood.several_scene import Beside, Found, Scene, joined
 
 LEAST_PIECE = 4

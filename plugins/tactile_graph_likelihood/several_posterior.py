@@ -12,7 +12,6 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.climb import SLIVER, STEP, steps_of
 from tactile_graph_likelihood.covered import Box, blurred, covered, window
 from tactile_graph_likelihood.element_terms import (
     FOAM,
@@ -27,9 +26,12 @@ from tactile_graph_likelihood.element_terms import (
     on_level,
     terms,
 )
-from tactile_graph_likelihood.log_posterior import LN_TWO_PI, Places, foam_margin
+from tactile_graph_likelihood.information import SLIVER, STEP, steps_of
+from tactile_graph_likelihood.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.outline_prior import SMALLEST, TURN, log_prior
 from tactile_graph_likelihood.outlines import REGULAR, Values, period, sizes, unknowns
+from tactile_graph_likelihood.problem import Places
+from tactile_graph_likelihood.shares import foam_margin
 
 WIDTH = 6
 """Columns of a table of points."""

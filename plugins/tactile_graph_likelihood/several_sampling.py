@@ -12,8 +12,8 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.element_terms import States
 from tactile_graph_likelihood.linear import cholesky, squared_length
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.outlines import Values, period, sizes
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_likelihood.sampling import (
     FEWEST,
     FREEDOM,

@@ -10,9 +10,9 @@ import numpy as np
 
 from tactile_graph_likelihood.element_terms import ON, States
 from tactile_graph_likelihood.even_points import even_points
-from tactile_graph_likelihood.log_posterior import Places
 from tactile_graph_likelihood.outlines import Values, unknowns
 from tactile_graph_likelihood.pieces import fitted
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_likelihood.readings import Readings
 from tactile_graph_likelihood.several_climb import climbed_together, log_mass
 from tactile_graph_likelihood.several_posterior import WIDTH, add_outline

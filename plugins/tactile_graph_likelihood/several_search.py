@@ -10,7 +10,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.element_terms import States
-from tactile_graph_likelihood.log_posterior import Places
+from tactile_graph_likelihood.problem import Places
 from tactile_graph_likelihood.several_parts import SPARE, Parts
 from tactile_graph_likelihood.several_scene import Beside, Found, joined
 

@@ -5,14 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE, drawn, kernel_arguments
+from helpers_likelihood import NOISE, drawn, problem_and_point
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
-from tactile_graph_likelihood.climb import information
 from tactile_graph_likelihood.covered import covered
 from tactile_graph_likelihood.element_terms import UNKNOWN
+from tactile_graph_likelihood.information import information
 from tactile_graph_likelihood.log_posterior import log_likelihood, log_likelihoods
 from tactile_graph_likelihood.noise import Noise
 from tactile_graph_likelihood.outlines import packed
+from tactile_graph_likelihood.problem import problem_of
 from tactile_graph_likelihood.readings import readings_of
 
 SHAPES = [
@@ -21,38 +22,36 @@ SHAPES = [
     Rectangle(10.0, 9.0, 14.0, 3.0, -0.4),
     Polygon(np.array([[3.0, 3.0], [13.0, 2.5], [9.0, 11.0]])),
 ]
-FIXED = np.zeros(0, np.int64)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
 def test_twins_agree(shape):
-    args = (*kernel_arguments(shape, 60.0, np.random.default_rng(2)), FIXED)
-    expected = log_likelihood.reference(*args)
-    assert log_likelihood.compiled(*args) == pytest.approx(expected, rel=1e-10)
-    many = log_likelihoods.compiled(*args[:2], args[2][None], *args[3:])
+    problem, p = problem_and_point(shape, 60.0, np.random.default_rng(2))
+    expected = log_likelihood.reference(problem, p)
+    assert log_likelihood.compiled(problem, p) == pytest.approx(expected, rel=1e-10)
+    many = log_likelihoods.compiled(problem, p[None])
     assert many == pytest.approx([expected], rel=1e-10)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
-@pytest.mark.parametrize("estimated", [(), ("sigma", "voids"), ("foam",)])
+@pytest.mark.parametrize("estimated", [(), ("sigma", "voids"), ("foam",), ("fall", "lean")])
 def test_slopes_are_those_of_the_likelihood(shape, estimated):
     noise = Noise(0.48, 0.16, 1e-9, 5.0, 0.6 if "foam" in estimated else 0.0, estimated)
-    kind, corners, p, *rest = kernel_arguments(shape, 60.0, np.random.default_rng(2), noise)
-    places = noise.places
+    problem, p = problem_and_point(shape, 60.0, np.random.default_rng(2), noise)
     # slivers pull no harder than a tenth of an element: left out here
-    share = covered.reference(kind, corners, p, rest[0], (0, 0, 16, 16))
-    if not estimated or estimated == ("sigma", "voids"):
-        rest[2][share < 0.15] = UNKNOWN
+    share = covered.reference(problem.kind, problem.corners, p, problem.grid, (0, 0, 16, 16))
+    if "foam" not in estimated:
+        problem.states[share < (0.3 if "fall" in estimated else 0.15)] = UNKNOWN
     p = np.append(p, noise.guess(1.3)[:, 0])
     n = len(p)
     slope, matrix = np.empty(n), np.empty((n, n))
-    information.compiled(kind, corners, p, *rest, places, slope, matrix)
+    information.compiled(problem, p, slope, matrix)
     for k in range(n):
         up, down = p.copy(), p.copy()
         up[k] += 1e-4
         down[k] -= 1e-4
-        rise = log_likelihood.compiled(kind, corners, up, *rest, places)
-        rise -= log_likelihood.compiled(kind, corners, down, *rest, places)
+        rise = log_likelihood.compiled(problem, up)
+        rise -= log_likelihood.compiled(problem, down)
         scale = math.sqrt(matrix[k, k])
         # coverage is differenced over a finite step: right to a part of its own spread
         assert slope[k] / scale == pytest.approx(
@@ -62,11 +61,11 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
 
 
 def test_information_is_the_same_plain_and_compiled():
-    kind, corners, p, *rest = kernel_arguments(SHAPES[2], 60.0, np.random.default_rng(2))
+    problem, p = problem_and_point(SHAPES[2], 60.0, np.random.default_rng(2))
     found = []
     for which in (information.reference, information.compiled):
         slope, matrix = np.empty(6), np.empty((6, 6))
-        which(kind, corners, p, *rest, FIXED, slope, matrix)
+        which(problem, p, slope, matrix)
         found.append(np.vstack([slope, matrix]))
     np.testing.assert_allclose(*found, rtol=1e-6, atol=1e-6)
 
@@ -80,8 +79,7 @@ def test_the_truth_is_likelier_than_what_is_half_a_centimetre_off():
         points = np.append(p, math.log(60.0)) + np.array(
             [[0, 0, 0, 0], [0.5, 0, 0, 0], [0, -0.5, 0, 0], [0, 0, 0.5, 0], [0, 0, -0.5, 0]]
         )
-        found = log_likelihoods.compiled(
-            kind, corners, points, *readings[:3], NOISE.vector(1.3), FIXED
-        )
+        problem = problem_of(kind, corners, *readings[:3], NOISE.vector(1.3), np.zeros(9))
+        found = log_likelihoods.compiled(problem, points)
         ahead += found.argmax() == 0
     assert ahead >= 8

@@ -13,6 +13,7 @@ from tactile_graph_likelihood.element_terms import OFF, ON
 from tactile_graph_likelihood.log_posterior import log_likelihood
 from tactile_graph_likelihood.misfit import misfit
 from tactile_graph_likelihood.outlines import DISC, RECTANGLE, REGULAR
+from tactile_graph_likelihood.problem import problem_of
 from tactile_graph_likelihood.several_climb import climbed_together
 from tactile_graph_likelihood.several_misfit import misfit_of_load
 from tactile_graph_likelihood.several_posterior import (
@@ -55,7 +56,7 @@ def test_one_outline_adds_what_the_single_likelihood_says():
     for k in (0, 1):
         at = slice(k, k + 1)
         alone = log_likelihood.call(
-            int(KINDS[k]), 0, POINTS[k], GRID, logs, states, VECTOR, np.zeros(0, np.int64)
+            problem_of(int(KINDS[k]), 0, GRID, logs, states, VECTOR, PRIOR), POINTS[k]
         )
         own = gain.call(KINDS[at], CORNERS[at], POINTS[at], BARE, BARE, GRID, logs, states, VECTOR)
         assert own == pytest.approx(alone, abs=1e-9)
@@ -153,7 +154,8 @@ def test_the_surprise_of_one_outline_is_the_single_fits():
     logs, states = image(6)
     load, share = BARE.copy(), BARE.copy()
     add_outline.call(RECTANGLE, 0, POINTS[1], GRID, VECTOR, load, share)
-    alone = misfit.call(RECTANGLE, 0, POINTS[1], GRID, logs, states, VECTOR, np.zeros(0, np.int64))
+    problem = problem_of(RECTANGLE, 0, GRID, logs, states, VECTOR, PRIOR)
+    alone = misfit.call(problem, POINTS[1])
     found, _ = misfit_of_load.call(load, 6, logs, states, VECTOR)
     assert found == pytest.approx(alone[0])
 
