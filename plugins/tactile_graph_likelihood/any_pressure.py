@@ -25,6 +25,10 @@ neighbours the model takes for their own, so its evidence comes out too large.""
 LOOK = 1.5
 """Lean and fall of the residuals, in standard deviations, from which on a fit is worth its time."""
 
+HOPELESS = 2.0
+"""Nats by which the evidence of a rough fit may fall behind an even face's and still be looked at:
+with `CHANCES` against it, it would have a share of 2 % at most."""
+
 WIDER = 0.15
 """By how much a falling pressure's outline is larger than an even one's that looks like it."""
 
@@ -66,8 +70,11 @@ class AnyPressure:
             begin = np.append(even.most_likely, FIRST[part])
             if part == "fall":
                 begin[2 : 2 + sizes.call(self.even.kind)] *= 1.0 + WIDER
+            top = model.top_of(readings, start=begin)
+            if top.evidence < even.log_evidence - HOPELESS:
+                continue
             try:
-                yield part, model.posterior_of(readings, begin)
+                yield part, model.around(readings, top)
             except Degenerate:
                 continue
 

@@ -129,7 +129,7 @@ class Model:
         found = searched.call(problem, table, BLOCK, self.precision**-2, begin)
         return self._answer(readings, problem.kind, found)
 
-    def top_of(self, readings: Readings, before: Top | None = None) -> Top:
+    def top_of(self, readings: Readings, before: Top | None = None, start: Start = None) -> Top:
         """Return the most likely outline, by one attempt, or two more after an earlier one."""
         problem = self._problem(readings, None)
         table = self._table(problem)
@@ -140,7 +140,8 @@ class Model:
         else:
             attempts = 1, ATTEMPTS
         p, root = before.p.copy(), before.root.copy()
-        height, unsure = topped.call(problem, table, NO_START, attempts, before.height, p, root)
+        begin = self._begin(start, readings, problem)
+        height, unsure = topped.call(problem, table, begin, attempts, before.height, p, root)
         possible = height > -math.inf
         evidence = height + log_volume.call(problem.kind, p, root) if possible else height
         return Top(evidence, height, p, root, unsure)
