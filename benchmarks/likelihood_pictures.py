@@ -2,7 +2,8 @@
 
     python benchmarks/likelihood_pictures.py [-o docs/pictures] [--scenes 100]
 
-Writes likelihood-forward.png, -posterior.png, -bound.png and -calibration.png; about two minutes.
+Writes likelihood-forward.png, -posterior.png, -pressure.png, -bound.png and -calibration.png; about
+two minutes.
 """
 
 from __future__ import annotations
@@ -218,6 +219,77 @@ def calibration(folder: Path, scenes: int) -> None:
     save(figure, folder / "likelihood-calibration.png")
 
 
+def pressures(folder: Path, scenes: int) -> None:
+    """Draw pressures, what an even face leaves over under a ball, and errors with and without."""
+    figure, (first, second, third) = plt.subplots(
+        1, 3, figsize=(13, 3.9), layout="constrained", width_ratios=(1, 0.9, 1.7)
+    )
+    r = np.linspace(-1.0, 1.0, 401)[1:-1]
+    for fall, label in ((0.0, "even"), (0.5, "fall ½: ball, elastic pad"), (1.0, "fall 1: soft")):
+        first.plot(r, (1.0 + fall) * (1.0 - r * r) ** fall, label=label)
+    first.plot(r, np.exp(0.8 * r), "--", label="lean 0.8")
+    first.set(xlabel="distance from the middle over the radius", ylim=(0.0, 2.9))
+    first.set_ylabel("pressure over its mean")
+    first.legend(fontsize=8, loc="upper left")
+    first.grid(alpha=0.3)
+    left_over(second)
+    kinds = ("as designed", "weight off centre", "ball on an elastic pad", "ball on a soft layer")
+    kinds = (*kinds, "foam, half a cell")
+    ways = {
+        "circle-3": (load("circle-3"), OLD),
+        "an even face": (load("circle-likelihood").with_settings({"circle.pressure": "even"}), ""),
+        "any pressure": (load("circle-likelihood"), FOUND),
+    }
+    at = np.arange(len(kinds))
+    for k, (name, (pipeline, colour)) in enumerate(ways.items()):
+        run, off = pipeline.runner(), []
+        for kind in kinds:
+            seen = [(run(f).get("circle"), f.truth) for f in frames(*KINDS[kind], scenes, 29)]
+            off.append(np.mean([errors(a, t[0].shape) for a, t in seen if a and t], axis=0))
+        for j, shade in enumerate((1.0, 0.45)):
+            place = at + 0.28 * (k - 1) + 0.06 - 0.12 * (1 - j)
+            label = f"{name}: {('centre', 'radius')[j]}"
+            third.bar(place, np.array(off)[:, j], 0.12, color=colour or "0.4", alpha=shade,
+                      label=label)  # fmt: skip
+        print(f"{name:14s}", np.round(off, 3).tolist())
+    third.set_xticks(
+        at, [k.replace(", ", ",\n").replace(" on ", "\non ") for k in kinds], fontsize=8
+    )
+    third.set_ylabel("mean error, cm")
+    third.grid(alpha=0.3, axis="y")
+    third.legend(fontsize=8)
+    save(figure, folder / "likelihood-pressure.png")
+
+
+def left_over(axes: Any) -> None:
+    """Draw the residuals that an even face leaves over under a ball."""
+    frame = list(frames(*KINDS["ball on an elastic pad"], 2, 8))[1]
+    assert frame.truth is not None
+    run = load("circle-likelihood").with_settings({"circle.pressure": "even"})
+    result = run.runner(only=["grams", "circle"])(frame)
+    found, grams, true = result["circle"], result["grams"].values, frame.truth[0].shape
+    share = coverage_cm2(Circle(found.x_cm, found.y_cm, found.radius_cm), PAD) / PAD.element_cm**2
+    s = float(np.exp(found.posterior.mean[3]))
+    seen = (grams > 0.0) & (share > 0.05)
+    u = np.log(np.where(seen, grams, 1.0) / np.where(seen, s * share, 1.0)) / SIGMA
+    width, height = PAD.size_cm
+    half = 0.5 * PAD.gap_cm
+    axes.set_facecolor("0.85")
+    picture = axes.imshow(
+        np.ma.masked_where(~seen, u), extent=(-half, width + half, height + half, -half),
+        cmap="RdBu_r", vmin=-3, vmax=3,
+    )  # fmt: skip
+    axes.figure.colorbar(picture, ax=axes, shrink=0.8, label="u, standard deviations")
+    outline(axes, true, TRUTH, "--", "true outline")
+    outline(axes, found, "0.4", "-", "an even face")
+    full = load("circle-likelihood").runner()(frame)["circle"]
+    outline(axes, full, FOUND, "-", "any pressure")
+    around([axes], true)
+    axes.set(title="one ball: what an even face leaves over", xlabel="x, cm", ylabel="y, cm")
+    axes.title.set_fontsize(9)
+    axes.legend(fontsize=8, loc="lower right")
+
+
 def save(figure: Any, path: Path) -> None:
     figure.savefig(path, dpi=90)
     plt.close(figure)
@@ -236,6 +308,7 @@ def main() -> None:
     plt.switch_backend("Agg")
     forward(chosen.output, chosen.seed)
     cloud(chosen.output, chosen.seed)
+    pressures(chosen.output, chosen.scenes)
     calibration(chosen.output, 2 * chosen.scenes)
     against_bound(chosen.output, chosen.scenes, chosen.steps)
 
