@@ -9,8 +9,9 @@ from typing import Any, Literal, get_origin
 
 import numpy as np
 
-from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
+from tactile_graph.errors import one_of
+from tactile_graph.pipeline.references import ConditionError, resolve_reference
+from tactile_graph.pipeline.wiring import Ref, arms, public_fields
 from tactile_graph.steps.signature import list_item, type_name
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
@@ -24,17 +25,6 @@ _ALLOWED = (
     ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.In, ast.NotIn,
     ast.Call, ast.Name, ast.Attribute, ast.Constant, ast.Load, ast.Tuple, ast.List,
 )  # fmt: skip
-
-
-class ConditionError(Exception):
-    """What is wrong with a condition, in words, and at which character of it."""
-
-    def __init__(self, message: str, offset: int = 0, named: str = "") -> None:
-        super().__init__(message)
-        self.message = message
-        self.offset = offset
-        self.named = named
-        """The named condition it is in, if it is not in the text itself."""
 
 
 @dataclass(frozen=True)
@@ -203,7 +193,7 @@ class _Compiler:
                 return self.parse(self.named[root], (*within, root))
             except ConditionError as error:
                 raise ConditionError(error.message, offset, error.named or root) from None
-        ref, kind = resolve(chain, self.types, list(self.named), offset)
+        ref, kind = resolve_reference(chain, self.types, list(self.named), offset)
         if ref not in self.refs:
             self.refs.append(ref)
             self.kinds.append(kind)
@@ -235,41 +225,6 @@ class _Compiler:
             f"{self.refs[int(node.id[1:])]} is a {type_name(kind)} "  # type: ignore[attr-defined]
             f"and cannot be compared{_fields_hint(kind)}"
         )
-
-
-def resolve(
-    chain: tuple[str, ...], types: Mapping[str, Any], also: list[str], offset: int = 0
-) -> tuple[Ref, Any]:
-    """Return the reference and the type of ``node.field…``.
-
-    Raises
-    ------
-    ConditionError
-        If the node is unknown or its type has no such field.
-    """
-    name, rest = chain[0], chain[1:]
-    if len(chain) > 1 and ".".join(chain[:2]) in types:
-        name, rest = ".".join(chain[:2]), chain[2:]
-    if name not in types:
-        inner = [n.partition(".")[2] for n in types if n.startswith(f"{name}.")]
-        if inner:
-            given = f"{chain[1]!r} is none of them" if len(chain) > 1 else "name one"
-            raise ConditionError(f"{name!r} has the outputs {one_of(inner)}; {given}", offset)
-        known = [*types, *also]
-        hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
-        raise ConditionError(f"no node named {name!r}{hint}", offset)
-    kind = types[name]
-    for i, field in enumerate(rest):
-        found = None if field.startswith("_") else field_type(kind, field)
-        if found is None:
-            known = list(public_fields(kind))
-            hint = did_you_mean(field, known) or f"; it has: {one_of(known)}"
-            owner = ".".join((name, *rest[:i]))
-            raise ConditionError(
-                f"{owner} ({type_name(kind)}) has no field {field!r}{hint}", offset
-            )
-        kind = found
-    return Ref(name, rest), kind
 
 
 def _chain(node: ast.expr) -> tuple[str, ...] | None:

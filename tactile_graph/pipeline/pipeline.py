@@ -9,8 +9,8 @@ from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError
-from tactile_graph.pipeline import conditions
 from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind, node_key
+from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.signature import Signature
@@ -184,13 +184,13 @@ class Pipeline:
         if text in self.types:
             return Ref(text)
         try:
-            return conditions.resolve(tuple(text.split(".")), self.types, [])[0]
-        except conditions.ConditionError as error:
+            return resolve_reference(tuple(text.split(".")), self.types, [])[0]
+        except ConditionError as error:
             raise UsageError(f"pipeline {self.name!r}: {error.message}") from None
 
     def type_of(self, ref: Ref) -> Any:
         """Return the type of the value at a reference."""
-        return conditions.resolve((ref.node, *ref.path), self.types, [])[1]
+        return resolve_reference((ref.node, *ref.path), self.types, [])[1]
 
     @cached_property
     def key(self) -> str:

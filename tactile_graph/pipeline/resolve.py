@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 from numpy.random import default_rng
@@ -14,51 +14,32 @@ from tactile_graph.errors import (
     Problem,
     TactileGraphError,
     UsageError,
-    did_you_mean,
-    one_of,
 )
-from tactile_graph.pipeline import conditions
 from tactile_graph.pipeline.bind import bind_inputs
-from tactile_graph.pipeline.conditions import ConditionError, Guard, compile_condition
+from tactile_graph.pipeline.checks import check_conditions, check_overrides
+from tactile_graph.pipeline.conditions import Guard, compile_condition
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 from tactile_graph.pipeline.facts import (
     output_facts,
     source_facts,
     step_troubles,
 )
-from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule, Node, NodeKind, node_key
+from tactile_graph.pipeline.node import FRAME, Binding, Facts, Node, NodeKind, node_key
 from tactile_graph.pipeline.order import resolvable_order
 from tactile_graph.pipeline.pipeline import Pipeline, Source, plain
+from tactile_graph.pipeline.references import ConditionError, resolve_reference
+from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
-from tactile_graph.wires import Frame
 
 Overrides = Mapping[str, Mapping[str, Any]]
 """Node name -> settings that replace the file's."""
 
 Loader = Callable[[str, Overrides], Pipeline]
 """Loads the pipeline a ``use`` names, with overrides for its nodes."""
-
-
-@dataclass
-class Scope:
-    """What is known while a graph is being resolved."""
-
-    types: dict[str, Any] = field(default_factory=lambda: {FRAME: Frame})
-    facts: dict[str, Facts] = field(default_factory=dict)
-    nodes: dict[str, Node] = field(default_factory=dict)
-    keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME})
-    rules: list[FrameRule] = field(default_factory=list)
-
-    def add(self, node: Node) -> None:
-        """Enter a resolved node."""
-        self.nodes[node.name] = node
-        self.types[node.name] = node.output
-        self.facts[node.name] = node.facts
-        self.keys[node.name] = node.key
 
 
 class Resolver:
@@ -113,8 +94,8 @@ class Resolver:
             except TactileGraphError as error:
                 self.problem(declared, str(error))
                 self.scope.types.setdefault(name, UNKNOWN)
-        self._check_conditions()
-        self._check_overrides()
+        check_conditions(self)
+        check_overrides(self)
         outputs = self._outputs()
         d = self.declaration
         return Pipeline(
@@ -179,13 +160,6 @@ class Resolver:
             self.condition_errors.append((declared, error))
             return None
 
-    def _condition_problem(
-        self, message: str, text: str, error: ConditionError, *path: str | int
-    ) -> None:
-        mark = self.document.mark(*path)
-        column = mark.column + (error.offset if "\n" not in text else 0)
-        self.document.problem_at(Mark(mark.file, mark.line, column), message)
-
     def mark(self, declared: NodeDeclaration) -> Mark:
         """Return where the file names the node."""
         return self.document.mark(*declared.path, key=True)
@@ -201,7 +175,7 @@ class Resolver:
     def ref(self, declared: NodeDeclaration, text: str, *path: str | int) -> tuple[Ref, Any] | None:
         """Return reference and type for ``node.field``, or report what is wrong with it."""
         try:
-            ref, kind = conditions.resolve(tuple(text.split(".")), self.scope.types, [])
+            ref, kind = resolve_reference(tuple(text.split(".")), self.scope.types, [])
         except ConditionError as error:
             self.problem(declared, f": {error.message}", *path)
             return None
@@ -302,47 +276,11 @@ class Resolver:
 
     # -- the whole ---------------------------------------------------------------------------
 
-    def _check_conditions(self) -> None:
-        """Report conditions that are wrong, used or not; a named one only where it stands."""
-        named = self.declaration.conditions
-        errors: dict[str, ConditionError] = {}
-        for name, text in named.items():
-            try:
-                compile_condition(text, self.scope.types, named)
-            except ConditionError as error:
-                errors[name] = error
-        broken = {n for n, e in errors.items() if e.named in ("", n)}
-        for name, wrong in errors.items():
-            if name in broken or wrong.named not in broken:
-                what = f"condition {name!r}: {wrong.message}"
-                self._condition_problem(what, named[name], wrong, "conditions", name)
-        for node, wrong in self.condition_errors:
-            if wrong.named not in broken:
-                what = f"node {node.name!r}, 'when': {wrong.message}"
-                self._condition_problem(what, node.when or "", wrong, *node.path, "when")
-
-    def _check_overrides(self) -> None:
-        nodes = self.declaration.nodes
-        for name, settings in self.overrides.items():
-            head, slash, _ = name.partition("/")
-            if head in nodes and (nodes[head].use if slash else nodes[head].step):
-                continue  # checked with the node, or inside the embedded pipeline
-            where = f"setting {name}.{next(iter(settings), '')}: "
-            if name in nodes:
-                inside = f"; inside it they are named {name}/node.setting"
-                text = f"node {name!r} is no step and has no settings" + (
-                    inside if nodes[name].use else "")  # fmt: skip
-            else:
-                known = {*nodes, *(n for n in self.scope.nodes if "." not in n)}
-                hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
-                text = f"no node named {name!r}{hint}"
-            self.document.problems.append(Problem(None, where + text))
-
     def _outputs(self) -> dict[str, Ref]:
         outputs: dict[str, Ref] = {}
         for i, text in enumerate(self.declaration.outputs):
             try:
-                ref, _ = conditions.resolve(tuple(text.split(".")), self.scope.types, [])
+                ref, _ = resolve_reference(tuple(text.split(".")), self.scope.types, [])
             except ConditionError as error:
                 self.document.problem(f"output {text!r}: {error.message}", "outputs", i)
                 continue

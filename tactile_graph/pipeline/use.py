@@ -6,13 +6,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import TactileGraphError
-from tactile_graph.pipeline import conditions
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import inline_nodes, map_node
 from tactile_graph.pipeline.facts import embedded_rules, ref_facts
 from tactile_graph.pipeline.node import FRAME, node_key
 from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.references import resolve_reference
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def _input(resolver: Resolver, declared: NodeDeclaration) -> Ref | None:
 def _map(
     resolver: Resolver, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
 ) -> None:
-    kind = conditions.resolve((ref.node, *ref.path), resolver.scope.types, [])[1]
+    kind = resolve_reference((ref.node, *ref.path), resolver.scope.types, [])[1]
     node, trouble = map_node(declared.name, inner, ref, kind, guard, resolver.mark(declared))
     if trouble:
         resolver.problem(declared, f": {trouble}", "in")
@@ -79,7 +79,7 @@ def _map(
 def _inline(
     resolver: Resolver, declared: NodeDeclaration, inner: Pipeline, ref: Ref, guard: Guard | None
 ) -> None:
-    kind = conditions.resolve((ref.node, *ref.path), resolver.scope.types, [])[1]
+    kind = resolve_reference((ref.node, *ref.path), resolver.scope.types, [])[1]
     outer = ref_facts(ref, resolver.scope.facts)
     mark = resolver.mark(declared)
     nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, mark, outer)
