@@ -50,7 +50,7 @@ class Posterior:
         Logarithm of the frame's likelihood under this kind of outline, over that of a bare pad.
     equal_points : float
         How many equally weighted points the weights are worth.
-    surprise, alike, lean, fall : float
+    surprise, neighbours, lean, fall : float
         The numbers of `misfit`.
     pressures : dict of str to float
         How likely the pressure is even, leaning, falling to the rim, or spread by foam, of what
@@ -67,7 +67,7 @@ class Posterior:
     log_evidence: float
     equal_points: float
     surprise: float
-    alike: float
+    neighbours: float
     lean: float = -math.inf
     fall: float = 0.0
     pressures: Mapping[str, float] = field(default_factory=lambda: {"even": 1.0})
@@ -75,12 +75,12 @@ class Posterior:
     @property
     def fits(self) -> bool:
         """Whether the frame looks like the model's: no great surprise, no pattern left over."""
-        return self.surprise > UNLIKELY and max(self.alike, self.trend) < ALIKE
+        return self.surprise > UNLIKELY and self.alike < ALIKE
 
     @property
-    def trend(self) -> float:
-        """How much the residuals lean to a side, or fall or rise to the rim."""
-        return max(self.lean, math.sqrt(2.0) * abs(self.fall) - 1.0)
+    def alike(self) -> float:
+        """The largest of the residuals' patterns: neighbours alike, a lean, a fall or a rise."""
+        return max(self.neighbours, self.lean, math.sqrt(2.0) * abs(self.fall) - 1.0)
 
     @cached_property
     def reach(self) -> float:

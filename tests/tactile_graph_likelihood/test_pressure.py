@@ -1,6 +1,7 @@
 """Faces that press unevenly: the pressure's mean over elements, and what is made of it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,14 @@ import pytest
 from helpers_likelihood import GRID, NOISE
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
-from tactile_graph_likelihood.any_pressure import CHANCES, LOOK, AnyPressure, mixed
+from tactile_graph_likelihood.any_pressure import (
+    ALIKE,
+    LOOK,
+    ROUND,
+    AnyPressure,
+    chances,
+    mixed,
+)
 from tactile_graph_likelihood.element_terms import FALL, LEAN_X, LEAN_Y
 from tactile_graph_likelihood.fit_footprint import FitFootprint
 from tactile_graph_likelihood.footprint_of import FootprintDisc, FootprintRectangle
@@ -16,6 +24,8 @@ from tactile_graph_likelihood.model import Model
 from tactile_graph_likelihood.outlines import DISC, packed
 from tactile_graph_likelihood.pressure import press
 from tactile_graph_likelihood.shares import shares_of
+from tactile_graph_pads.contact import spread
+from tactile_graph_pads.geometry import Geometry
 
 FINE = 48
 SHAPES = [
@@ -154,7 +164,7 @@ def test_only_what_leaves_a_pattern_is_looked_at_again():
     again = 0
     for _, image in frames(40, 4):
         found, even = AnyPressure(model).posterior(image), model.posterior(image)
-        looked = even.lean >= LOOK or even.fall >= LOOK
+        looked = max(even.lean, even.fall) >= LOOK or even.neighbours >= ALIKE
         again += looked
         if not looked:
             assert set(found.pressures) == {"even"}
@@ -167,11 +177,11 @@ def test_the_mixture_is_weighed_by_evidence_and_what_was_thought_before():
     _, image = next(frames(1, 5, fall=0.6))
     any_pressure = AnyPressure(model)
     even, fall = model.posterior(image), any_pressure.others["fall"].posterior(image)
-    found = mixed(even, {"fall": fall})
-    odds = math.log(CHANCES["fall"] / (1.0 - CHANCES["fall"]))
+    found = mixed(even, {"fall": fall}, {"fall": 0.2})
+    odds = math.log(0.2 / 0.8)
     odds += fall.log_evidence - even.log_evidence
     share = found.pressures["fall"]
-    assert math.log(share / (1.0 - share)) == pytest.approx(odds, abs=1e-9)
+    assert math.log(share / (1.0 - share)) == pytest.approx(odds, rel=1e-7)
     assert sum(found.pressures.values()) == pytest.approx(1.0)
     assert found.weights.sum() == pytest.approx(1.0)
     expected = share * fall.mean[:4] + (1.0 - share) * even.mean
@@ -197,3 +207,37 @@ def test_a_fall_can_be_estimated_with_any_object(step):
     assert 0.1 < found.posterior.mean[6] < 0.9
     assert np.abs(found.posterior.mean[7:]).max() < 0.6
     assert found.length_cm == pytest.approx(15.0, abs=1.0)
+
+
+def test_foam_is_told_from_a_ball_by_what_neighbours_share():
+    model = Model(DISC, noise=NOISE, whole=True)
+    _, image = next(frames(1, 5, fall=0.6))
+    any_pressure = AnyPressure(model)
+    even = model.posterior(image)
+    others = {part: any_pressure.others[part].posterior(image) for part in ("fall", "foam")}
+    foam = []
+    for neighbours in (-1.0, 0.0, 2.0, 3.5, 30.0):
+        others["fall"] = replace(others["fall"], neighbours=neighbours)
+        found = chances(even, others)
+        assert found["fall"] + found["foam"] == pytest.approx(ROUND)
+        foam.append(found["foam"] / ROUND)
+    assert foam == sorted(foam)
+    assert foam[1] < 0.02
+    assert foam[3] > 0.8
+    assert chances(even, {"foam": others["foam"]}) == {"foam": ROUND}
+
+
+def test_foam_nobody_told_of_is_found():
+    steps = [FootprintDisc(pressure=p, **SETTINGS) for p in ("any", "even")]
+    pad = Geometry()
+    soft = [
+        (disc, image.with_values(np.where(blurred < 5.0, 0.0, blurred)))
+        for disc, image in frames(30, 7)
+        if (blurred := spread(image.values, pad, 1.0)).any()
+    ]
+    found, even = (errors(step, soft) for step in steps)
+    assert found[1] < 0.5 * even[1]
+    images = [image for _, image in soft]
+    assert np.mean([steps[0](image).posterior.pressures.get("foam", 0.0) for image in images]) > 0.7
+    balls = [image for _, image in frames(30, 8, fall=0.5)]
+    assert np.mean([steps[0](image).posterior.pressures.get("foam", 0.0) for image in balls]) < 0.1
