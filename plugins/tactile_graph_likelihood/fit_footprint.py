@@ -70,8 +70,8 @@ class FitFootprint:
     corners of a free polygon uniform over all convex ones. The posterior is looked at from its
     top by adaptive importance sampling.
 
-    With ``pressure: any`` the answer is a mixture: even with a probability of 0.7 beforehand,
-    leaning 0.15, falling to the rim 0.13, through foam 0.02. See `pressure` for what these mean.
+    With ``pressure: any`` the answer is a mixture: an even face with a probability of 0.7
+    beforehand, a leaning one 0.15, one whose load falls to its rim, round or through foam, 0.15.
 
     ``fits`` is False where the readings are less likely than the model's own by more than three
     standard deviations, or where the gains left over have a pattern: neighbours alike, a lean to
