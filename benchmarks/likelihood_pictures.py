@@ -257,7 +257,8 @@ def pressures(folder: Path, scenes: int) -> None:
     )
     third.set_ylabel("mean error, cm")
     third.grid(alpha=0.3, axis="y")
-    third.legend(fontsize=8)
+    third.set_ylim(0.0, 1.3 * third.get_ylim()[1])
+    third.legend(fontsize=8, ncols=3, loc="upper left")
     save(figure, folder / "likelihood-pressure.png")
 
 
