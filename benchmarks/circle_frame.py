@@ -2,7 +2,8 @@
 
 Run with ``python benchmarks/circle_frame.py``. Needs the ``bench`` extra for OpenCV; peers that
 are not installed are left out. All contestants see the same two frames in turn (so that nothing
-is reused), and all run in the same process, round by round.
+is reused), and all run in the same process, round by round. Times of frames are processor time:
+what the engine adds is a small difference, which on a shared machine would drown otherwise.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).parent))
-from rounds import print_table, time_side_by_side
+from rounds import Timed, print_table
+from suite_parts.rounds_of import in_turn
 
 from tactile_graph import Frame, Pipeline, load, loads
 from tactile_graph.compiled import have_compiler, warm_up
@@ -131,6 +133,8 @@ def one_frame() -> None:
     both, runner = frames(), load("circle-3").runner()
     images: list[object] = [f.image.values for f in both]
     ours = {
+        # Not shown: whoever follows the scikit-image script is a quarter slower for it.
+        "first": cycled(load("circle-3").runner(), list(both)),  # type: ignore[arg-type]
         "tactile-graph, circle-3": cycled(runner, list(both)),  # type: ignore[arg-type]
         "the same steps by hand": cycled(by_hand(True), list(both)),  # type: ignore[arg-type]
         "circle-3 without conditions": cycled(
@@ -140,6 +144,10 @@ def one_frame() -> None:
         "the same by hand": cycled(by_hand(False), list(both)),  # type: ignore[arg-type]
         "tactile-graph, an empty pad": cycled(
             load("circle-3").runner(),
+            list(empty_frames()),  # type: ignore[arg-type]
+        ),
+        "the same steps by hand, an empty pad": cycled(
+            by_hand(True),
             list(empty_frames()),  # type: ignore[arg-type]
         ),
         "tactile-graph, the same frame again": lambda: runner(both[0]),
@@ -158,7 +166,8 @@ def one_frame() -> None:
         if find_spec(module):
             x, y, r = make()(both[0].image.values)
             print(f"  {name.split()[0]:14} {x:.3f} {y:.3f} {r:.3f}")
-    times = time_side_by_side(ours)
+    spent_us = in_turn(ours, rounds=101, round_s=0.005, most_s=1.0)
+    times = {name: Timed(name, rounds) for name, rounds in spent_us.items() if name != "first"}
     print_table(times, "OpenCV script" if "OpenCV script" in times else "scikit-image script")
     full = times["tactile-graph, circle-3"]
     for what, with_it, without in (
@@ -168,8 +177,11 @@ def one_frame() -> None:
         pairs = zip(times[with_it].rounds_us, times[without].rounds_us, strict=True)
         extra = statistics.median(a - b for a, b in pairs) / 7
         print(f"engine cost per node, {what}: {extra:.2f} us (7 nodes, target 1 us)")
-    share = times["tactile-graph, an empty pad"].ratio_to(full)[0]
-    print(f"an empty pad takes {100 * share:.1f} % of a full frame (target 10 %)")
+    share, alone = (
+        100 * times[name].ratio_to(full)[0]
+        for name in ("tactile-graph, an empty pad", "the same steps by hand, an empty pad")
+    )
+    print(f"an empty pad takes {share:.1f} % of a full frame (target 10 %), by hand {alone:.1f} %")
     spent = [runner(both[i % 2]).times_us for i in range(400)]
     medians = {n: statistics.median(t[n] for t in spent) for n in spent[0]}
     print("per node, us: " + ", ".join(f"{n} {t:.2f}" for n, t in medians.items()) + "\n")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
+from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.steps.signature import Kind
 from tactile_graph.wires.frame import Frame
 
 if TYPE_CHECKING:
@@ -28,15 +31,39 @@ def make_call(node: Node, runner: Runner) -> Call:
     return _for_each(node, call, runner) if node.each else call
 
 
+def _bound(node: Node, **injected: Any) -> Call:
+    """Return a node's step with its settings, as what costs least to call in every frame."""
+    step: Any = node.bound(**injected)
+    assert node.signature is not None
+    call: Call = step.__call__ if node.signature.kind is Kind.CLASS else step
+    return _with_defaults(call) if isinstance(call, partial) else call
+
+
+def _with_defaults(step: partial[Any]) -> Call:
+    """Return a copy of the function with the settings as its defaults: no call between the two."""
+    function = step.func
+    if not isinstance(function, FunctionType) or step.args:
+        return step
+    code = function.__code__
+    by_keyword = code.co_varnames[code.co_argcount : code.co_argcount + code.co_kwonlyargcount]
+    if not step.keywords.keys() <= set(by_keyword):  # a wrapper that hands on what it gets
+        return step
+    copy = FunctionType(
+        code, function.__globals__, function.__name__, function.__defaults__, function.__closure__
+    )
+    copy.__kwdefaults__ = {**(function.__kwdefaults__ or {}), **step.keywords}
+    return copy
+
+
 def _seeded(node: Node, runner: Runner) -> Call:
     signature = node.signature
     assert signature is not None
     if not signature.rng:
-        return node.bound()
+        return _bound(node)
     words = [runner.seed, int(node.key[:16], 16)]
     if signature.rng_at_init:
-        return node.bound(**{signature.rng: np.random.default_rng(words)})
-    step = node.bound()
+        return _bound(node, **{signature.rng: np.random.default_rng(words)})
+    step = _bound(node)
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.
@@ -88,8 +115,6 @@ def _for_each(node: Node, step: Call, runner: Runner) -> Call:
 
 
 def _try(step: Call, arguments: dict[str, Any], name: str) -> Any:
-    from tactile_graph.engine.program import failure
-
     try:
         return step(**arguments)
     except Exception as error:

@@ -98,6 +98,17 @@ class Done:
 DONE = Done()
 
 
+def failure(name: str, error: Exception, values: tuple[Any, ...], what: str) -> Failed:
+    """Return the outcome of a failed node; the traceback is dropped, its place kept."""
+    where = raised_at(error)
+    return Failed(name, error.with_traceback(None), where, describe_inputs(values), what)
+
+
+def nothing_returned(name: str, what: str) -> Failed:
+    """Return the outcome of a step that returned None though it promises a value."""
+    return Failed(name, TypeError("the step returned None though it promises a value"), step=what)
+
+
 def describe_inputs(values: tuple[Any, ...]) -> str:
     """Return types and shapes of what went into a step, for error reports."""
     return ", ".join(_describe(v) for v in values)

@@ -58,6 +58,8 @@ class Plan:
     rules: tuple[FrameRule, ...] = ()
     refs: dict[Ref, int] = field(default_factory=dict)
     """The slot of each node and of each view of one; two views may share their name."""
+    image: int = 0
+    """The slot of the frame's image; 0 if nothing reads it. Like the frame it is there at once."""
 
     @property
     def n_slots(self) -> int:
@@ -109,9 +111,12 @@ class _Planner:
         self.asked = {name: pipeline.outputs.get(name) or pipeline.ref(name) for name in asked}
         self.items: list[Item] = []
         self.by_ref: dict[Ref, int] = {}
+        self.given: set[int] = set()
 
     def plan(self) -> Plan:
         self._number()
+        image = self.by_ref.get(Ref(FRAME, ("image",)), 0)
+        self.given = {0, image}
         for item in self.items:
             self._wire(item)
         for item in self.items:
@@ -125,12 +130,13 @@ class _Planner:
             self.pipeline,
             {name: self.by_ref[r] for name, r in self.asked.items()},
             self.items,
-            tuple(sorted(main - {0})),
+            tuple(sorted(main - self.given)),
             {i.name: i.slot for i in self.items},
             tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
             self._depth(),
             tuple(r for r in self.pipeline.frame_rules if r.node in used),
             self.by_ref,
+            image,
         )
 
     # -- slots -------------------------------------------------------------------------------
@@ -241,9 +247,14 @@ class _Planner:
             item = self.items[slot]
             if item.view is not None:
                 waiting.append(item.source)
-            waiting += item.guard
+            waiting += [self._before_guard(s) for s in item.guard]
             waiting += [s for port in self._eager_inputs(item) for s in port.slots]
         return found
+
+    def _before_guard(self, slot: int) -> int:
+        """Return what must be settled before a guard reads a slot: it takes fields itself."""
+        item = self.items[slot]
+        return slot if item.view is None else item.source
 
     def _place_lazies(self, item: Item, main: set[int]) -> None:
         eager = {id(port) for port in self._eager_inputs(item)}
@@ -251,7 +262,7 @@ class _Planner:
             return
         done = main | self._eager(item.guard)
         for port in item.inputs:
-            needed = self._eager(port.slots) - done - {0}
+            needed = self._eager(port.slots) - done - self.given
             if id(port) not in eager:
                 # Eager inputs stand beside the item in whatever block it runs in.
                 port.lazy = tuple(sorted(needed))

@@ -6,28 +6,17 @@ nanoseconds. An operation settles one slot; nothing here walks a graph or looks 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from time import perf_counter_ns as clock
+from operator import itemgetter
 from typing import Any
 
 from tactile_graph.engine.freeze import FROZEN, freeze
-from tactile_graph.engine.outcome import (
-    DONE,
-    NO_VALUE,
-    Failed,
-    Skipped,
-    describe_inputs,
-    raised_at,
-)
-from tactile_graph.engine.plan import Input, Item, Plan
+from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
+from tactile_graph.engine.plan import Item, Plan
+from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.node import Node, NodeKind
-
-State = list[Any]
-Operation = Callable[[State], None]
-Block = tuple[tuple[int, Operation], ...]
-"""What runs only when an item needs it: slots and the operations that settle them."""
-Call = Callable[..., Any]
 
 
 def make_program(plan: Plan, call_of: Callable[[Node], Call], blank: State) -> list[Operation]:
@@ -42,9 +31,28 @@ def make_program(plan: Plan, call_of: Callable[[Node], Call], blank: State) -> l
         The state every frame starts from; outcomes that depend on no frame are kept in it.
     """
     operations: list[Operation] = [_nothing] * plan.n_slots
+    times_placed = _times_placed(plan)
     for item in plan.items[1:]:
-        operations[item.slot] = _operation(item, plan, call_of, operations, blank)
+        operation = _operation(item, plan, call_of, operations, blank)
+        if times_placed[item.slot] > 1:
+            operation = _unless_settled(item.slot, operation)
+        operations[item.slot] = operation
     return [operations[slot] for slot in plan.main]
+
+
+def _times_placed(plan: Plan) -> Counter[int]:
+    """Return in how many places each slot may be settled; most are needed in one only."""
+    placed = Counter(plan.main)
+    for item in plan.items:
+        placed.update(_guard_fields(item, plan))
+        for port in item.inputs:
+            placed.update(port.lazy)
+    return placed
+
+
+def _guard_fields(item: Item, plan: Plan) -> list[int]:
+    """Return the fields of nodes that an item's guard reads: it settles them itself."""
+    return [slot for slot in item.guard if plan.items[slot].view is not None]
 
 
 def _nothing(state: State) -> None:
@@ -62,16 +70,18 @@ def _operation(
         return _view(item)
     node = item.node
     assert node is not None
-    blocks = [tuple((s, operations[s]) for s in port.lazy) for port in item.inputs]
+    blocks = [tuple(operations[s] for s in port.lazy) for port in item.inputs]
     time = plan.n_slots + item.slot
     if node.kind is NodeKind.FIRST_OF:
         body = _first_of(item, blocks)
     elif node.kind is NodeKind.PASS:
         body = _pass(item, blocks)
     else:
-        body = _call(item, node, call_of(node), time, blocks)
+        body = step_operation(item, node, call_of(node), time, blocks)
     if node.guard is not None:
-        body = _guarded(item, node.guard, body)
+        own = _guard_fields(item, plan)
+        reads = [operations[s] if s in own else itemgetter(s) for s in item.guard]
+        body = _guarded(item, node.guard, reads, body)
     if item.constant:
         return _once(item.slot, time, body, blank)
     return body
@@ -88,38 +98,51 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
     return operation
 
 
+def _unless_settled(slot: int, body: Operation) -> Operation:
+    """Settle a slot that several may ask for, where none of them came before."""
+
+    def operation(state: State) -> Any:
+        if state[slot] is None:
+            body(state)
+        return state[slot]
+
+    return operation
+
+
 def _view(item: Item) -> Operation:
+    """Settle a field of a node, and return it: a guard reads it by this."""
     assert item.view is not None
     get, source, slot = item.view.getter, item.source, item.slot
     assert get is not None
 
-    def operation(state: State) -> None:
+    def operation(state: State) -> Any:
         value = state[source]
         if value.__class__ in NO_VALUE:
             state[slot] = value
-            return
+            return value
         try:
             field = get(value)
         except Exception as error:
-            state[slot] = failure(item.name, error, (value,), "")
-            return
+            state[slot] = field = failure(item.name, error, (value,), "")
+            return field
         if field is None:
             field = Skipped(item.name, f"{item.name} is not known")
         elif field.__class__ not in FROZEN:
             field = freeze(field)  # a property may make its array anew
         state[slot] = field
+        return field
 
     return operation
 
 
-def _guarded(item: Item, guard: Guard, body: Operation) -> Operation:
-    slots, slot, name, holds = item.guard, item.slot, item.name, guard.function
-    reason = guard.reason
-    if len(slots) == 1:
-        only = slots[0]
+def _guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:
+    """Run the body where the guard holds; ``reads`` give what it is about."""
+    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
+    if len(reads) == 1:
+        read = reads[0]
 
         def operation_of_one(state: State) -> None:
-            value = state[only]
+            value = read(state)
             if value.__class__ in NO_VALUE:
                 state[slot] = value
                 return
@@ -134,7 +157,7 @@ def _guarded(item: Item, guard: Guard, body: Operation) -> Operation:
         return operation_of_one
 
     def operation(state: State) -> None:
-        values = tuple([state[s] for s in slots])
+        values = tuple([read(state) for read in reads])
         for value in values:
             if value.__class__ in NO_VALUE:
                 state[slot] = value
@@ -157,9 +180,8 @@ def _first_of(item: Item, blocks: list[Block]) -> Operation:
     def operation(state: State) -> None:
         failed = value = None
         for source, block in choices:
-            for lazy, settle in block:
-                if state[lazy] is None:
-                    settle(state)
+            for settle in block:
+                settle(state)
             value = state[source]
             if value.__class__ not in NO_VALUE:
                 state[slot] = value
@@ -175,163 +197,8 @@ def _pass(item: Item, blocks: list[Block]) -> Operation:
     slot, source, block = item.slot, item.inputs[0].slots[0], blocks[0]
 
     def operation(state: State) -> None:
-        for lazy, settle in block:
-            if state[lazy] is None:
-                settle(state)
+        for settle in block:
+            settle(state)
         state[slot] = state[source]
 
     return operation
-
-
-def _call(item: Item, node: Node, call: Call, time: int, blocks: list[Block]) -> Operation:
-    plain = not node.each and not node.is_sink
-    if plain and all(p.required and not p.collects for p in item.inputs):
-        if len(item.inputs) == 1:
-            return _after(blocks[0], _call_of_one(item, node, call, time))
-        if len(item.inputs) == 2 and not any(blocks):
-            return _call_of_two(item, node, call, time)
-    return _call_of_any(item, node, call, time, blocks)
-
-
-def _after(block: Block, body: Operation) -> Operation:
-    if not block:
-        return body
-
-    def operation(state: State) -> None:
-        for lazy, settle in block:
-            if state[lazy] is None:
-                settle(state)
-        body(state)
-
-    return operation
-
-
-def _call_of_one(item: Item, node: Node, call: Call, time: int) -> Operation:
-    slot, source, name = item.slot, item.inputs[0].slots[0], item.name
-    what = step_label(node)
-
-    def operation(state: State) -> None:
-        value = state[source]
-        if value.__class__ in NO_VALUE:
-            state[slot] = value
-            return
-        start = clock()
-        try:
-            result = call(value)
-        except Exception as error:
-            state[time] = clock() - start
-            state[slot] = failure(name, error, (value,), what)
-            return
-        state[time] = clock() - start
-        if result.__class__ not in FROZEN:
-            result = freeze(result) if result is not None else nothing_returned(name, what)
-        state[slot] = result
-
-    return operation
-
-
-def _call_of_two(item: Item, node: Node, call: Call, time: int) -> Operation:
-    slot, name = item.slot, item.name
-    first_source, second_source = (p.slots[0] for p in item.inputs)
-    first_name, second_name = (p.name for p in item.inputs)
-    assert node.signature is not None
-    what = step_label(node)
-    by_name = [p.name for p in node.signature.ports[:2]] != [first_name, second_name]
-    if by_name:
-        inner = call
-        call = lambda a, b: inner(**{first_name: a, second_name: b})  # noqa: E731
-
-    def operation(state: State) -> None:
-        first = state[first_source]
-        if first.__class__ in NO_VALUE:
-            state[slot] = first
-            return
-        second = state[second_source]
-        if second.__class__ in NO_VALUE:
-            state[slot] = second
-            return
-        start = clock()
-        try:
-            result = call(first, second)
-        except Exception as error:
-            state[time] = clock() - start
-            state[slot] = failure(name, error, (first, second), what)
-            return
-        state[time] = clock() - start
-        if result.__class__ not in FROZEN:
-            result = freeze(result) if result is not None else nothing_returned(name, what)
-        state[slot] = result
-
-    return operation
-
-
-def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Block]) -> Operation:
-    """Any number of ports, optional ones, lists, sinks, and lazy inputs settled in turn."""
-    slot, name, what = item.slot, item.name, step_label(node)
-    ports = list(zip(item.inputs, blocks, strict=True))
-    sink = node.is_sink
-
-    def operation(state: State) -> None:
-        arguments: dict[str, Any] = {}
-        lacking: Any = None
-        for port, block in ports:
-            for lazy, settle in block:
-                if state[lazy] is None:
-                    settle(state)
-            value = _collected(state, port, name) if port.collects else state[port.slots[0]]
-            if value.__class__ in NO_VALUE:
-                if value.__class__ is Failed:
-                    # It stops its dependants only: what else is asked for still runs (and keeps
-                    # its state in step), whether it stands before this block or in it.
-                    lacking = lacking or value
-                elif port.required:
-                    lacking = lacking or value
-                    break
-                value = port.default
-            arguments[port.name] = value
-        if lacking is not None:
-            state[slot] = lacking
-            return
-        start = clock()
-        try:
-            result = call(**arguments)
-        except Exception as error:
-            state[time] = clock() - start
-            state[slot] = failure(name, error, tuple(arguments.values()), what)
-            return
-        state[time] = clock() - start
-        if result.__class__ not in FROZEN and result.__class__ not in NO_VALUE:
-            result = freeze(result) if result is not None else None
-            if result is None:
-                result = DONE if sink else nothing_returned(name, what)
-        state[slot] = result
-
-    return operation
-
-
-def _collected(state: State, port: Input, name: str) -> Any:
-    """Return the items of a list port without those skipped; a failed one fails the list."""
-    values = [state[s] for s in port.slots]
-    for value in values:
-        if value.__class__ is Failed:
-            return value
-    kept = tuple([v for v in values if v.__class__ is not Skipped])
-    return kept or Skipped(values[0].origin, f"every item of {port.name!r} was skipped")
-
-
-def failure(name: str, error: Exception, values: tuple[Any, ...], what: str) -> Failed:
-    """Return the outcome of a failed node; the traceback is dropped, its place kept."""
-    where = raised_at(error)
-    return Failed(name, error.with_traceback(None), where, describe_inputs(values), what)
-
-
-def nothing_returned(name: str, what: str) -> Failed:
-    """Return the outcome of a step that returned None though it promises a value."""
-    return Failed(name, TypeError("the step returned None though it promises a value"), step=what)
-
-
-def step_label(node: Node) -> str:
-    """Return how errors name a node's step: its name and the module it comes from."""
-    if node.signature is None:
-        return node.what
-    return f"step {node.signature.name} of {node.signature.target.__module__}"

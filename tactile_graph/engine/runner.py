@@ -45,6 +45,7 @@ class Runner:
         self._blank: list[Any] = [None] * n + [0] * n + [(), None]
         self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
         self._repeatable = self.plan.repeatable
+        self._image = self.plan.image
         self._last: tuple[bytes, Result] | None = None
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
@@ -91,6 +92,7 @@ class Runner:
                 return last[1].again(frame)
         self.frame = frame
         state = self._blank.copy()
+        state[self._image] = image  # where nothing reads it, the frame takes its place
         state[0] = frame
         for settle in self._operations:
             settle(state)
@@ -161,7 +163,7 @@ def _broken(rule: FrameRule, image: Image) -> str:
 
 
 def _make_room(depth: int) -> None:
-    """Let lazy blocks nest as deep as the plan does; each level takes up to three calls."""
+    """Let lazy blocks nest as deep as the plan does; each level takes up to four calls."""
     needed = 4 * depth + 1000
     if depth > 100 and sys.getrecursionlimit() < needed:
         sys.setrecursionlimit(needed)
