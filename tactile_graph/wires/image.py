@@ -95,7 +95,7 @@ class Image(_Gridded):
         quantity: str = "raw",
         valid: NDArray[np.bool_] | None = None,
     ) -> None:
-        values.setflags(False)  # by position: by keyword it takes five times as long
+        values.setflags(False)  # by keyword it takes twice as long
         if valid is not None:
             valid.setflags(False)
         _set_values(self, values)
