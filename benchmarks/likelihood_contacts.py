@@ -10,7 +10,8 @@ not known, so the likelihood estimates foam and sigma with the outline. What hov
 little: readings below a share of a contact's largest count as nothing, in three variants.
 
 ``leaning`` adds the skewness of the readings (see ``lean_contacts``) to what is fitted, for every
-localiser alike: what hovers beside a contact draws all of them along.
+localiser alike: what hovers beside a contact draws all of them along. The last tables say how much
+of the error all localisers share, and what a stated deviation that does not know of it must add.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from panel import CELLS, PITCH_CM, Seen, interval, off_cells, place
+from shared_errors import added, told_alike
 
 from tactile_graph import Frame, load, loads
 from tactile_graph.compiled import warm_up
@@ -37,11 +39,13 @@ from tactile_graph_likelihood.fit_footprint import FitFootprint
 from tactile_graph_likelihood.footprint_by_order import FootprintByOrder
 from tactile_graph_likelihood.learned_noise import learned_noise
 from tactile_graph_likelihood.likely import Likely, likely
+from tactile_graph_likelihood.outlines import unknowns
 from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import score_objects
 
 Reals = NDArray[np.float64]
 MARGIN = 3
+PLAIN, SHARPENED = "plain intensity centroid", "sharpened"
 DISC = "disc, from 35% of peak"
 SHOWS_FROM = 15.0
 """Counts; three times the panel's noise of an untouched cell."""
@@ -109,7 +113,8 @@ def likelihoods() -> dict[str, Callable[[Image], Likely]]:
         "disc, from 15 counts": fit_from(0.0, "disc", foam),
         **{f"disc, from {s:.0%} of peak": fit_from(s, "disc", foam) for s in (0.2, 0.35, 0.5)},
         "ellipse, from 35% of peak": fit_from(0.35, "ellipse", foam),
-        "the same, no foam": fit_from(0.35, "ellipse", ["sigma"]),
+        "disc, falling, from 35%": fit_from(0.35, "disc", [*foam, "fall"]),
+        "disc, leaning, from 35%": fit_from(0.35, "disc", [*foam, "lean"]),
         "ellipse by order, from 35%": by_order,
     }
 
@@ -143,10 +148,7 @@ def look(paths: list[Path]) -> tuple[list[Row], dict[str, list[float]]]:
             assert frame.truth is not None
             for i, j, _ in score_objects(frame, sharp, gate_cm=1.0).pairs:
                 true = frame.truth[i].shape
-                centres = {
-                    "plain intensity centroid": place(plain[j]),
-                    "sharpened": place(sharp[j]),
-                }
+                centres = {PLAIN: place(plain[j]), SHARPENED: place(sharp[j])}
                 image = cut_out(frame.image, plain, j)
                 seen = outlines(Frame(image, 0, 0.0))
                 for name in ("circle", "ellipse"):
@@ -164,30 +166,23 @@ def look(paths: list[Path]) -> tuple[list[Row], dict[str, list[float]]]:
                     centres[name] = to_panel(found)
                     posteriors[name] = said(found)
                 (x, y), (u, v) = place(sharp[j]), place(upright[j])
-                rows.append(
-                    Row(
-                        number,
-                        (*place(true), true.area_cm2),
-                        (x - u, y - v),
-                        centres,
-                        image,
-                        posteriors,
-                    )  # type: ignore[arg-type]
-                )
+                truth = (*place(true), true.area_cm2)  # type: ignore[arg-type]
+                rows.append(Row(number, truth, (x - u, y - v), centres, image, posteriors))
     return rows, times
 
 
 def said(found: Likely) -> tuple[float, bool, float]:
     """Return the centre's stated deviation, whether it fits, and the foam's width."""
     posterior, side = found.posterior, float(PITCH_CM[0])
-    foam = float(np.exp(posterior.mean[-1])) if len(posterior.mean) > 5 else 0.0
+    first = unknowns.call(posterior.kind, posterior.corners)  # then ln s, ln sigma, ln foam
+    foam = float(np.exp(posterior.mean[first + 2])) if len(posterior.mean) > first + 2 else 0.0
     return posterior.centre_std_cm / side, posterior.fits, foam
 
 
 def seen_by(rows: list[Row], name: str) -> Seen:
     """Return the contacts that a localiser answered, as `panel` takes them."""
     kept = [r for r in rows if name in r.centres]
-    names = ("plain intensity centroid", name)
+    names = (PLAIN, name)
     return Seen(
         np.unique([r.recording for r in kept], return_inverse=True)[1],
         np.array([r.true[:2] for r in kept]),
@@ -206,16 +201,14 @@ def table(rows: list[Row]) -> None:
             print(f"{alignment}{', leaning' if leaning else ''}")
             for name in names:
                 seen = seen_by(rows, name)
-                plain, _ = off_cells(
-                    seen, seen.centres["plain intensity centroid"], alignment, leaning
-                )
+                plain, _ = off_cells(seen, seen.centres[PLAIN], alignment, leaning)
                 off, leans = off_cells(seen, seen.centres[name], alignment, leaning)
 
                 def less(k: NDArray[np.int64], off: Reals = off, plain: Reals = plain) -> float:
                     return float(np.median(off[k]) - np.median(plain[k]))
 
                 text = f"  {name:28s} {np.median(off):6.3f} {off.mean():6.3f}"
-                if name != "plain intensity centroid":
+                if name != PLAIN:
                     low, high = interval(seen, less)
                     text += f"  {less(np.arange(len(off))):+.3f} ({low:+.3f} to {high:+.3f})"
                 if leaning:
@@ -256,15 +249,20 @@ def main() -> None:
     print(f"{len(paths)} recordings of {CELLS[0]} by {CELLS[1]} cells, {len(rows)} contacts")
     table(rows)
     print("\nstated deviation of the centre, cells; error over it (affine, leaning), root mean")
-    print("square; share that fits; ms")
+    print("square; what it lacks, and error over it and share within 90 % once that is added;")
+    print("share that fits; ms")
     for name, taken in times.items():
         stds, fits, _ = zip(*(r.said[name] for r in rows if name in r.said), strict=True)
-        off, _ = off_cells(seen_by(rows, name), seen_by(rows, name).centres[name], "affine", True)
+        seen = seen_by(rows, name)
+        off, _ = off_cells(seen, seen.centres[name], "affine", True)
         over = np.sqrt(np.mean(np.square(off / np.array(stds))))
+        lacks, then, within = added(seen, off, np.array(stds))
         print(
-            f"  {name:28s} {np.median(stds):6.3f} {over:6.2f} {np.mean(fits):7.1%}"
-            f" {statistics.median(taken):6.2f}"
+            f"  {name:28s} {np.median(stds):6.3f} {over:6.2f} {lacks:6.3f} {then:5.2f}"
+            f" {within:6.1%} {np.mean(fits):7.1%} {statistics.median(taken):6.2f}"
         )
+    names = dict.fromkeys(n for r in rows for n in r.centres)
+    told_alike({n: seen_by(rows, n) for n in names if all(n in r.centres for r in rows)}, SHARPENED)
     learned(rows)
 
 
