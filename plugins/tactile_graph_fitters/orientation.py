@@ -42,6 +42,16 @@ class Orientation(NamedTuple):
         """Angle in (-90, 90] degrees."""
         return printed_angle_deg(self.angle_rad)
 
+    @property
+    def angle_std_deg(self) -> float:
+        """``angle_std_rad`` in degrees."""
+        return math.degrees(self.angle_std_rad)
+
+
+# Beside the class: a NamedTuple would take it for a field.
+Orientation.columns_shown = (  # type: ignore[attr-defined]
+    "angle_deg", "x_cm", "y_cm", "elongation", "angle_std_deg", "ambiguous")  # fmt: skip
+
 
 def orientation(
     footprint: Mask | Points,

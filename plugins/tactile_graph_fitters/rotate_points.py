@@ -27,8 +27,8 @@ def rotate_points(points: Points, axis: Orientation) -> Points:
 
     Notes
     -----
-    Thesis 4.3.5, equation 4.6, with its angle taken the other way round: the matrix as printed
-    turns by +theta, so that it takes -theta to bring an axis at theta along x.
+    Thesis 4.3.5, equation 4.6. In pad coordinates, where y runs down, the matrix as printed turns
+    clockwise as seen and so brings an axis at theta along x; where y runs up, it takes -theta.
     """
     cos, sin = math.cos(axis.angle_rad), math.sin(axis.angle_rad)
     xy = points.xy_cm.astype(np.float64, copy=False)

@@ -68,7 +68,7 @@ class Posterior:
     equal_points: float
     surprise: float
     neighbours: float
-    lean: float = -math.inf
+    lean: float = 0.0
     fall: float = 0.0
     pressures: Mapping[str, float] = field(default_factory=lambda: {"even": 1.0})
 

@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt, Len
 from numpy.typing import NDArray
 from pydantic import Field
 
+from tactile_graph.files import write_whole
 from tactile_graph_pads.calibration_curves import Isotonic, Polynomial, PowerLaw
 from tactile_graph_pads.pad import read_file
 from tactile_graph_pads.records import inline, read_record
@@ -248,12 +249,7 @@ def write_calibration(path: str | Path, calibration: Calibration) -> None:
     path : str or Path
     calibration : Calibration
     """
-    import os
-
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.part")
-    temporary.write_text(calibration_text(calibration), encoding="utf-8")
-    os.replace(temporary, path)
+    write_whole(path, calibration_text(calibration))
 
 
 def calibration_text(calibration: Calibration) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tactile_graph.errors import UsageError, one_of
+from tactile_graph.files import check_target, whole_file
 from tactile_graph_pads.calibration import Calibration
 
 if TYPE_CHECKING:
@@ -43,8 +44,7 @@ def check_picture(path: str | Path) -> Path:
     path = Path(path)
     if path.suffix.lower() not in FORMATS:
         raise UsageError(f"--plot {path}: its name must end in {one_of(FORMATS)}")
-    if not path.parent.is_dir():
-        raise UsageError(f"--plot {path}: there is no folder {str(path.parent)!r}")
+    check_target("--plot", path)
     return path
 
 
@@ -99,4 +99,16 @@ def save_calibration_plot(path: str | Path, calibration: Calibration) -> None:
     axes = figure.subplots()
     draw_calibration(axes, calibration)
     axes.set_title(calibration.about or "Calibration")
-    figure.savefig(check_picture(path))
+    save_figure(figure, check_picture(path))
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a figure in the format its name says, whole or not at all.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure
+    path : Path
+    """
+    with whole_file(path) as file:
+        figure.savefig(file, format=path.suffix.lower().lstrip("."))

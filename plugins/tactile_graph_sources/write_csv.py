@@ -8,6 +8,7 @@ from itertools import chain
 from pathlib import Path
 
 from tactile_graph.errors import DataError
+from tactile_graph.files import whole_file
 from tactile_graph.wires.frame import Frame
 
 
@@ -15,8 +16,8 @@ def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     """Return the number of frames written to ``path``, which appears whole or not at all.
 
     The table keeps values, frame numbers and times (where the first frame has one), and says
-    shape, pitch and quantity in a comment; cells that are not valid become ``nan``. Truth, device
-    time and gaps have no place in it.
+    shape, pitch, origin and quantity in a comment, which `recording` reads back; cells that are
+    not valid become ``nan``. Truth, device time and gaps have no place in it.
 
     Parameters
     ----------
@@ -28,24 +29,19 @@ def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     ------
     DataError
         If there is no frame, a frame is of another shape, or a time is missing.
+    UsageError
+        If the file cannot be written.
     """
     it = iter(frames)
     first = next(it, None)
     if first is None:
         raise DataError(str(path), "there is no frame to write")
-    target = Path(path)
-    beside = target.with_name(f".{target.name}.part")
     n = 0
-    try:
-        with beside.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(_head(first))
-            for frame in chain([first], it):
-                file.write(_line(target, frame, n, first))
-                n += 1
-        beside.replace(target)
-    except BaseException:
-        beside.unlink(missing_ok=True)
-        raise
+    with whole_file(path) as file:
+        file.write(_head(first).encode())
+        for frame in chain([first], it):
+            file.write(_line(Path(path), frame, n, first).encode())
+            n += 1
     return n
 
 
@@ -55,7 +51,7 @@ def _head(first: Frame) -> str:
     names = ["frame", *(["time_s"] if first.time_s is not None else []), *cells]
     about = (
         f"# {image.rows} rows, {image.columns} columns, pitch {image.pitch_cm} cm, "
-        f"{image.quantity}; cells row by row\n"
+        f"origin {image.origin_cm} cm, {image.quantity}; cells row by row\n"
     )
     return about + ",".join(names) + "\n"
 

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers_rectangles import covered, off_rad, points, rectangle_xy, seeds, some_rectangle, turned
+from tactile_graph.engine.rows import scalars
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask, Points, Rectangle
 from tactile_graph_fitters.orientation import (
@@ -26,6 +27,14 @@ def test_points_of_an_outline_give_its_centre_and_direction(seed):
     assert (found.x_cm, found.y_cm) == pytest.approx((truth.x_cm, truth.y_cm), abs=0.05)
     assert off_rad(found.angle_rad, truth.angle_rad) < 0.02
     assert found.angle_deg == pytest.approx(math.degrees(found.angle_rad))
+
+
+def test_tables_show_angles_in_degrees():
+    found = orientation(points(rectangle_xy(Rectangle(5.0, 5.0, 8.0, 3.0, 0.5), 400)))
+    row = scalars("axis", found)
+    assert row["axis.angle_deg"] == pytest.approx(math.degrees(found.angle_rad))
+    assert row["axis.angle_std_deg"] == pytest.approx(math.degrees(found.angle_std_rad))
+    assert not [name for name in row if name.endswith("_rad")]
 
 
 @pytest.mark.parametrize("degrees", [-75, -30, 0, 30, 45, 90])

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from tactile_graph_thesis.catalogue import chosen, items
 from tactile_graph_thesis.items import noise_blocks
+from tactile_graph_thesis.items.rectangle_stages import lone_cells, rectangle_frame, with_strays
 from tactile_graph_thesis.making import outcomes
+from tactile_graph_thesis.measure.stages import stages
 from tactile_graph_thesis.work import Work
 
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
@@ -72,6 +76,27 @@ def test_the_convex_hull_betters_the_radius(work: Work) -> None:
     finding = outcome.made.findings[0]
     assert "dramatically" in finding.thesis
     assert finding.holds
+
+
+def test_the_comparison_is_tried_on_a_footprint_that_has_noise_points(work: Work) -> None:
+    frame = with_strays(rectangle_frame(work), work.seed)
+    result = stages("rectangle-1", frame, work.seed)
+    before, after = lone_cells(result["footprint"]), lone_cells(result["clean"])
+    assert before >= 3
+    assert after < before
+    read = rectangle_frame(work).image.values
+    on = read >= 0.01
+    np.testing.assert_array_equal(frame.image.values[on], read[on])
+
+
+def test_hulls_of_areas_a_fifth_apart_are_not_called_very_similar(work: Work) -> None:
+    (outcome,) = outcomes(chosen(("figure-5.14",)), work)
+    assert outcome.made is not None
+    (finding,) = outcome.made.findings
+    areas = [float(n) for n in re.findall(r"(\d+)(?: and| cm²)", finding.found)]
+    assert len(areas) == 4
+    close = all(0.9 < a / b < 1.0 / 0.9 for a, b in zip(areas[::2], areas[1::2], strict=True))
+    assert finding.holds == close
 
 
 def test_the_seed_decides_everything() -> None:

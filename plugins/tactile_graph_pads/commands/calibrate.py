@@ -76,6 +76,7 @@ def calibrate(
     many loads: its frames say their own.
     """
     from tactile_graph.errors import UsageError
+    from tactile_graph.files import check_target
     from tactile_graph_pads.calibration import Provenance, write_calibration
     from tactile_graph_pads.calibration_fit import calibrated, fitted_g
     from tactile_graph_pads.calibration_lists import parse_loaded, read_loads
@@ -84,8 +85,8 @@ def calibrate(
 
     if plot is not None:
         check_picture(plot)
-    if output is not None and not output.parent.is_dir():
-        raise UsageError(f"-o {output}: there is no folder {str(output.parent)!r}")
+    if output is not None:
+        check_target("-o", output)
     given = [*map(parse_loaded, recordings), *(read_loads(loads) if loads else ())]
     if not given:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -11,6 +14,8 @@ if TYPE_CHECKING:
     from tactile_graph_pads.studies.study import Finding, Study, Table
 
 MOST_ROWS = 24
+GAP = 2
+"""Blanks between two columns."""
 WIDE_STUDIES = ("characteristic", "bump", "foam", "weight-area", "converter")
 
 
@@ -32,6 +37,7 @@ def study(
     """
     import numpy as np
 
+    from tactile_graph.files import write_whole
     from tactile_graph_pads.calibration_plot import check_picture
     from tactile_graph_pads.pad import load_pad
     from tactile_graph_pads.studies import load_study
@@ -48,7 +54,7 @@ def study(
     if to == "-":
         click.echo(csv_text(table), nl=False)
     elif to is not None:
-        Path(to).write_text(csv_text(table), encoding="utf-8")
+        write_whole(to, csv_text(table))
     _show(asked, table, findings, pad_name, seed, on_stderr=to == "-")
     if plot is not None:
         draw(asked, result, plot)
@@ -61,6 +67,7 @@ def study(
 
 def _check_output(output: str | None) -> str | None:
     from tactile_graph.errors import UsageError
+    from tactile_graph.files import check_target
 
     if output in (None, "-"):
         return output
@@ -69,8 +76,7 @@ def _check_output(output: str | None) -> str | None:
     path = Path(str(output))
     if path.suffix.lower() != ".csv":
         raise UsageError(f"-o {output}: its name must end in .csv, or be - for stdout")
-    if not path.parent.is_dir():
-        raise UsageError(f"-o {output}: there is no folder {str(path.parent)!r}")
+    check_target("-o", path)
     return output
 
 
@@ -118,11 +124,11 @@ def draw(asked: Study[Any], result: Any, path: Path) -> None:
         What its ``run`` returned.
     path : Path
     """
-    from tactile_graph_pads.calibration_plot import new_figure
+    from tactile_graph_pads.calibration_plot import new_figure, save_figure
 
     figure = new_figure(*((12.0, 5.0) if asked.name in WIDE_STUDIES else (7.5, 5.0)))
     asked.plot(figure, result)
-    figure.savefig(path)
+    save_figure(figure, path)
 
 
 def _show(
@@ -137,19 +143,38 @@ def _show(
     heading = f" ({asked.figure}): {asked.about}; pad {pad}, seed {seed}"
     say.print(Text.assemble((asked.name, "bold"), heading), soft_wrap=True)
     if not on_stderr:
-        grid = Grid(box=None, header_style="bold", pad_edge=False)
-        for column in table.columns:
-            grid.add_column(column, justify="right", overflow="fold")
+        grid = Grid(box=None, header_style="bold", pad_edge=False, padding=(0, GAP, 0, 0))
         shown = _spread(len(table.rows))
-        for k in shown:
-            grid.add_row(*(_cell(v) for v in table.rows[k]))
+        names = [column.replace("_", " ") for column in table.columns]
+        rows = [[_cell(v) for v in table.rows[k]] for k in shown]
+        least = [_least(n, cells) for n, cells in zip(names, zip(*rows, strict=True), strict=True)]
+        n = _fitting(least, say.width)
+        for name, width in zip(names[:n], least, strict=False):
+            grid.add_column("\n".join(wrap(name, width)), justify="right", no_wrap=True)
+        for row in rows:
+            grid.add_row(*row[:n])
         say.print(grid)
+        if n < len(names):
+            gone = ", ".join(table.columns[n:])
+            say.print(f"not shown, for want of width: {gone}; -o FILE.csv gives all", style="dim",
+                      soft_wrap=True)  # fmt: skip
         if len(shown) < len(table.rows):
             say.print(f"{len(shown)} of {len(table.rows)} rows; -o FILE.csv gives all", style="dim")
     for finding in findings:
         mark = ("comes out", "green") if finding.holds else ("DOES NOT COME OUT", "bold red")
         say.print(Text.assemble("\n", (finding.thesis, "bold"), ": ", mark), soft_wrap=True)
         say.print(f"  {finding.found}", soft_wrap=True)
+
+
+def _least(name: str, cells: Sequence[str]) -> int:
+    """Return how narrow a column can be: the words of its name fold, numbers must not."""
+    return max(map(len, [*name.split(), *cells]))
+
+
+def _fitting(least: Sequence[int], width: int) -> int:
+    """Return how many columns, from the first on, there is room for."""
+    ends = accumulate(w + GAP for w in least)
+    return max(1, sum(end - GAP <= width for end in ends))
 
 
 def _spread(n: int) -> list[int]:

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
+from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_sources.readers.csv_layout import Layout, is_blank, is_comment
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.told import Told
 
 NAME = "table, one frame a line"
+_OWN = re.compile(
+    r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
+    r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
+)
+"""The comment that a table begins with which the project wrote."""
 
 
 def recognises(head: Head) -> bool:
@@ -32,7 +40,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     if layout.trouble:
         raise DataError(str(reading.path), layout.trouble)
     lead = max(layout.columns.values(), default=-1) + 1
-    rows, columns = reading.told.shape_of(str(reading.path), layout.width - lead)
+    own = _own_word(reading.head, layout.width - lead)
+    shape = _shape(reading, own, layout.width - lead)
     reading.report.expect(reading.count_bytes(b"\n"))
     header = layout.header
     for number, line in reading.text():
@@ -45,9 +54,33 @@ def read(reading: Reading) -> Iterator[Frame]:
                 reading.damaged(number, str(error))
             header = False
             continue
-        frame = _frame(reading, layout, number, row, (rows, columns), lead)
+        frame = _frame(reading, layout, number, row, shape, lead, own)
         if frame is not None:
             yield frame
+
+
+def _own_word(head: Head, n_values: int) -> Told:
+    """Return what a table of the project's own says of itself; of any other, nothing."""
+    found = _OWN.fullmatch(head.lines[0].strip()) if head.lines else None
+    if found is None:
+        return Told()
+    rows, columns, quantity = int(found[1]), int(found[2]), found[7]
+    try:
+        x, y, left, top = (float(w or 0) for w in found.group(3, 4, 5, 6))
+    except ValueError:
+        return Told()
+    true = rows * columns == n_values and quantity in QUANTITIES and min(x, y) > 0
+    if not true or not np.isfinite([x, y, left, top]).all():
+        return Told()  # somebody changed the table, so its comment may be wrong in all
+    return Told(rows, columns, (x, y), (left, top), quantity)
+
+
+def _shape(reading: Reading, own: Told, n_values: int) -> tuple[int, int]:
+    told = reading.told
+    if own.rows is not None and own.columns is not None:
+        told.agree(str(reading.path), own.rows, own.columns)
+        return own.rows, own.columns
+    return told.shape_of(str(reading.path), n_values)
 
 
 def _frame(
@@ -57,6 +90,7 @@ def _frame(
     row: list[float],
     shape: tuple[int, int],
     lead: int,
+    own: Told,
 ) -> Frame | None:
     """Return the frame of one line; None where its number was there before."""
     if "frame" in layout.columns:
@@ -69,4 +103,10 @@ def _frame(
         if not np.isfinite(time_s):
             reading.damaged(number, "the time is no number")
             return None
-    return reading.frame(np.array(row[lead:]).reshape(shape), time_s=time_s)
+    return reading.frame(
+        np.array(row[lead:]).reshape(shape),
+        pitch_cm=own.pitch_cm,
+        origin_cm=own.origin_cm,
+        quantity=own.quantity or "raw",
+        time_s=time_s,
+    )

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.files import write_whole
 from tactile_graph_thesis.book.pictures import pictures
 from tactile_graph_thesis.item import Made
 from tactile_graph_thesis.making import Outcome
@@ -79,6 +80,6 @@ def write_all(folder: Path, files: dict[str, bytes]) -> list[Path]:
     paths = []
     for name, data in files.items():
         path = folder / name
-        path.write_bytes(data)
+        write_whole(path, data)
         paths.append(path)
     return paths

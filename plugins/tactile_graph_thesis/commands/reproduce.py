@@ -79,13 +79,15 @@ def reproduce(
 
 
 def _check(output: Path) -> None:
-    """Find out before the work whether the folder can be made."""
+    """Find out before the work whether the folder can be made and written in."""
     from tactile_graph.errors import UsageError
+    from tactile_graph.files import check_target
 
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UsageError(f"-o {output}: cannot be made: {error.strerror or error}") from error
+    check_target("-o", output / BOOK)
 
 
 def _written(outcome: Outcome, folder: Path) -> dict[str, bytes]:

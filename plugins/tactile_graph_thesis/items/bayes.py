@@ -159,7 +159,7 @@ def _figure_5_14(work: Work) -> Made:
             Finding(
                 "the hulls by both ways are very similar",
                 f"areas by lines and by circle-3: {words}",
-                all(0.8 < r < 1.25 for r in ratios),
+                all(0.9 < r < 1.0 / 0.9 for r in ratios),
             ),
         ),
         figure=draw_5_14(hulls),

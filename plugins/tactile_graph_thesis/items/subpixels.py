@@ -74,13 +74,18 @@ def _plot(found: SubpixelErrors) -> Any:
         bias.plot(found.factors, found.bias_cm[k], "o-", color=f"C{k}", label=kind)
         times.plot(found.factors, found.time_us[k], "o-", color=f"C{k}", label=kind)
     bias.axhline(0.0, color="0.6", lw=1.0)
-    errors.set(title="size of the error", ylabel="mean error / cm")
-    errors.set_ylim(bottom=0.0)
+    errors.set(title="size of the error", ylabel="mean error / cm", yscale="log")
     bias.set(title="bias of the radius", ylabel="found less true / cm")
     times.set(title="time", ylabel="median time of a frame / µs", yscale="log")
     for axes in (errors, bias, times):
         axes.set_xlabel("cells a side of an element")
+        axes.set_xticks([1, *found.factors[1::2]])
         axes.grid(alpha=0.3)
+    for axes, ticks in ((errors, (0.1, 0.2, 0.5, 1, 2, 5)), (times, (20, 50, 100, 200, 500))):
+        low, high = axes.get_ylim()
+        shown = [tick for tick in ticks if low <= tick <= high]
+        axes.set_yticks(shown, [f"{tick:g}" for tick in shown])
+        axes.minorticks_off()
     handles, labels = errors.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")
     return figure

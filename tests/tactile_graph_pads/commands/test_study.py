@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_pads.commands.study import study
+from tactile_graph_pads.pad import load_pad
 from tactile_graph_pads.studies import load_study, study_names
 
 
@@ -33,9 +35,27 @@ def test_without_a_name_all_are_listed_with_their_figure() -> None:
 def test_a_study_shows_a_table_and_the_conclusions() -> None:
     result = run("bias-coupling")
     assert result.exit_code == 0
-    assert "resistance_ohm" in result.output
+    assert "resistance" in result.output
     assert "24 of 61 rows" in result.output
     assert "of 30, 40 and 50 kOhm the coupling is least at 30 kOhm: comes out" in result.output
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 100, 140])
+def test_no_number_is_broken_and_columns_without_room_are_named(
+    monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    asked = load_study("bias-sensitivity")
+    table = asked.table(asked.run(load_pad("thesis"), np.random.default_rng(0)))
+    lines = run("bias-sensitivity").output.splitlines()
+    assert max(map(len, lines[1:27])) <= width
+    first = next(line for line in lines if line.split()[:1] == ["1000"])
+    n = len(first.split())
+    assert first.split() == [f"{v:.4g}" for v in table.rows[0][:n]]
+    gone = [line for line in lines if line.startswith("not shown, for want of width: ")]
+    named = f"not shown, for want of width: {', '.join(table.columns[n:])}; -o FILE.csv gives all"
+    assert gone == ([named] if n < len(table.columns) else [])
+    assert (n < len(table.columns)) == (width < 100)
 
 
 def test_every_row_goes_into_a_csv_file(tmp_path: Path) -> None:

@@ -1,0 +1,233 @@
+"""What the pages show: commands, pipelines, code, names in tables, and some of the numbers."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, loads
+from tactile_graph.cli import cli
+from tactile_graph.errors import PipelineError
+from tactile_graph.pipeline.conditions import FUNCTIONS
+from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps.signature import read_signature
+from tactile_graph.wires.image import QUANTITIES
+from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
+from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.pad import load_pad
+from tactile_graph_pads.studies import study_names
+from tactile_graph_sources.devices.preset_file import load_preset
+from tactile_graph_thesis.catalogue import items
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+FILES = (".npz", ".npy", ".csv", ".zarr", ".yaml", ".html", ".md")
+pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests")
+
+
+def text(page: str) -> str:
+    return (DOCS / f"{page}.md").read_text("utf-8")
+
+
+def fenced(page: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", text(page), re.M | re.S)
+
+
+def commands(page: Path) -> list[list[str]]:
+    """Return the words of each ``tactile-graph`` command a page shows in a block."""
+    found = []
+    blocks = re.findall(
+        r"^```(?:sh|console)[^\n]*\n(.*?)^```", page.read_text("utf-8"), re.M | re.S
+    )
+    for line in "".join(blocks).replace("\\\n", " ").splitlines():
+        for part in line.split("&&"):
+            words = shlex.split(part.removeprefix("$ "), comments=True)
+            if words and words[0].endswith("tactile-graph"):
+                found.append(words[1:])
+    return found
+
+
+SHOWN = [(p.name, words) for p in PAGES for words in commands(p)]
+
+
+@pytest.mark.parametrize(("page", "words"), SHOWN, ids=lambda v: v if isinstance(v, str) else v[0])
+def test_every_command_shown_is_understood_and_what_it_names_exists(
+    page: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for word in words:
+        if word.endswith(FILES) and "=" not in word:
+            Path(word).touch()
+    command = cli.get_command(click.Context(cli), words[0])
+    assert command is not None, words
+    context = command.make_context(words[0], list(words[1:]))  # raises at a wrong value or option
+    given: dict[str, Any] = context.params
+    names = [given[k] for k in ("pipeline", "source") if isinstance(given.get(k), str)]
+    names += [w.split()[0] for w in given.get("variants", ())]
+    known = {*installed().names("pipelines"), *installed().names("steps")}
+    assert [n for n in names if n not in known and not n.endswith(FILES)] == []
+    if words[0] == "study" and given["name"]:
+        assert given["name"] in study_names()
+
+
+# -- pipeline files --------------------------------------------------------------------------
+
+
+def test_keys_functions_and_quantities_of_a_pipeline_file_are_all_told() -> None:
+    page = text("pipelines")
+    told = re.findall(r"^\| `(\w+)` \|", page, re.M)
+    assert set(told) == {*TOP_KEYS, *NODE_KEYS}
+    assert f"`+ - * / // %`, numbers, texts, `{' '.join(FUNCTIONS)}`" in page
+    assert [q for q in QUANTITIES if f"`{q}`" not in page] == []
+
+
+def test_the_choice_shown_hands_over_from_cheap_to_careful() -> None:
+    (nodes,) = fenced("pipelines", "yaml")
+    before = """pipeline: p
+source: {step: sample}
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: footprint}
+  hull: {step: hull, in: boundary}
+"""
+    pipeline = loads(before + nodes.removeprefix("nodes:\n") + "outputs: [circle]\n")
+    for result in pipeline.stream():
+        good = result["cheap"].rms_cm < 0.3
+        assert result["circle"] == (result["good"] if good else result["careful"])
+
+
+def test_a_condition_with_a_comma_is_right_in_quotes() -> None:
+    (condition,) = re.findall(r'`{…, (when: "max.*?")}`', text("pipelines"))
+    frame = "pipeline: p\nsource: {step: sample}\nnodes:\n"
+    contacts = "  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}\n"
+    contacts += "  contacts: {step: contacts, in: [frame, footprint]}\n"
+    node = f"  fine: {{step: subdivide, in: footprint, {condition}}}\noutputs: [fine]\n"
+    assert loads(frame + contacts + node).nodes["fine"].guard is not None
+
+
+def test_the_source_shown_for_recordings_is_allowed() -> None:
+    (source,) = fenced("recordings", "yaml")
+    rest = "nodes:\n  load: {step: load, in: frame}\noutputs: [load]\n"
+    pipeline = loads(f"pipeline: p\n{source}{rest}")
+    assert pipeline.source is not None
+    assert pipeline.source.settings["rows"] == 12
+
+
+def test_the_restorers_shown_are_allowed_and_a_wrong_setting_is_told_as_shown() -> None:
+    first, second, wrong = fenced("fields", "yaml")
+    head, tail = "pipeline: p\nsource: {step: sample}\n", "outputs: [restored]\n"
+    model = loads(head + first + tail).nodes["restored"].settings["model"]
+    assert (model.lambda_d, model.lines) == (2, "marginal")
+    circle = "nodes:\n  circle: {use: circle-3, in: frame}\n"
+    prior = loads(head + circle + second + tail).nodes["restored"].settings["model"]
+    assert prior.lambda_prior == 1
+    (told,) = re.findall(r"^```\n(mine\.yaml:.*?)\n```", text("fields"), re.M | re.S)
+    with pytest.raises(PipelineError) as caught:
+        loads(wrong, "mine.yaml")
+    assert told in str(caught.value)
+
+
+def test_the_preset_shown_is_a_preset(tmp_path: Path) -> None:
+    (preset,) = fenced("devices", "yaml")
+    (tmp_path / "my-mat.yaml").write_text(preset, "utf-8")
+    assert load_preset(str(tmp_path / "my-mat.yaml")).geometry.n_cells == 64
+
+
+# -- code ------------------------------------------------------------------------------------
+
+
+def test_the_plugin_shown_is_one() -> None:
+    hooks, step = fenced("plugins", "python")
+    spaces: list[dict[str, Any]] = [{"__name__": "shown"}, {"__name__": "shown"}]
+    for code, space in zip((hooks, step), spaces, strict=True):
+        exec(compile(code, "plugins.md", "exec"), space)
+    assert spaces[0]["tactile_graph_steps"]() == {"median": "tactile_graph_median.median:median"}
+    target = spaces[1]["part"]
+    target.__globals__.update(spaces[1])
+    read = read_signature("part", target)
+    assert [p.name for p in read.ports] == ["image"]
+    assert [s.name for s in read.settings] == ["share"]
+    assert read.fields == ("mask", "level")
+    assert read.ports[0].quantity is not None
+    assert read.ports[0].quantity.names == ("volt", "gram")
+
+
+def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (code,) = fenced("compare", "python")
+    short = code.replace("n_frames=200", "n_frames=12")
+    assert short != code
+    exec(compile(short, "compare.md", "exec"), {"__name__": "shown"})
+    assert "better" in capsys.readouterr().out
+
+
+# -- names in tables -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("page", ["objects", "fields", "likelihood"])
+def test_pipelines_and_steps_that_head_rows_exist(page: str) -> None:
+    tables = re.findall(r"^\| (pipeline|step) \|.*\n\|[-| ]+\n((?:\|.*\n)+)", text(page), re.M)
+    for kind, rows in tables:
+        names = re.findall(r"^\| `([\w-]+)`", rows, re.M)
+        assert names
+        assert [n for n in names if not installed().has(f"{kind}s", n)] == []
+
+
+def test_every_preset_stands_in_the_table_of_kits() -> None:
+    (rows,) = re.findall(r"^\| preset \|.*\n\|[-| ]+\n((?:\|.*\n)+)", text("devices"), re.M)
+    told: set[str] = set()
+    for row in rows.splitlines():
+        first, *more = re.findall(r"`([\w-]+)`", row.split("|")[1])
+        told |= {first, *((first.rsplit("-", 1)[0] + m) if m.startswith("-") else m for m in more)}
+    assert told == set(installed().names("presets"))
+
+
+def test_as_many_items_are_listed_as_told() -> None:
+    assert f"# lists all {len(items())}\n" in text("reproduce")
+
+
+# -- numbers ---------------------------------------------------------------------------------
+
+
+def three_discs() -> tuple[np.ndarray, np.ndarray]:
+    """Return the grams and conductances of the scene that docs/pad.md tells of."""
+    pad = load_pad("plain")
+    load = np.zeros(pad.geometry.shape)
+    for x, y, radius, grams in ((4.5, 4.5, 4.3, 675), (14.2, 9.0, 6.1, 1090), (5, 15.5, 3.8, 1280)):
+        covered = coverage_cm2(Circle(x, y, radius), pad.geometry)
+        load += grams * covered / covered.sum()
+    return load, pad.conductance_s(load)
+
+
+@pytest.mark.parametrize("kind", [Divider, Floating, Feedback])
+@pytest.mark.parametrize("driver_ohm", [0.0, 100.0])
+def test_conductances_are_found_back_as_the_page_says(kind: type[Any], driver_ohm: float) -> None:
+    load, siemens = three_discs()
+    circuit: Circuit = kind(driver_ohm=driver_ohm)
+    found = circuit.inverse(circuit.ratio(siemens))
+    on = load > 10.0
+    assert f"load {on.sum()} elements beyond the turn-on" in " ".join(text("pad").split())
+    assert found.valid[on].all()
+    np.testing.assert_allclose(found.siemens[on], siemens[on], rtol=1e-13)
+
+
+def test_what_ignoring_the_circuit_costs_is_as_the_page_says() -> None:
+    load, siemens = three_discs()
+    on, idle = load > 10.0, load == 0.0
+
+    def apparent(circuit: Circuit) -> np.ndarray:
+        ratio = circuit.ratio(siemens)
+        return np.asarray(ratio / (1.0 - ratio) / circuit.bias_ohm)
+
+    off = np.abs(apparent(Divider())[on] / siemens[on] - 1.0).mean()
+    ghost = apparent(Floating())[idle].max() / siemens.max()
+    page = " ".join(text("pad").split())
+    assert f"errs by {100 * off:.0f} % on average in the divider" in page
+    assert f"seems to conduct {ghost:.1f} times as much as the most loaded one" in page
