@@ -80,6 +80,10 @@ def nan_out(points: Points) -> Circle:
     return Circle(math.nan, 0.0, 1.0)
 
 
+def no_circle(points: Points) -> Circle:
+    return 0.0, 0.0, 1.0  # type: ignore[return-value]
+
+
 def warns(points: Points) -> Circle:
     return Circle(float(np.float64(1.0) / np.float64(0.0)), 0.0, 1.0)
 
@@ -103,5 +107,6 @@ def all_corners(points: Points) -> Polygon:
 
 FAKES = registry_of(
     uncentred=uncentred, centred=centred, ordered=ordered, nan_out=nan_out, warns=warns,
-    crashes=crashes, numpys_error=numpys_error, refuses=refuses, hull=all_corners,
+    no_circle=no_circle, crashes=crashes, numpys_error=numpys_error, refuses=refuses,
+    hull=all_corners,
 )  # fmt: skip

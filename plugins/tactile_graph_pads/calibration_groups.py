@@ -73,7 +73,7 @@ class GroupReader:
         Raises
         ------
         DataError
-            If a frame has no known load, is saturated, or is loaded elsewhere too.
+            If a frame has no known load, reads nothing, is saturated, or is loaded elsewhere too.
         """
         held: list[_Reading] = []
         for frame in frames:
@@ -98,6 +98,9 @@ class GroupReader:
         corner = self._corner(values, where)
         rows, columns = self.group or values.shape
         block = (slice(corner[0], corner[0] + rows), slice(corner[1], corner[1] + columns))
+        if not values[block].mean() > 0.0:
+            got = f"{values[block].mean():.4g} on average"
+            raise DataError(where, f"{total_g:g} g read nothing ({got}): did the load lie there?")
         self._check_saturated(recorded[block], image.quantity, total_g, where)
         # the same elements under an object put down anew are another placement
         place = (*corner, repr(frame.truth))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -53,7 +54,8 @@ def read_loads(path: Path) -> list[Loaded]:
     ----------
     path : Path
         YAML: a mapping of recording to grams, or a list of such mappings where a recording
-        stands several times. CSV: columns ``recording`` and ``load_g``.
+        stands several times. CSV: columns ``recording`` and ``load_g``, parted by comma,
+        semicolon or tab.
 
     Raises
     ------
@@ -66,16 +68,28 @@ def read_loads(path: Path) -> list[Loaded]:
 
 def _csv_rows(path: Path) -> list[tuple[str, object, str]]:
     with path.open(encoding="utf-8-sig", newline="") as file:
-        table = csv.DictReader(file, skipinitialspace=True)
+        head = file.readline()
+        file.seek(0)
+        separator = ";" if ";" in head else "\t" if "\t" in head else ","
+        table = csv.DictReader(file, delimiter=separator, skipinitialspace=True)
         missing = {"recording", "load_g"} - set(table.fieldnames or ())
         if missing:
             raise DataError(
                 f"{path}:1", f"needs the columns recording and load_g, got {table.fieldnames}"
             )
         return [
-            (str(row["recording"]).strip(), row["load_g"], f"{path}:{table.line_num}")
+            (str(row["recording"]).strip(), _decimal(row["load_g"]), f"{path}:{table.line_num}")
             for row in table
         ]
+
+
+def _decimal(text: str | None) -> str:
+    """Return a number with a decimal point; spreadsheets of half the world write a comma.
+
+    ``1,500`` may be of thousands and stays as it is, no number.
+    """
+    found = re.fullmatch(r"\s*(\d+),(\d+)\s*", text or "")
+    return f"{found[1]}.{found[2]}" if found and len(found[2]) != 3 else text or ""
 
 
 def _yaml_rows(path: Path) -> list[tuple[str, object, str]]:
@@ -87,5 +101,5 @@ def _yaml_rows(path: Path) -> list[tuple[str, object, str]]:
     for part in parts:
         if not isinstance(part, dict):
             raise DataError(str(path), f"must map recordings to grams, got {part!r}")
-        rows += [(str(name), load, str(path)) for name, load in part.items()]
+        rows += [(str(name), load, f"{path}, {name}") for name, load in part.items()]
     return rows

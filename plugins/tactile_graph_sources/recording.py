@@ -95,9 +95,10 @@ def _check_file(path: Path) -> None:
     if path.is_dir():
         held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
         raise DataError(str(path), f"is a directory; give a file in it ({held})")
+    if path.exists():
+        raise DataError(str(path), "is no plain file; save what it gives as a file first")
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
-    near = did_you_mean(path.name, siblings)
-    raise DataError(str(path), f"there is no such file{near}; formats that are read: {known()}")
+    raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
 
 def _stored(path: Path, report: Report, index: int) -> Iterator[Frame]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from annotated_types import Ge, Gt
 
-from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
@@ -116,16 +116,14 @@ def _opened(
 ) -> Reader:
     from tactile_graph_sources.devices.port import UnpluggedError
     from tactile_graph_sources.devices.port_list import list_ports
+    from tactile_graph_sources.devices.port_words import refusal
     from tactile_graph_sources.devices.reader import Reader
 
     try:
         return Reader(kit, port, baud, newest, timeout_s, queue_size)
     except UnpluggedError as error:
         names = [p.device for p in list_ports()]
-        raise UsageError(
-            f"port {port!r} cannot be opened: {error}{did_you_mean(port, names)}; "
-            f"ports here: {one_of(names)}"
-        ) from error
+        raise UsageError(refusal(port, error.__cause__ or error, names)) from error
 
 
 def _next(reader: Reader, teller: _Teller, give_up_s: float | None) -> Arrived:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -64,8 +65,12 @@ def opened(path: Path, mode: str) -> Any:
 
 
 def n_whole(group: Any) -> int:
-    """Return how many rows were written whole."""
-    number = group["number"][:]
+    """Return how many rows were written whole; raises what `read_store` raises."""
+    try:
+        number = group["number"][:]
+    except Exception as error:  # a damaged chunk
+        where = str(getattr(group.store_path.store, "root", group.name))
+        raise DataError(where, f"its frame numbers cannot be read: {error}") from error
     good = number == np.arange(len(number))
     return len(number) if good.all() else int(np.argmin(good))
 
@@ -84,7 +89,7 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
     Raises
     ------
     DataError
-        If it is no recording.
+        If it is no recording, or nothing of it can be read.
     UsageError
         If Zarr is not installed.
     """
@@ -92,16 +97,47 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
     n = n_whole(group)
     if report is not None:
         report.expect(max(0, n - start))
-    attributes = dict(group.attrs)
     chunk = int(group["values"].chunks[0])
     ends = np.concatenate([[0], group["notes_end"][:n]])
+    gap, damaged = False, 0
     for low in range(start, n, chunk):
         high = min(n, low + chunk)
-        rows = {name: group[name][low:high] for name in ROWS[:4]}
-        notes = group["notes"][int(ends[low]) : int(ends[high])].tobytes()
-        for i in range(high - low):
-            a, b = (int(e - ends[low]) for e in ends[low + i : low + i + 2])
-            yield _frame(rows, i, low + i, attributes, json.loads(notes[a:b] or "{}"))
+        try:
+            frames = _chunk(group, ends, low, high)
+        except Exception as error:  # a damaged chunk makes Zarr raise whatever its codec raises
+            _left_out(Path(path), report, low, high, str(error))
+            gap, damaged = True, damaged + 1
+            continue
+        if not any(f.image.valid is None or f.image.valid.any() for f in frames):
+            _doubt(Path(path), report, low, high)  # Zarr gives NaN for a chunk that is not there
+        frames[0] = replace(frames[0], gap=gap or frames[0].gap)
+        yield from frames
+        gap = False
+    if damaged == -(-(n - start) // chunk) > 0:
+        raise DataError(str(path), "not a single frame of it can be read")
+
+
+def _chunk(group: Any, ends: Any, low: int, high: int) -> list[Frame]:
+    rows = {name: group[name][low:high] for name in ROWS[:4]}
+    notes = group["notes"][int(ends[low]) : int(ends[high])].tobytes()
+    attributes = dict(group.attrs)
+    frames = []
+    for i in range(high - low):
+        a, b = (int(e - ends[low]) for e in ends[low + i : low + i + 2])
+        frames.append(_frame(rows, i, low + i, attributes, json.loads(notes[a:b] or "{}")))
+    return frames
+
+
+def _left_out(path: Path, report: Report | None, low: int, high: int, why: str) -> None:
+    if report is not None:
+        report.count("damaged records skipped", high - low)
+        report.trouble(str(path), f"frames {low} to {high - 1} cannot be read: {why}")
+
+
+def _doubt(path: Path, report: Report | None, low: int, high: int) -> None:
+    if report is not None:
+        text = f"frames {low} to {high - 1} hold no valid cell: is a part of the store missing?"
+        report.trouble(str(path), text)
 
 
 def _frame(

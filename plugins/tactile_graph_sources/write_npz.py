@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tactile_graph.files import whole_file
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.truth import truth_to_json
 
@@ -28,6 +27,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     ------
     ValueError
         If there is no frame, or a frame lies on another grid than the first.
+    UsageError
+        If the file cannot be written.
 
     Notes
     -----
@@ -37,25 +38,11 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     ``kind``, the fields of that shape, ``weight_g`` and ``name``.
     """
     arrays = _arrays(list(frames))
-    target = Path(path)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez_compressed(file, allow_pickle=False, **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(temporary, 0o666 & ~_umask())  # a temporary file is private, a recording is not
-        os.replace(temporary, target)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as file:
+        np.savez_compressed(file, allow_pickle=False, **arrays)
+        file.flush()
+        os.fsync(file.fileno())
     return len(arrays["values"])
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _grid(frame: Frame) -> tuple[Any, ...]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
+from tactile_graph.files import said
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.truth import truth_to_json
@@ -30,6 +31,16 @@ def _grid(image: Image) -> dict[str, Any]:
         "origin_cm": list(image.origin_cm),
         "quantity": image.quantity,
     }
+
+
+def _said(grid: Mapping[str, Any]) -> str:
+    rows, columns = grid["shape"]
+    x, y = grid["pitch_cm"]
+    left, top = grid["origin_cm"]
+    return (
+        f"{rows} x {columns} cells of {x:g} x {y:g} cm from ({left:g}, {top:g}) cm on, "
+        f"{grid['quantity']}"
+    )
 
 
 class StoreWriter:
@@ -97,12 +108,14 @@ class StoreWriter:
         ------
         DataError
             If the frame lies on another grid than those before it.
+        UsageError
+            If a chunk cannot be written.
         """
         grid = _grid(frame.image)
         if self._group is None:
             self._create(grid)
         if grid != self._grid:
-            raise DataError(str(self.path), f"holds frames of {self._grid}, this one is of {grid}")
+            raise DataError(str(self.path), f"holds {_said(self._grid)}; this one is {_said(grid)}")
         self._held.append(frame)
         if len(self._held) >= self.chunk - self.n_written % self.chunk:
             self.flush()
@@ -115,7 +128,8 @@ class StoreWriter:
             **grid,
             **self.about,
         }
-        group = self._zarr.create_group(str(self.path), attributes=attributes)
+        with said(self.path):
+            group = self._zarr.create_group(str(self.path), attributes=attributes)
         rows, columns = grid["shape"]
         shape = {"values": (0, rows, columns)}
         small = (SMALL_CHUNKS * self.chunk,)
@@ -154,10 +168,18 @@ class StoreWriter:
         group["notes"].resize((self._notes_end,))
 
     def flush(self) -> None:
-        """Write what is held; the rows count from the moment ``number`` is written."""
-        frames = self._held
-        if not frames:
-            return
+        """Write what is held; the rows count from the moment ``number`` is written.
+
+        Raises
+        ------
+        UsageError
+            If they cannot be written: the disc is full.
+        """
+        if self._held:
+            with said(self.path):
+                self._put(self._held)
+
+    def _put(self, frames: list[Frame]) -> None:
         low, high = self.n_written, self.n_written + len(frames)
         notes = [_note(f) for f in frames]
         ends = self._notes_end + np.cumsum([len(n) for n in notes])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import types
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Union, get_args, get_origin
 
@@ -97,8 +98,12 @@ def subjects(registry: Registry) -> tuple[list[Subject], list[tuple[str, str]]]:
     return sorted(found, key=lambda s: KINDS.index(s.kind)), left
 
 
-def chosen(found: list[Subject], wanted: tuple[str, ...]) -> list[Subject]:
+def chosen(
+    found: list[Subject], wanted: tuple[str, ...], left: Sequence[tuple[str, str]] = ()
+) -> list[Subject]:
     """Return the subjects of the wanted steps, kinds or plugins; all if nothing is named.
+
+    ``left`` holds the steps that cannot be stressed, each with the why.
 
     Raises
     ------
@@ -108,7 +113,10 @@ def chosen(found: list[Subject], wanted: tuple[str, ...]) -> list[Subject]:
     from tactile_graph.errors import did_you_mean, one_of
 
     known = {s.name for s in found} | {s.kind for s in found} | {s.plugin for s in found}
+    why = dict(left)
     for name in wanted:
+        if name not in known and name in why:
+            raise UsageError(f"step {name!r} cannot be stressed: {why[name]}")
         if name not in known:
             hint = did_you_mean(name, known) or f"; kinds: {one_of(KINDS)}"
             raise UsageError(f"no step, kind or plugin named {name!r} can be stressed{hint}")

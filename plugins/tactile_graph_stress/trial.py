@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph import Frame, TactileGraphError, hookimpl, loads
+from tactile_graph import Frame, Pipeline, Result, TactileGraphError, hookimpl, loads
+from tactile_graph.errors import PluginError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.wires import Image, Mask, Points
 from tactile_graph_stress.finite import not_finite
@@ -60,6 +61,8 @@ class Trial:
             warnings.simplefilter("always")
             try:
                 value = self._runner(settings or {})(_frame(given))["subject"]
+            except PluginError as error:  # the step gave something else than it promises
+                came = Came(broke=str(error))
             except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
                 came = _without_value(error)
             except Exception as error:
@@ -75,8 +78,20 @@ class Trial:
             pipeline = self._pipeline
             if settings:
                 pipeline = pipeline.with_settings({f"subject.{k}": v for k, v in settings.items()})
-            self._runners[key] = pipeline.runner(seed=self._seed)
+            self._runners[key] = _checked(pipeline, pipeline.runner(seed=self._seed))
         return self._runners[key]
+
+
+def _checked(pipeline: Pipeline, runner: Callable[[Frame], Result]) -> Callable[[Frame], Result]:
+    """Return a runner that holds the step to what it promises."""
+
+    def run(frame: Frame) -> Result:
+        result = runner(frame)
+        if pipeline.promises.waiting:
+            pipeline.promises.check(result)
+        return result
+
+    return run
 
 
 def _without_value(error: TactileGraphError) -> Came:

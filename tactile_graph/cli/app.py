@@ -9,7 +9,7 @@ from tactile_graph.cli.group import Group
 EXIT_CODES = """\b
 Exit codes:
   0    done; every frame gave all its outputs, or skipped them for a reason
-  1    done, but some frame failed
+  1    done, but some frame failed, or has an output that is no finite number
   2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
   130  interrupted by Ctrl-C; what was done is kept
   141  whoever read the output went away (| head)
@@ -39,8 +39,3 @@ COMMANDS = {
 @click.version_option(package_name="tactile-graph", prog_name="tactile-graph")
 def cli() -> None:
     """Tactile images through graphs of plugin steps that YAML files declare."""
-
-
-def main() -> None:
-    """Run the command line and exit."""
-    cli.main()

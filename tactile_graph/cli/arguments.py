@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -65,6 +66,8 @@ def parse_span(ctx: click.Context, param: click.Parameter, value: str | None) ->
         )
     start = int(found[2] or 0)
     stop = int(found[1]) if found[1] else int(found[3]) if found[3] else None
+    if max(start, stop or 0) > sys.maxsize:
+        raise click.BadParameter(f"{value!r}: more frames than can be counted", ctx, param)
     if stop is not None and stop <= start:
         raise click.BadParameter(
             f"{value!r}: holds no frame; must be like 20, 10:30, 10: or :30", ctx, param

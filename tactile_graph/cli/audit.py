@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,6 +17,7 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import INTERRUPTED
 from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target
 
 if TYPE_CHECKING:
     from tactile_graph.compare.audit import Auditor
@@ -59,8 +59,8 @@ def audit(
     from tactile_graph.cli.terminal import console
     from tactile_graph.compare.audit import Auditor
 
-    if json_path is not None and not Path(json_path).parent.is_dir():
-        raise UsageError(f"--json {json_path}: there is no folder {str(Path(json_path).parent)!r}")
+    if json_path is not None:
+        check_target("--json", json_path)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     auditor = Auditor(opened, tuple(only), sample, seed)
     if not auditor.shadows:
@@ -178,7 +178,7 @@ def error_table(found: Audit) -> Table:
 
 
 def _write(found: Audit, path: str) -> None:
-    from tactile_graph.compare.export import write_whole
+    from tactile_graph.files import write_whole
 
     data = {
         "pipeline": found.pipeline.name,

@@ -14,6 +14,7 @@ import click
 from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
 from tactile_graph.cli.endings import INTERRUPTED
 from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
@@ -118,11 +119,9 @@ def _check_files(options: _Options) -> None:
                 raise UsageError(f"{option} -: name a file; stdout is for --markdown and --json")
             continue
         path = Path(name)
-        if not path.parent.is_dir():
-            raise UsageError(f"{option} {name}: there is no folder {str(path.parent)!r}")
-        if path.is_dir() and (option != "--csv" or path.suffix.lower() == ".csv"):
-            raise UsageError(f"{option} {name}: is a folder; name a file in it")
-        if option == "--csv" and path.is_file() and path.suffix.lower() != ".csv":
+        folder = option == "--csv" and path.suffix.lower() != ".csv"
+        check_target(option, path / "errors.csv" if folder and path.is_dir() else path)
+        if folder and path.exists() and not path.is_dir():
             raise UsageError(f"{option} {name}: is a file; its name must end in .csv")
 
 
@@ -173,7 +172,7 @@ def _told_apart(words: Sequence[str]) -> tuple[list[Wanted], list[str]]:
         elif Path(word).exists():
             recordings.append(word)
         else:
-            raise UsageError(f"{found.unknown('pipelines', name)}, nor a file of that name")
+            raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
     return wanted, recordings
 
 
@@ -207,7 +206,10 @@ class _Run:
         self.stderr = console(stderr=True)
 
     def go(self, held: Any) -> int:
-        interrupted, error = self._frames(held)
+        from tactile_graph.cli.terminal import stdout_for_programs
+
+        with stdout_for_programs("-" in self.options.files.values()):
+            interrupted, error = self._frames(held)
         with held:
             if self.session.n:
                 self._close(interrupted)
@@ -248,10 +250,13 @@ class _Run:
         comparison = close(self.session, self.report, interrupted, self.notes, self.span.start)
         if interrupted:
             self.people.print("interrupted", style="bold red")
-        show(comparison, self.people)
-        for where, what in self.report.troubles[:10]:
-            self.people.print(f"source   {where}: {what}", style="cyan", soft_wrap=True)
-        for name in self._written(comparison):
+        try:
+            show(comparison, self.people)
+            for where, what in self.report.troubles[:10]:
+                self.people.print(f"source   {where}: {what}", style="cyan", soft_wrap=True)
+        finally:  # whoever reads along may go away (| head); the files are wanted all the same
+            written = list(self._written(comparison))
+        for name in written:
             self.people.print(f"wrote {name}", style="dim", soft_wrap=True)
 
     def _written(self, comparison: Comparison) -> Iterator[str]:
@@ -270,7 +275,7 @@ class _Run:
 
 
 def _put(name: str, text: str) -> Iterator[str]:
-    from tactile_graph.compare.export import write_whole
+    from tactile_graph.files import write_whole
 
     if name == "-":
         sys.stdout.write(text)

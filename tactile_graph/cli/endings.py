@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import click
 
-from tactile_graph.errors import PipelineError, TactileGraphError
+from tactile_graph.errors import PipelineError, PluginError, TactileGraphError
 
 SOME_FAILED = 1
 NOT_DONE = 2
 INTERRUPTED = 130
 PIPE_CLOSED = 141
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 def ending(run: Callable[[], Any], debug: bool) -> int:
@@ -37,10 +40,31 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("interrupted", err=True)
         return INTERRUPTED
+    except SystemExit as error:
+        if _of_click(error):
+            raise
+        show(exited(error), debug)
+        return NOT_DONE
     except Exception as error:  # whatever a plugin raises: people get a line, not a traceback
         show(error, debug)
         return error.exit_code if isinstance(error, click.ClickException) else NOT_DONE
     return code if isinstance(code, int) else 0
+
+
+def exited(error: SystemExit) -> PluginError:
+    """Return what to say when a plugin's code ends the program."""
+    from tactile_graph.engine.outcome import raised_at
+
+    what = f"SystemExit({error.code!r}), {raised_at(error)}"
+    told = PluginError(f"a plugin ended the program: {what}")
+    told.__cause__ = error
+    return told
+
+
+def _of_click(error: SystemExit) -> bool:
+    """Return whether click itself ends the program, as it does after completing a word."""
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return Path(last.filename).parent == Path(click.__file__).parent
 
 
 def stop_writing() -> None:
@@ -80,7 +104,9 @@ def words(error: BaseException) -> str:
         return str(error)
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror or error}"
-    return f"{type(error).__name__}: {error}"
+    if isinstance(error, OSError) and error.errno in NO_ROOM:  # what has a name says it
+        return f"the output cannot be written: {error.strerror}"
+    return f"{type(error).__name__}: {error}".removesuffix(": ")
 
 
 def _line(text: str) -> None:

@@ -56,7 +56,9 @@ def _result(pipeline: Pipeline, only: tuple[str, ...], seed: int, number: int) -
     frames = pipeline.frames(seed)
     for frame in frames:
         if n == number:
-            return runner(frame)
+            result = runner(frame)
+            pipeline.promises.check(result)
+            return result
         if runner.stateful:
             runner(frame)
         n += 1

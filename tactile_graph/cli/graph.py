@@ -8,6 +8,7 @@ import click
 
 from tactile_graph.cli.arguments import offered, pipeline_argument
 from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
 
 SUFFIXES = {".svg": "svg", ".mmd": "mermaid", ".mermaid": "mermaid", ".dot": "dot", ".gv": "dot"}
@@ -31,6 +32,8 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
     to_file = output not in (None, "-")
     form = form or _format(str(output) if to_file else "")
+    if to_file:
+        check_target("-o", str(output))
     loaded = load(pipeline, registry.installed())
     if form == "svg":
         from tactile_graph.draw.svg import graph_svg
@@ -42,7 +45,7 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
         text = graph_mermaid(loaded) if form == "mermaid" else graph_dot(loaded)
     text = text.rstrip("\n") + "\n"
     if to_file:
-        Path(str(output)).write_text(text, encoding="utf-8")
+        write_whole(str(output), text)
         click.echo(f"wrote {output}", err=True)
     else:
         click.echo(text, nl=False)

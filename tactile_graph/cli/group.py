@@ -63,6 +63,8 @@ class Group(click.Group):
         if self.get_command(ctx, name) is None and not name.startswith("-"):
             names = self.list_commands(ctx)
             hint = did_you_mean(name, names) or f"; there are: {one_of(names, 30)}"
+            if registry.installed().has("pipelines", name) or name.endswith((".yaml", ".yml")):
+                hint = f"; a pipeline is run by '{ctx.info_name} run {name}'"
             ctx.fail(f"no command named {name!r}{hint}")
         return super().resolve_command(ctx, args)
 

@@ -28,7 +28,9 @@ def shown(value: Any, unit: str = "") -> str:
         return "yes" if value else "no"
     if isinstance(value, float | np.floating):
         digits, value = DECIMALS.get(unit), float(value)
-        return f"{value:.5g}" if digits is None or abs(value) >= 1e4 else f"{value:.{digits}f}"
+        # Seconds may count from long ago: their decimals are what tells one frame from the next.
+        most = 1e11 if unit == "s" else 1e4
+        return f"{value:.5g}" if digits is None or abs(value) >= most else f"{value:.{digits}f}"
     return str(value)
 
 
@@ -86,6 +88,8 @@ class LiveTable:
         if frame.label:
             lead.append(Column("label", "", "label", "", str))
         self.lead = [_cell(c) for c in lead]
+        if frame.time_s is not None:
+            self.lead[1].width = max(self.lead[1].width, len(shown(frame.time_s, "s")))
         if frame.label:
             self.lead[-1].width = min(LONGEST_LABEL, max(len("label"), cell_len(frame.label)))
         known = frame.truth is not None

@@ -7,6 +7,10 @@ from typing import Any
 import click
 
 from tactile_graph.plugins import registry
+from tactile_graph.plugins.mistakes import near_groups
+
+NARROW = 80
+"""Columns of a terminal below which what is offered goes before how long it took to import."""
 
 
 @click.command()
@@ -23,12 +27,14 @@ def plugins() -> None:
     table.add_column("plugin", style="bold", no_wrap=True)
     table.add_column("package", no_wrap=True)
     table.add_column("version", no_wrap=True)
-    table.add_column("import ms", justify="right")
-    table.add_column("offers")
-    for plugin in found.plugins:
-        spent = "" if plugin.blocked else f"{plugin.import_ms:.1f}"
-        table.add_row(plugin.name, plugin.package, plugin.version, spent, _offers(plugin))
     out = console()
+    timed = out.width >= NARROW
+    if timed:
+        table.add_column("import ms", justify="right")
+    table.add_column("offers", overflow="fold")
+    for plugin in found.plugins:
+        spent = ["" if plugin.blocked else f"{plugin.import_ms:.1f}"] if timed else []
+        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin))
     out.print(table)
     for plugin in found.plugins:
         if plugin.error:
@@ -36,6 +42,8 @@ def plugins() -> None:
             out.print(text, soft_wrap=True)
     from tactile_graph.cli.app import COMMANDS
 
+    for words in near_groups(registry.GROUP):
+        out.print(Text.assemble(("not found: ", "bold red"), words), soft_wrap=True)
     hidden = [n for n in found.names("commands") if n in COMMANDS]
     for clash in [*found.clashes, *(_hidden(found, n) for n in hidden)]:
         out.print(Text.assemble(("clash: ", "bold red"), clash), soft_wrap=True)

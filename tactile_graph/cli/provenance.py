@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import platform
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.files import write_whole
 from tactile_graph.pipeline.pipeline import Pipeline, plain
 from tactile_graph.plugins.registry import Plugin, Registry, installed
 from tactile_graph.steps.injected import Report
@@ -76,7 +76,4 @@ def used_plugins(pipeline: Pipeline, registry: Registry) -> Iterator[Plugin]:
 
 def write_provenance(output: str | Path, data: Mapping[str, Any]) -> None:
     """Write the sidecar of an output file, at once or not at all."""
-    path = sidecar(output)
-    temporary = path.with_name(f".{path.name}.part")
-    temporary.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    os.replace(temporary, path)
+    write_whole(sidecar(output), json.dumps(data, indent=1, ensure_ascii=False) + "\n")

@@ -19,8 +19,9 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
     source_options,
 )
-from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED
+from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED, exited
 from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target, is_plain
 
 if TYPE_CHECKING:
     from tactile_graph.engine.result import Result
@@ -90,12 +91,8 @@ def _check_files(recordings: Sequence[str], output: str | None, plot: str | None
     for option, name in (("-o", output), ("--plot", plot)):
         if name is None or name == "-":
             continue
-        path = Path(name)
-        if not path.parent.is_dir():
-            raise UsageError(f"{option} {name}: there is no folder {str(path.parent)!r}")
-        if path.is_dir():
-            raise UsageError(f"{option} {name}: is a folder; name a file in it")
-        if any(Path(r).resolve() == path.resolve() for r in recordings):
+        check_target(option, name)
+        if any(Path(r).resolve() == Path(name).resolve() for r in recordings):
             raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
     if plot is not None and Path(plot).suffix.lower() not in PICTURES:
         raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
@@ -121,7 +118,7 @@ class _Run:
         from tactile_graph.cli.interrupt import Interrupts
         from tactile_graph.cli.progress import Bar
         from tactile_graph.cli.tally import Tally
-        from tactile_graph.cli.terminal import console
+        from tactile_graph.cli.terminal import console, stdout_for_programs
         from tactile_graph.engine.columns import columns_of
         from tactile_graph.steps.injected import Report
 
@@ -137,7 +134,8 @@ class _Run:
         self.stderr = console(stderr=True)
         self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
         with Interrupts() as interrupts:
-            self._frames(interrupts.held)
+            with stdout_for_programs(self.output == "-"):
+                self._frames(interrupts.held)
             code = self._close()
         click.get_current_context().exit(code)
 
@@ -156,7 +154,10 @@ class _Run:
         for i, frame in enumerate(frames):
             if i == 0:
                 self._warm_up()
-            yield self.runner(frame)
+            result = self.runner(frame)
+            if self.pipeline.promises.waiting:
+                self.pipeline.promises.check(result)
+            yield result
 
     def _warm_up(self) -> None:
         from tactile_graph.compiled import warm_up
@@ -175,6 +176,8 @@ class _Run:
             self.interrupted = True
         except BrokenPipeError:
             raise
+        except SystemExit as error:
+            self.error = exited(error)
         except Exception as error:  # a source may raise anything; what was done is kept
             self.error = error
         finally:
@@ -192,7 +195,7 @@ class _Run:
             self._row(result)
         else:
             self.lines.write(result)
-            if self.tally.n == 1 and self.output != "-":
+            if self.tally.n == 1:
                 self._provenance(complete=False)  # should the run be killed
         if self.plot is not None and len(self.kept) < IN_A_PICTURE:
             self.kept.append(result)
@@ -229,7 +232,7 @@ class _Run:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted:
             return INTERRUPTED
-        return SOME_FAILED if self.tally.n_failed else 0
+        return SOME_FAILED if self.tally.n_failed or self.tally.not_finite else 0
 
     def _no_frames(self) -> None:
         got = self.report.counts["frames"]
@@ -241,8 +244,7 @@ class _Run:
     def _finish_lines(self) -> None:
         if self.lines is not None:
             self.lines.close()
-            if self.output != "-":
-                self._provenance(complete=self.error is None and not self.interrupted)
+            self._provenance(complete=self.error is None and not self.interrupted)
 
     def _picture(self) -> None:
         if self.plot is not None and self.kept:
@@ -253,6 +255,8 @@ class _Run:
     def _provenance(self, complete: bool) -> None:
         from tactile_graph.cli.provenance import provenance, write_provenance
 
+        if self.output in (None, "-") or not is_plain(str(self.output)):
+            return  # nothing stands beside a pipe or a device
         data = provenance(
             self.pipeline, self.seed, self.report,
             command=["tactile-graph", *sys.argv[1:]], complete=complete,
@@ -268,9 +272,10 @@ class _Run:
             names = ", ".join(c.key for c in hidden)
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
-        for name in (self.output, self.plot if self.kept else None):
+        written = None if self.lines is not None and self.lines.broken else self.output
+        for name in (written, self.plot if self.kept else None):
             if name not in (None, "-"):
                 say.print(f"wrote {name}", style="dim", soft_wrap=True)
-        most = self.span.most
+        most = self.span.most if self.error is None else None
         if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
             say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")

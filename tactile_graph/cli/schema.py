@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import click
 
+from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
 
 
@@ -19,6 +19,8 @@ def schema(output: str | None) -> None:
     """Write a JSON Schema (draft 2020-12) of what the installed plugins allow in a pipeline."""
     from tactile_graph.schema import pipeline_schema
 
+    if output not in (None, "-"):
+        check_target("-o", str(output))
     made, troubles = pipeline_schema(registry.installed())
     for trouble in troubles:
         click.echo(f"{click.style('left open:', fg='yellow')} {trouble}", err=True)
@@ -26,5 +28,5 @@ def schema(output: str | None) -> None:
     if output in (None, "-"):
         click.echo(text, nl=False)
     else:
-        Path(str(output)).write_text(text, encoding="utf-8")
+        write_whole(str(output), text)
         click.echo(f"wrote {output}", err=True)

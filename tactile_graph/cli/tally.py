@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.text import Text
 
@@ -17,6 +19,8 @@ from tactile_graph.engine.result import Result
 from tactile_graph.steps.injected import Report
 
 MOST_TROUBLES = 20
+LONGEST_REASON = 300
+READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
 
 @dataclass
@@ -49,8 +53,11 @@ class Tally:
     n: int = 0
     n_failed: int = 0
     n_skipped: int = 0
+    n_not_finite: int = 0
+    """Frames with all outputs, of which one holds NaN or infinity."""
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    not_finite: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     errors: dict[str, dict[str, _Error]] = field(default_factory=dict)
     started: float = field(default_factory=time.perf_counter)
     seconds: float = 0.0
@@ -64,12 +71,17 @@ class Tally:
         for failure in result.failures:
             key = (failure.origin, failure.reason.partition("\n")[0])
             self._keep(self.failed, key, failure, result)
+        strange = False
         for output in self.outputs:
             outcome = result.outcome(output.output)
             if isinstance(outcome, Skipped):
                 self._keep(self.skipped, (output.output, outcome.origin), outcome, result)
-            elif output.errors and result.frame.truth is not None:
-                self._compare(output, result)
+            elif not isinstance(outcome, Failed):
+                values = values_of(result, output)
+                strange = self._look(output, values, result) or strange
+                self._compare(output, values)
+        good = Failed not in classes and Skipped not in classes
+        self.n_not_finite += strange and good
         self.seconds = time.perf_counter() - self.started
 
     @staticmethod
@@ -79,12 +91,18 @@ class Tally:
         kept = where.setdefault(key, _Kept(outcome, result.frame.index))
         kept.n += 1
 
-    def _compare(self, output: OutputColumns, result: Result) -> None:
-        values = values_of(result, output)
+    def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
+        """Note each value that is no number and should be one; return whether there is any."""
+        strange = [c.key for c in output.values if not _finite(values.get(c.key))]
+        for key in strange:
+            self._keep(self.not_finite, (key, ""), values[key], result)
+        return bool(strange)
+
+    def _compare(self, output: OutputColumns, values: dict[str, Any]) -> None:
         errors = self.errors.setdefault(output.output, {})
         for column in output.errors:
             value = values.get(column.key)
-            if value is not None:
+            if value is not None and _finite(value):
                 errors.setdefault(column.field, _Error(column.unit)).add(value)
 
     def data(self) -> dict[str, Any]:
@@ -96,6 +114,7 @@ class Tally:
             "frames": self.n,
             "frames_failed": self.n_failed,
             "frames_skipped": self.n_skipped,
+            "frames_not_finite": self.n_not_finite,
             "failures_by_node": failed,
         }
 
@@ -121,10 +140,10 @@ class Tally:
 
     def _outcomes(self) -> Iterator[Text]:
         for (node, _), kept in self.failed.items():
-            failure = kept.outcome
-            where = f" ({failure.where})" if failure.where and failure.kind == "error" else ""
-            text = f"{node} {_times(kept)}: {failure.reason}{where}"
-            yield _labelled("failed", "red", text)
+            yield _labelled("failed", "red", f"{node} {_times(kept)}: {_why(kept.outcome)}")
+        for (key, _), kept in self.not_finite.items():
+            text = f"{key} {_times(kept)}: {kept.outcome}, which is no answer"
+            yield _labelled("strange", "red", text)
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
             text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
@@ -139,14 +158,32 @@ class Tally:
         )
         if not self.n:
             return text
-        good = self.n - self.n_failed - self.n_skipped
+        good = self.n - self.n_failed - self.n_skipped - self.n_not_finite
         parts = [(f"{good} with all outputs", "green" if good else "")]
+        parts += [(f"{self.n_not_finite} not finite", "red")] if self.n_not_finite else []
         parts += [(f"{self.n_skipped} skipped", "yellow")] if self.n_skipped else []
         parts += [(f"{self.n_failed} failed", "red")] if self.n_failed else []
         for i, (part, style) in enumerate(parts):
             text.append(", " if i else ": ")
             text.append(part, style=style)
         return text
+
+
+def _finite(value: Any) -> bool:
+    return not isinstance(value, float | np.floating) or math.isfinite(value)
+
+
+def _why(failure: Failed) -> str:
+    """Return why a node failed in one line, with what to do where that is known."""
+    text = " ".join(failure.reason.split()).removesuffix(":")
+    if len(text) > LONGEST_REASON:
+        text = f"{text[:LONGEST_REASON]}…"
+    if failure.kind == "error":
+        # A condition has no file: it says itself where the trouble is.
+        where = failure.step if failure.where.startswith("<condition>") else failure.where
+        text += f" ({where})" if where else ""
+        text += READ_ONLY if "read-only" in failure.reason else ""
+    return text
 
 
 def _times(kept: _Kept) -> str:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from typing import NoReturn
 
 from rich.console import Console
@@ -14,6 +17,13 @@ class _Console(Console):
     def on_broken_pipe(self) -> NoReturn:
         """Let the command line end it: rich's own way exits with 1."""
         raise BrokenPipeError
+
+
+@contextmanager
+def stdout_for_programs(kept: bool) -> Iterator[None]:
+    """Send what plugins print to stderr while stdout is kept for lines that programs read."""
+    with redirect_stdout(sys.stderr) if kept else nullcontext():
+        yield
 
 
 def console(stderr: bool = False) -> Console:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import sys
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import Any, BinaryIO, NoReturn, Protocol
 
 import click
 
@@ -16,6 +17,8 @@ from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.result import Result
 from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.truth import errors_against, nearest
+from tactile_graph.errors import UsageError
+from tactile_graph.files import is_plain, said
 
 FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv"}
 
@@ -134,33 +137,65 @@ class LineFile:
     def __init__(self, output: str, lines: Lines) -> None:
         self.output = output
         self.lines = lines
+        self._stdout = sys.stdout  # whatever takes its name while frames are run
+        self.broken = False
+        """Whether a line could not be written."""
         self._file: BinaryIO | None = None
+        self._n_lines = 0
+        self._n_bytes = 0
 
     def write(self, result: Result) -> None:
-        """Write a frame's line through to the file."""
-        file = self._file or self.open()
-        _whole(file, self.lines.line(result))
+        """Write a frame's line through to the file.
+
+        Raises
+        ------
+        UsageError
+            If it cannot be written; of a file, whole lines are left.
+        """
+        self._put(self._file or self.open(), self.lines.line(result))
+        self._n_lines += 1
 
     def open(self) -> BinaryIO:
         """Open the file and write what stands before the first frame."""
         if self._file is None:
             if self.output == "-":
-                self._file = sys.stdout.buffer
+                self._file = self._stdout.buffer
             else:
-                # Unbuffered: a line goes out in one piece, so a killed run leaves whole lines.
-                self._file = Path(self.output).open("wb", buffering=0)  # noqa: SIM115
-            _whole(self._file, self.lines.head())
+                with said(self.output):
+                    # Unbuffered: a line goes out in one piece, a killed run leaves whole lines.
+                    self._file = Path(self.output).open("wb", buffering=0)  # noqa: SIM115
+            self._put(self._file, self.lines.head())
         return self._file
 
     def close(self) -> None:
         """Close the file; one without any frame still gets its head."""
+        if self.broken:
+            return
         file = self.open()
         if self.output != "-":
             file.close()
 
+    def _put(self, file: BinaryIO, text: str) -> None:
+        data = memoryview(text.encode())
+        size = len(data)
+        try:
+            while data:
+                data = data[file.write(data) :]
+            file.flush()
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            self._give_up(file, error)
+        self._n_bytes += size
 
-def _whole(file: BinaryIO, text: str) -> None:
-    data = memoryview(text.encode())
-    while data:
-        data = data[file.write(data) :]
-    file.flush()
+    def _give_up(self, file: BinaryIO, error: OSError) -> NoReturn:
+        self.broken = True
+        why = f"cannot be written: {error.strerror or error}"
+        if self.output == "-":
+            raise UsageError(f"stdout {why}") from error
+        if is_plain(self.output):
+            os.ftruncate(file.fileno(), self._n_bytes)
+        file.close()
+        n = self._n_lines
+        kept = f"the first {n} frame{'s are' if n > 1 else ' is'} in it" if n else "it is empty"
+        raise UsageError(f"{self.output}: {why}; {kept}") from error

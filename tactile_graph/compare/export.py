@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -16,6 +15,7 @@ from tactile_graph.compare.lineage_records import Evolution
 from tactile_graph.compare.records import Comparison, Variant
 from tactile_graph.compare.score_records import Score
 from tactile_graph.engine.rows import without_nan
+from tactile_graph.files import said, write_whole
 from tactile_graph.pipeline.pipeline import plain
 
 Row = Sequence[Any]
@@ -45,7 +45,8 @@ def write_csv(comparison: Comparison, path: str | Path) -> list[str]:
     if path.suffix.lower() == ".csv":
         write_whole(path, csv_text(ERRORS, error_rows(comparison)))
         return [str(path)]
-    path.mkdir(exist_ok=True)
+    with said(path):
+        path.mkdir(exist_ok=True)
     files = {
         "errors.csv": csv_text(ERRORS, error_rows(comparison)),
         "times.csv": csv_text(TIMES, time_rows(comparison)),
@@ -180,11 +181,3 @@ def _node(node: Any) -> dict[str, Any]:
              "output_of", "stateful", "n_ran", "n_skipped", "n_failed", "n_not_asked", "time_us",
              "total_s")  # fmt: skip
     return _named(node, names)
-
-
-def write_whole(path: str | Path, text: str) -> None:
-    """Write a file, at once or not at all."""
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.part")
-    temporary.write_text(text, encoding="utf-8", newline="\n")
-    os.replace(temporary, path)

@@ -18,7 +18,14 @@ class SettingChange:
     after: Any
 
     def __str__(self) -> str:
-        return f"{self.what}: {self.before} -> {self.after}"
+        return f"{self.what}: {_word(self.before)} -> {_word(self.after)}"
+
+
+def _word(value: Any) -> str:
+    """Return a value as a pipeline file has it; ``none`` where it has none."""
+    if value is None:
+        return "none"
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 @dataclass(frozen=True)

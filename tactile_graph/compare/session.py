@@ -102,6 +102,7 @@ class Session:
         self.stateful = first.stateful
         self.runners = self._runners(first)
         self._runner: Runner | None = None
+        self.promises = self.merged.pipeline.promises
         self._turns = np.random.default_rng(seed)
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
@@ -173,6 +174,8 @@ class Session:
         start = time.perf_counter()
         result = runner(frame)
         whole_us = 1e6 * (time.perf_counter() - start)
+        if self.promises.waiting:
+            self.promises.check(result)
         times_us = result.times_us
         position = self.n
         worst = {log.prepared.label: log.add(position, result, times_us) for log in self.logs}

@@ -140,7 +140,7 @@ def saving(comparison: Comparison) -> str:
     s = comparison.saving
     return (
         f"merged into {s.n_nodes_merged} nodes of {s.n_nodes_alone}, {s.n_shared} of them shared: "
-        f"{s.merged_s:.3g} s in nodes instead of {s.alone_s:.3g} s, {100 * s.share:.0f} % saved"
+        f"{s.merged_s:.3g} s in nodes instead of {s.alone_s:.3g} s, {round(100 * s.share)} % saved"
     )
 
 

@@ -14,6 +14,7 @@ from tactile_graph.draw.columns import Column, columns, outcome_of
 from tactile_graph.draw.picture import DASHES, FOUND, TRUE, Pen
 from tactile_graph.engine.result import Result
 from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.files import write_whole
 from tactile_graph.pipeline.node import FRAME
 from tactile_graph.wires import Frame
 
@@ -81,14 +82,7 @@ def save_strip(
     """
     kind = picture_format(path)
     data = figure_bytes(strip_figure(results, nodes, most_rows=most_rows), kind)
-    target = Path(path)
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(data)
-        part.replace(target)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise UsageError(f"{target}: cannot be written: {error.strerror or error}") from error
+    write_whole(path, data)
 
 
 def picture_format(path: str | os.PathLike[str]) -> str:

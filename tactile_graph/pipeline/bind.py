@@ -73,7 +73,8 @@ def _by_port(
         return {names[0]: wired}
     if len(wired) > len(ports):
         text = (
-            f": {len(wired)} inputs for {len(ports)} ports of {signature.name!r} ({one_of(names)})"
+            f": {len(wired)} inputs for {len(ports)} port{'s' if len(ports) > 1 else ''} of "
+            f"{signature.name!r} ({one_of(names)})"
         )
         resolver.problem(declared, text, "in")
     return dict(zip(names, wired, strict=False))
@@ -117,7 +118,9 @@ def _bind(
 
 def _misfit(signature: Signature, port: Port, text: str, kind: Any, wanted: Any, item: Any) -> str:
     hint = ""
-    if item is not None and fit(Ref("x"), item, wanted) is not None:
+    if port.item is not None and fit(Ref("x"), kind, port.item) is not None:
+        hint = f"; as a list of nodes it is [{text}]"
+    elif item is not None and fit(Ref("x"), item, wanted) is not None:
         hint = "; add 'each: true' to run it for each item"
     elif len(getattr(kind, "_fields", ())) > 0:
         from tactile_graph.pipeline.wiring import public_fields

@@ -18,7 +18,7 @@ def check_conditions(resolver: Resolver) -> None:
     errors: dict[str, ConditionError] = {}
     for name, text in named.items():
         try:
-            compile_condition(text, resolver.scope.types, named)
+            compile_condition(text, resolver.scope.types, named, resolver.declaration.nodes)
         except ConditionError as error:
             errors[name] = error
     broken = {n for n, e in errors.items() if e.named in ("", n)}

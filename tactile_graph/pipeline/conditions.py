@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping, Sized
+from collections.abc import Callable, Iterable, Mapping, Sized
 from dataclasses import dataclass
-from typing import Any, Literal, get_origin
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import one_of
+from tactile_graph.errors import shown
+from tactile_graph.pipeline.comparable import fields_hint, is_scalar, sort_of
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
-from tactile_graph.pipeline.wiring import Ref, arms, public_fields
+from tactile_graph.pipeline.wiring import Ref, arms
 from tactile_graph.steps.signature import list_item, type_name
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
@@ -71,7 +73,10 @@ def names_in(text: str) -> set[str]:
 
 
 def compile_condition(
-    text: str, types: Mapping[str, Any], named: Mapping[str, str] | None = None
+    text: str,
+    types: Mapping[str, Any],
+    named: Mapping[str, str] | None = None,
+    also: Iterable[str] = (),
 ) -> Guard:
     """Return the guard that ``text`` spells.
 
@@ -83,13 +88,15 @@ def compile_condition(
         Node name -> type of its value; also ``use`` outputs as ``node.output``.
     named : mapping, optional
         Named conditions, by name.
+    also : iterable of str
+        Nodes that are there too, but cannot be read yet: for what errors say.
 
     Raises
     ------
     ConditionError
         If it is no condition: bad syntax, something not allowed, an unknown node or field.
     """
-    compiler = _Compiler(types, named or {})
+    compiler = _Compiler(types, named or {}, also)
     try:
         tree = compiler.parse(text, ())
         if not compiler.is_truth(tree):
@@ -119,8 +126,11 @@ def _function(compiler: _Compiler, tree: ast.expr) -> Callable[..., Any]:
 
 
 class _Compiler:
-    def __init__(self, types: Mapping[str, Any], named: Mapping[str, str]) -> None:
+    def __init__(
+        self, types: Mapping[str, Any], named: Mapping[str, str], also: Iterable[str]
+    ) -> None:
         self.types = types
+        self.also = tuple(also)
         self.named = named
         self.refs: list[Ref] = []
         self.kinds: list[Any] = []
@@ -134,7 +144,8 @@ class _Compiler:
         try:
             tree = ast.parse(_one_line(text), mode="eval")
         except SyntaxError as error:
-            raise ConditionError(f"{error.msg}", max(0, (error.offset or 1) - 1)) from None
+            message = f"{shown(text)} is no condition: {error.msg}"
+            raise ConditionError(message, max(0, (error.offset or 1) - 1)) from None
         except ValueError as error:
             raise ConditionError(f"cannot be read: {error}") from None
         _check_depth(tree)
@@ -170,7 +181,34 @@ class _Compiler:
         for part in _compared_parts(node):
             if not self.is_comparable(part):
                 raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
+        if isinstance(node, ast.Compare):
+            self.refuse_mixed(node)
         return node
+
+    def refuse_mixed(self, node: ast.Compare) -> None:
+        """Refuse to compare a number with a text: it fails, or never holds, in every frame."""
+        sides = [node.left, *node.comparators]
+        for left, right in pairwise(sides):
+            sorts = self.sort(left), self.sort(right)
+            if None not in sorts and sorts[0] != sorts[1]:
+                words = " and ".join(
+                    f"{self.spell(side)} is a {sort}"
+                    for side, sort in zip((left, right), sorts, strict=True)
+                )
+                text = f"{words}: they cannot be compared"
+                raise ConditionError(text, getattr(node, "col_offset", 0))
+
+    def sort(self, node: ast.expr) -> str | None:
+        """Return ``number`` or ``text``, None where nobody knows."""
+        if isinstance(node, ast.Constant):
+            return "text" if isinstance(node.value, str) else "number"
+        found = {sort_of(arm) for arm in arms(self.kind(node))}
+        return found.pop() if len(found) == 1 else None
+
+    def spell(self, node: ast.expr) -> str:
+        if isinstance(node, ast.Name):
+            return str(self.refs[int(node.id[1:])])
+        return ast.unparse(node)
 
     def call(self, node: ast.Call, within: tuple[str, ...]) -> ast.expr:
         name = node.func.id if isinstance(node.func, ast.Name) else ""
@@ -193,7 +231,7 @@ class _Compiler:
                 return self.parse(self.named[root], (*within, root))
             except ConditionError as error:
                 raise ConditionError(error.message, offset, error.named or root) from None
-        ref, kind = resolve_reference(chain, self.types, list(self.named), offset)
+        ref, kind = resolve_reference(chain, self.types, [*self.named, *self.also], offset)
         if ref not in self.refs:
             self.refs.append(ref)
             self.kinds.append(kind)
@@ -206,24 +244,24 @@ class _Compiler:
 
     def is_truth(self, node: ast.expr) -> bool:
         kind = self.kind(node)
-        return kind is None or all(_scalar(a) or list_item(a) is not None for a in arms(kind))
+        return kind is None or all(is_scalar(a) or list_item(a) is not None for a in arms(kind))
 
     def is_comparable(self, node: ast.expr) -> bool:
         kind = self.kind(node)
-        return kind is None or all(_scalar(a) for a in arms(kind))
+        return kind is None or all(is_scalar(a) for a in arms(kind))
 
     def not_truth(self, node: ast.expr) -> str:
         kind = self.kind(node)
         return (
             f"{self.refs[int(node.id[1:])]} is a {type_name(kind)}, "  # type: ignore[attr-defined]
-            f"not a yes/no or a number{_fields_hint(kind)}"
+            f"not a yes/no or a number{fields_hint(kind)}"
         )
 
     def not_comparable(self, node: ast.expr) -> str:
         kind = self.kind(node)
         return (
             f"{self.refs[int(node.id[1:])]} is a {type_name(kind)} "  # type: ignore[attr-defined]
-            f"and cannot be compared{_fields_hint(kind)}"
+            f"and cannot be compared{fields_hint(kind)}"
         )
 
 
@@ -253,14 +291,3 @@ def _compared_parts(node: ast.expr) -> list[ast.expr]:
     if isinstance(node, ast.BinOp):
         return [node.left, node.right]
     return []
-
-
-def _scalar(kind: Any) -> bool:
-    if kind is Any or kind is type(None) or get_origin(kind) is Literal:
-        return True
-    return isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic)
-
-
-def _fields_hint(kind: Any) -> str:
-    fields = [n for n, k in public_fields(kind).items() if all(_scalar(a) for a in arms(k))]
-    return f"; it has: {one_of(fields)}" if fields else ""

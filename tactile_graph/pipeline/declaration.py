@@ -59,13 +59,16 @@ def kind_of(value: Any) -> str:
     kind = kinds.get(type(value))
     if kind is None:
         return shown(value)
-    return kind if value in (None, {}, []) else f"{kind}: {shown(value)}"
+    if value in ({}, [], ""):
+        return f"an empty {kind.removeprefix('a ')}"
+    return kind if value is None else f"{kind}: {shown(value)}"
 
 
 class _Declarer:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.result = Declaration(document)
+        self.named: frozenset[str] = frozenset()
 
     def problem(self, message: str, *path: str | int, key: bool = False) -> None:
         self.document.problem(message, *path, key=key)
@@ -82,7 +85,10 @@ class _Declarer:
             return value or ""
         if isinstance(value, int | float) and not isinstance(value, bool):
             return shown(value)
-        self.problem(f"{what} must be a text, got {kind_of(value)}", *path, key)
+        hint = ""
+        if isinstance(value, bool):
+            hint = f"; to YAML {self.document.raw(*path, key)} is a yes/no: put it in quotes"
+        self.problem(f"{what} must be a text, got {kind_of(value)}{hint}", *path, key)
         return ""
 
     def top(self) -> Declaration:
@@ -147,7 +153,8 @@ class _Declarer:
     def name(self, name: str, path: Path, what: str) -> None:
         if not _NAME.match(name):
             self.problem(
-                f"{what} name {name!r}: letters, digits and '_' only, not starting with a digit",
+                f"{what} name {name!r}: letters a to z, digits and '_' only, "
+                "not starting with a digit",
                 *path, key=True,
             )  # fmt: skip
         elif name in RESERVED:
@@ -159,9 +166,12 @@ class _Declarer:
                 f"must be a mapping of nodes, got {kind_of(data)}")  # fmt: skip
             self.problem(f"'nodes' {what}", *(() if data is None else ("nodes",)))
             return
+        self.named = frozenset(data)
         for name, body in data.items():
             path: Path = ("nodes", name)
             self.name(name, path, "node")
+            if name == RESERVED[0]:
+                continue  # or every node that reads the frame would be told the same
             if name in self.result.conditions:
                 self.problem(f"{name!r} is both a node and a condition", *path, key=True)
             if isinstance(body, dict):
@@ -213,7 +223,12 @@ class _Declarer:
     def ref(self, value: Any, path: Path, what: str) -> bool:
         if isinstance(value, str) and _REF.match(value):
             return True
-        self.problem(f"{what}: a node or node.field is needed, got {kind_of(value)}", *path)
+        if isinstance(value, str) and value in self.named and "." not in value:
+            return True  # what is wrong with the name is told where it is given
+        hint = ""
+        if isinstance(value, str) and "/" in value:
+            hint = "; what is inside an embedded pipeline is to be seen by --only"
+        self.problem(f"{what}: a node or node.field is needed, got {kind_of(value)}{hint}", *path)
         return False
 
     def inputs(self, data: Any, path: Path, what: str) -> Any:

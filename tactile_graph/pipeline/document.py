@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -42,8 +43,12 @@ class Document:
 
         ``true`` and ``false`` in any case come back as conditions spell them: True, False.
         """
-        text = self._switches[path]
+        text = self.raw(*path)
         return text.capitalize() if text.lower() in ("true", "false") else text
+
+    def raw(self, *path: str | int) -> str:
+        """Return how a yes/no stands in the file."""
+        return self._switches[path]
 
     def mark(self, *path: str | int, key: bool = False) -> Mark:
         """Return where the value (or its key) at ``path`` stands, else its nearest parent."""
@@ -73,7 +78,15 @@ class Document:
         start = max(0, mark.column - 60)
         part = line[start : start + 100].replace("\t", " ")
         label = f"  {mark.line} | "
-        return f"{label}{part}\n{' ' * (len(label) + mark.column - 1 - start)}^"
+        return f"{label}{part}\n{' ' * (len(label) + _columns(part[: mark.column - 1 - start]))}^"
+
+
+def _columns(text: str) -> int:
+    """Return how wide a terminal shows a text: some letters take two columns, some none."""
+    return sum(
+        0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
+        for c in text
+    )
 
 
 def read_document(text: str, file: str) -> Document:
@@ -96,12 +109,24 @@ def read_document(text: str, file: str) -> Document:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
-        document.problem_at(place, f"this is not YAML: {error.problem or error.context}")
+        document.problem_at(place, f"this is not YAML: {_yaml_words(error)}")
     except (yaml.YAMLError, _TooMuch) as error:
         document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
     finally:
         loader.dispose()
     return document
+
+
+def _yaml_words(error: yaml.MarkedYAMLError) -> str:
+    """Return PyYAML's words, better ones where people stumble most."""
+    text = str(error.problem or error.context)
+    if "'\\t'" in text:
+        return "a tab cannot stand here: YAML is indented with spaces"
+    if text == "but found another document":
+        return "'---' begins a second document, but a file holds one pipeline"
+    if text.startswith("mapping values are not allowed"):
+        return f"{text}: is the line indented as the others, and a text with ': ' in it quoted?"
+    return text
 
 
 def _clean(document: Document) -> bool:

@@ -77,17 +77,32 @@ def find(name: str | Path, registry: Registry) -> Path:
         path = Path(name)
         if _is_file(path):
             return path
+        if _is_folder(path):
+            raise UsageError(f"{text!r} is a folder; name a file in it")
         hint = did_you_mean(path.name, _siblings(path))
         raise UsageError(f"no pipeline file {text!r}{hint}")
-    if not registry.has("pipelines", text) and _is_file(Path(text)):
-        raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
+    if not registry.has("pipelines", text):
+        if _is_file(Path(text)):
+            raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
+        if text and _is_folder(Path(text)):
+            raise UsageError(f"{text!r} is a folder; name a file in it")
     return registry.path("pipelines", text)
 
 
 def _is_file(path: Path) -> bool:
+    """Return whether there is something to read: a file, a pipe, /dev/stdin."""
     try:
-        return path.is_file()
+        return path.exists() and not path.is_dir()
+    except PermissionError:  # reading it says so
+        return True
     except OSError:  # a name that no file can have
+        return False
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:
         return False
 
 
@@ -108,8 +123,15 @@ def _load(
     path = find(name, registry)
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UsageError(f"pipeline file {str(path)!r} cannot be read: {error}") from None
+    except OSError as error:
+        why = error.strerror or error
+        raise UsageError(f"pipeline file {str(path)!r} cannot be read: {why}") from None
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise UsageError(
+            f"pipeline file {str(path)!r} cannot be read: it is not UTF-8 text "
+            f"(byte 0x{error.object[error.start]:02x} in line {line}); save it as UTF-8"
+        ) from None
     return _build(text, _shown(path), registry, overrides, source, within)
 
 

@@ -9,7 +9,9 @@ from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError
-from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind, node_key
+from tactile_graph.pipeline.node import FRAME, FrameRule, Node, node_key
+from tactile_graph.pipeline.plain import plain as plain
+from tactile_graph.pipeline.plain import plain_node
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.injected import Report
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
     from tactile_graph.engine.result import Result
     from tactile_graph.engine.runner import Runner
+    from tactile_graph.pipeline.promises import Promises
     from tactile_graph.plugins.registry import Registry
 
 
@@ -79,7 +82,10 @@ class Pipeline:
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
         """
-        return self._runner(tuple(only or ()), seed)(_as_frame(frame))
+        result = self._runner(tuple(only or ()), seed)(_as_frame(frame))
+        if self.promises.waiting:
+            self.promises.check(result)
+        return result
 
     def stream(
         self,
@@ -98,7 +104,10 @@ class Pipeline:
         """
         runner = self.runner(only, seed)
         for frame in self.frames(seed) if frames is None else frames:
-            yield runner(_as_frame(frame))
+            result = runner(_as_frame(frame))
+            if self.promises.waiting:
+                self.promises.check(result)
+            yield result
 
     def runner(self, only: Sequence[str] | None = None, seed: int = 0) -> Runner:
         """Return a callable of frames that keeps state, for loops of your own."""
@@ -121,6 +130,13 @@ class Pipeline:
     def _kept(self) -> dict[Any, Runner]:
         return {}
 
+    @cached_property
+    def promises(self) -> Promises:
+        """What the steps promise and have not been seen to keep yet."""
+        from tactile_graph.pipeline.promises import Promises
+
+        return Promises(self.nodes.values(), self.registry)
+
     def frames(self, seed: int = 0, report: Report | None = None) -> Iterator[Frame]:
         """Return the frames of the pipeline's own source.
 
@@ -128,12 +144,17 @@ class Pipeline:
         ------
         UsageError
             If the pipeline declares none.
+        DataError
+            If the source raises what is not for people.
         """
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.sources import open_source
+        from tactile_graph.pipeline.source_errors import told
 
-        return open_source(self.source.signature, self.source.settings, seed, report or Report())
+        source = self.source
+        frames = open_source(source.signature, source.settings, seed, report or Report())
+        return told(source.name, frames)
 
     # -- variants ----------------------------------------------------------------------------
 
@@ -256,46 +277,9 @@ class Pipeline:
             "source": None
             if self.source is None
             else {"step": self.source.name, "with": plain(self.source.settings)},
-            "nodes": {name: _plain_node(node) for name, node in self.nodes.items()},
+            "nodes": {name: plain_node(node) for name, node in self.nodes.items()},
             "outputs": {name: str(ref) for name, ref in self.outputs.items()},
         }
-
-
-def _plain_node(node: Node) -> dict[str, Any]:
-    data: dict[str, Any] = {}
-    if node.kind is NodeKind.STEP and node.signature is not None:
-        data["step"] = node.signature.name
-    elif node.inner is not None:
-        data["use"] = node.inner.resolved()
-    if node.choices:
-        data["first_of"] = [str(c) for c in node.choices]
-    if node.inputs:
-        data["in"] = {
-            b.port.name: [str(r) for r in b.refs] if b.collects else str(b.refs[0])
-            for b in node.inputs
-        }
-    if node.settings:
-        data["with"] = plain(node.settings)
-    if node.guard is not None:
-        data["when"] = node.guard.text
-    if node.each:
-        data["each"] = True
-    return data
-
-
-def plain(value: Any) -> Any:
-    """Return a value as plain data fit for YAML and JSON."""
-    if isinstance(value, dict | Mapping):
-        return {str(k): plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(v) for v in value]
-    if isinstance(value, set | frozenset):
-        return sorted((plain(v) for v in value), key=repr)  # the same under every hash seed
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    return str(value)
 
 
 def _as_frame(frame: Any) -> Frame:

@@ -39,7 +39,7 @@ def resolve_reference(
         if inner:
             given = f"{chain[1]!r} is none of them" if len(chain) > 1 else "name one"
             raise ConditionError(f"{name!r} has the outputs {one_of(inner)}; {given}", offset)
-        known = [*types, *also]
+        known = list(dict.fromkeys([*types, *also]))
         hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
         raise ConditionError(f"no node named {name!r}{hint}", offset)
     kind = types[name]

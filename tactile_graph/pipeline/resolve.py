@@ -31,6 +31,7 @@ from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
+from tactile_graph.plugins.mistakes import why
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
@@ -155,7 +156,8 @@ class Resolver:
         if not declared.when:
             return None
         try:
-            return compile_condition(declared.when, self.scope.types, self.declaration.conditions)
+            d = self.declaration
+            return compile_condition(declared.when, self.scope.types, d.conditions, d.nodes)
         except ConditionError as error:
             self.condition_errors.append((declared, error))
             return None
@@ -175,7 +177,8 @@ class Resolver:
     def ref(self, declared: NodeDeclaration, text: str, *path: str | int) -> tuple[Ref, Any] | None:
         """Return reference and type for ``node.field``, or report what is wrong with it."""
         try:
-            ref, kind = resolve_reference(tuple(text.split(".")), self.scope.types, [])
+            known = list(self.declaration.nodes)
+            ref, kind = resolve_reference(tuple(text.split(".")), self.scope.types, known)
         except ConditionError as error:
             self.problem(declared, f": {error.message}", *path)
             return None
@@ -255,7 +258,9 @@ class Resolver:
             rng = node.signature.rng if node.signature and node.signature.rng_at_init else ""
             return replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
         except Exception as error:  # a constructor may raise anything about its settings
-            self.problem(declared, f": {error}", "with")
+            told = isinstance(error, TactileGraphError | ValueError) and str(error)
+            text = told or f"step {declared.step!r} cannot be made: {why(error)}"
+            self.problem(declared, f": {text}", "with")
             return node
 
     def _rules(

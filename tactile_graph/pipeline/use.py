@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.errors import TactileGraphError
+from tactile_graph.errors import PipelineError, TactileGraphError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import inline_nodes, map_node
@@ -47,9 +47,20 @@ def _inner(resolver: Resolver, declared: NodeDeclaration) -> Pipeline | None:
     try:
         return resolver.load(str(declared.use), overrides)
     except TactileGraphError as error:
-        text = f": pipeline {declared.use!r} cannot be used: {error}"
-        resolver.problem(declared, text, "use")
+        problems = error.problems if isinstance(error, PipelineError) else (error,)
+        for problem in problems:
+            _cannot_be_used(resolver, declared, str(problem))
         return None
+
+
+def _cannot_be_used(resolver: Resolver, declared: NodeDeclaration, text: str) -> None:
+    """Report what is wrong with an embedded pipeline, of a setting given here at the setting."""
+    for name in declared.settings:
+        mine = f"setting {name}: "
+        if text.startswith(mine):
+            resolver.problem(declared, f", {name}: {text.removeprefix(mine)}", "with", name)
+            return
+    resolver.problem(declared, f": pipeline {declared.use!r} cannot be used: {text}", "use")
 
 
 def _input(resolver: Resolver, declared: NodeDeclaration) -> Ref | None:

@@ -80,13 +80,27 @@ def _found(target: Any) -> tuple[ast.Module, _Function | ast.ClassDef]:
     if not isinstance(target, str):
         return _from_object(target)
     module, _, name = target.partition(":")
+    if not module or not name:
+        raise _NotReadable(f"{target!r} is no import string 'module:name'")
     for _ in range(5):  # a name may be handed on from module to module
         tree = _tree(module)
-        for node in tree.body:
+        for node in _statements(tree):
             if isinstance(node, _Function | ast.ClassDef) and node.name == name:
                 return tree, node
         module, name = _imported_from(tree, module, name)
     raise _NotReadable(f"{target} is handed on too often")
+
+
+def _statements(tree: ast.Module) -> Iterator[ast.stmt]:
+    """Yield the statements a module runs when it is imported, those under if and try too."""
+    waiting = list(reversed(tree.body))
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if isinstance(node, ast.If | ast.Try | ast.With):
+            inner = [n for n in ast.iter_child_nodes(node) if isinstance(n, ast.stmt)]
+            handled = [n for h in getattr(node, "handlers", ()) for n in h.body]
+            waiting += reversed(inner + handled)
 
 
 def _from_object(target: Any) -> tuple[ast.Module, _Function | ast.ClassDef]:
@@ -111,18 +125,29 @@ def _tree(module: str) -> ast.Module:
     if get_source is None:
         raise _NotReadable(f"there is no module {module}")
     try:
-        return ast.parse(get_source(module) or "")
+        return ast.parse(get_source(module) or "", str(spec.origin if spec else module))
     except (SyntaxError, ImportError, OSError) as error:
         raise _NotReadable(f"cannot read {module}: {error}") from None
 
 
 def _imported_from(tree: ast.Module, module: str, name: str) -> tuple[str, str]:
-    for node in tree.body:
+    others = False
+    for node in _statements(tree):
         for alias in node.names if isinstance(node, ast.ImportFrom) else ():
             if (alias.asname or alias.name) == name and isinstance(node, ast.ImportFrom):
                 base = module.rsplit(".", node.level)[0] + "." if node.level else ""
                 return f"{base}{node.module or ''}".rstrip("."), alias.name
+            others = others or alias.name == "*"
+        if name in _assigned(node):
+            raise _NotReadable(f"{module} makes {name!r} when it is imported; nothing to read here")
+    if others:
+        raise _NotReadable(f"{module} defines no {name!r}; an 'import *' may bring it")
     raise _NotReadable(f"{module} has no {name!r}")
+
+
+def _assigned(node: ast.stmt) -> list[str]:
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    return [t.id for t in targets if isinstance(t, ast.Name)]
 
 
 def _call_of(node: _Function | ast.ClassDef) -> _Function | None:

@@ -17,6 +17,7 @@ import pluggy
 
 from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, shown
 from tactile_graph.plugins import hookspecs
+from tactile_graph.plugins.mistakes import check_hooks, stale, why
 
 if TYPE_CHECKING:
     from tactile_graph.steps.signature import Signature
@@ -113,12 +114,16 @@ class Registry:
         try:
             module = loader()
             if self._manager.has_plugin(plugin.name):
-                raise PluginError("another plugin of this name is already loaded")
+                other = next(p for p in self.plugins if p.name == plugin.name)
+                raise PluginError(
+                    f"package {other.package} has a plugin of this name already; "
+                    "give the entry point another"
+                )
             self._register(module, plugin.name)
             for kind in OFFERS:
                 plugin.offers[kind] = self._ask(module, kind)
         except (Exception, SystemExit) as error:  # it may raise anything; the rest must go on
-            plugin.error = f"{type(error).__name__}: {error}"
+            plugin.error = why(error) + stale(error, plugin.package)
             plugin.offers.clear()
         plugin.import_ms = 1e3 * (time.perf_counter() - start)
         for kind, offers in plugin.offers.items():
@@ -126,6 +131,7 @@ class Registry:
                 self._add(kind, Offer(name, plugin, target))
 
     def _register(self, module: ModuleType, name: str) -> None:
+        check_hooks(module, (f"{GROUP}_{kind}" for kind in OFFERS), hookspecs.PROJECT)
         self._manager.register(module, name)
         try:
             self._manager.check_pending()
@@ -206,9 +212,18 @@ class Registry:
     def step(self, name: str) -> Signature:
         """Return what the step of that name needs and gives; imports its module."""
         if name not in self._signatures:
+            from tactile_graph.steps.checks import check_signature
             from tactile_graph.steps.signature import read_signature
 
-            self._signatures[name] = read_signature(name, self.load("steps", name))
+            target = self.load("steps", name)
+            try:
+                signature = read_signature(name, target)
+                check_signature(signature)
+            except PluginError as error:
+                plugin = self.offer("steps", name).plugin
+                of = f"(plugin {plugin.name!r}, package {plugin.package})"
+                raise PluginError(f"{error} {of}") from None
+            self._signatures[name] = signature
         return self._signatures[name]
 
     def path(self, kind: str, name: str) -> Path:
@@ -224,11 +239,12 @@ def _import(offer: Offer) -> Any:
     try:
         module = importlib.import_module(module_name)
     except (Exception, SystemExit) as error:
-        raise PluginError(f"{where}: cannot import {module_name}: {error}") from error
+        raise PluginError(f"{where}: cannot import {module_name}: {why(error)}") from error
     try:
         return getattr(module, attribute)
     except AttributeError:
-        raise PluginError(f"{where}: {module_name} has no {attribute!r}") from None
+        hint = did_you_mean(attribute, vars(module))
+        raise PluginError(f"{where}: {module_name} has no {attribute!r}{hint}") from None
 
 
 def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:

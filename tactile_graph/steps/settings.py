@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import types
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from pathlib import Path
+from typing import Any, Union, get_args, get_origin
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
@@ -15,6 +17,14 @@ from tactile_graph.steps.signature import Setting, Signature, strip, type_name
 Trouble = tuple[tuple[str | int, ...], str]
 """Where in the settings, and what is wrong there."""
 
+_WORDS = {
+    int: "a whole number",
+    float: "a number",
+    str: "a text",
+    bool: "true or false",
+    Path: "a path",
+    type(None): "null",
+}
 _COMPARISONS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", ">="),
@@ -61,7 +71,7 @@ def validate_settings(
                 wrong = wrong or {(): f"{error or type(error).__name__}"}
             troubles += [((name, *p), message) for p, message in wrong.items()]
         elif setting.required:
-            troubles.append(((), f"setting {name!r} is missing ({type_name(setting.annotation)})"))
+            troubles.append(((), f"setting {name!r} is missing ({_allowed(setting.annotation)})"))
         else:
             values[name] = setting.default
     return values, troubles
@@ -92,7 +102,13 @@ def _takes_bool(annotation: Any) -> bool:
 
 
 def _allowed(annotation: Any) -> str:
-    return type_name(strip(annotation)[0])
+    """Return what is allowed as people who write YAML say it: ``a number or null``."""
+    bare = strip(annotation)[0]
+    arms = get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
+    kinds = [strip(arm)[0] for arm in arms]
+    if all(kind in _WORDS for kind in kinds):
+        return " or ".join(_WORDS[kind] for kind in kinds)
+    return type_name(bare)
 
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:

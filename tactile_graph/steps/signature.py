@@ -13,7 +13,7 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from tactile_graph.errors import PluginError
+from tactile_graph.errors import PluginError, shown
 from tactile_graph.steps.injected import Report, is_time_gap
 from tactile_graph.steps.rules import Grid, Quantity
 
@@ -163,8 +163,7 @@ def _port(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Port:
     return Port(p.name, strip(annotation)[0], p.default, *rules)
 
 
-def _setting(name: str, hints: dict[str, Any], p: inspect.Parameter) -> Setting:
-    annotation = _annotation(name, hints, p)
+def _setting(p: inspect.Parameter, annotation: Any) -> Setting:
     return Setting(p.name, annotation, p.default, _pick(annotation, Quantity))
 
 
@@ -178,8 +177,9 @@ def read_signature(name: str, target: Callable[..., Any]) -> Signature:
     """
     if inspect.isclass(target):
         return _read_class(name, target)
-    if not callable(target):
-        raise PluginError(f"step {name!r}: {target!r} is not a function or class")
+    if not inspect.isroutine(target):  # a partial, an instance with __call__, a number
+        what = f"{shown(target)} is not a function or class"
+        raise PluginError(f"step {name!r}: {what}: write one around it")
     if inspect.iscoroutinefunction(target) or inspect.isasyncgenfunction(target):
         raise PluginError(f"step {name!r}: an 'async' function cannot be a step")
     hints = _hints(name, target)
@@ -215,7 +215,8 @@ def _split(
     injected = {"rng": "", "report": "", "gap": ""}
     settings: list[Setting] = []
     for p in parameters:
-        bare, metadata = strip(_annotation(name, hints, p))
+        annotation = _annotation(name, hints, p)
+        bare, metadata = strip(annotation)
         if bare is np.random.Generator:
             injected["rng"] = p.name
         elif bare is Report:
@@ -223,7 +224,7 @@ def _split(
         elif is_time_gap(metadata):
             injected["gap"] = p.name
         else:
-            settings.append(_setting(name, hints, p))
+            settings.append(_setting(p, annotation))
     return injected, tuple(settings)
 
 

@@ -16,6 +16,7 @@ PUBLIC = (
     "tactile_graph.wires",
     "tactile_graph.steps",
     "tactile_graph.errors",
+    "tactile_graph.files",
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",
 )

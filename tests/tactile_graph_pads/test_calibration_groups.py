@@ -126,6 +126,13 @@ def test_a_frame_without_a_known_load_is_refused() -> None:
         refused(GroupReader(), frame(PAD, 100.0), None)
 
 
+@pytest.mark.parametrize("value", [0.0, -0.2])
+def test_a_load_that_reads_nothing_is_refused(value: float) -> None:
+    still = Frame.of(np.full((4, 4), value), quantity="volt")
+    with pytest.raises(DataError, match=r"^a, frame 0: 100 g read nothing \(.*did the load lie"):
+        list(GroupReader().observations([still], 100.0, "a"))
+
+
 def test_two_objects_are_one_too_many() -> None:
     two = replace(frame(PAD, 100.0), truth=(TrueObject(Circle(1, 1, 1), 5.0),) * 2)
     with pytest.raises(DataError, match="holds 2 objects, a calibration takes one"):

@@ -19,6 +19,23 @@ def test_lists_of_loads_are_read_relative_to_their_folder(tmp_path: Path) -> Non
         assert read_loads(tmp_path / name) == expected
 
 
+def test_a_list_from_a_spreadsheet_is_read_as_it_was_saved(tmp_path: Path) -> None:
+    path = tmp_path / "l.csv"
+    path.write_bytes("\ufeffrecording;load_g\r\na.npz;100,5\r\nb.npz;20\r\n".encode())
+    assert read_loads(path) == [Loaded(tmp_path / "a.npz", 100.5), Loaded(tmp_path / "b.npz", 20.0)]
+    path.write_text("load_g\trecording\n7\ta.npz\n")
+    assert read_loads(path) == [Loaded(tmp_path / "a.npz", 7.0)]
+    path.write_text("recording;load_g\na.npz;1,500\n")  # of thousands, or of grams?
+    with pytest.raises(UsageError, match=r"l\.csv:2: a load is a number .*, got '1,500'"):
+        read_loads(path)
+
+
+def test_a_wrong_load_of_a_list_names_its_recording(tmp_path: Path) -> None:
+    (tmp_path / "l.yaml").write_text("a.npz: 1\nb.npz: x\n")
+    with pytest.raises(UsageError, match=r"l\.yaml, b\.npz: a load is a number .*, got 'x'"):
+        read_loads(tmp_path / "l.yaml")
+
+
 def test_a_list_without_its_columns_is_refused(tmp_path: Path) -> None:
     (tmp_path / "l.csv").write_text("file,grams\na,1\n")
     with pytest.raises(DataError, match=r"l.csv:1: needs the columns recording and load_g"):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers_recordings import frames_of
+from tactile_graph.errors import UsageError
 from tactile_graph.wires import Circle, Ellipse, Frame, Image, Polygon, Rectangle, TrueObject
 from tactile_graph_sources.write_npz import write_npz
 
@@ -75,7 +76,7 @@ def test_a_writer_that_fails_leaves_the_old_file_and_nothing_else(tmp_path: Path
         write_npz(path, breaking())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.replace", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
-        with pytest.raises(OSError, match="disk full"):
+        with pytest.raises(UsageError, match=r"film\.npz: cannot be written: disk full"):
             write_npz(path, film(2))
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["film.npz"]

@@ -46,6 +46,12 @@ def test_steps_kinds_and_plugins_can_be_named():
         chosen(found, ("fit_cirle",))
 
 
+def test_a_named_step_that_cannot_be_stressed_says_why():
+    found, left = subjects(installed())
+    with pytest.raises(UsageError, match=r"^step 'simulate' cannot be stressed: a source$"):
+        chosen(found, ("icm", "simulate"), left)
+
+
 def test_an_ellipse_about_an_axis_gets_its_points_turned_along_it():
     wires = subject_of("fit_ellipse_origin").wires
     assert wires == {"points": "rotate_points", "axis": "orientation"}

@@ -32,6 +32,7 @@ def verdict(name, xy=XY, base=XY, law=None, **rest):
     ("name", "note"),
     [
         ("nan_out", "output.x_cm is nan"),
+        ("no_circle", "promises Circle, but gave a tuple of float"),
         ("warns", "warning escaped: divide by zero"),
         ("crashes", "untyped IndexError"),
         ("numpys_error", "untyped LinAlgError: Singular matrix"),

@@ -33,7 +33,8 @@ def convert(
 
     SOURCE is a Zarr store or any file that the source 'recording' reads.
     """
-    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.errors import UsageError
+    from tactile_graph.files import check_target
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.frames_of import frames_of
 
@@ -41,15 +42,16 @@ def convert(
         raise click.UsageError(f"TARGET must end in {', '.join(KINDS)}, got {target.name!r}")
     if target.exists():
         raise click.UsageError(f"{target} is there already")
+    check_target("TARGET", target)
     told = {"rows": rows, "columns": columns, "pitch_cm": pitch_cm, "quantity": quantity}
     report = Report()
     kept = _Kept()
     try:
         frames = frames_of(source, report, **{k: v for k, v in told.items() if v is not None})
         n = _write(target, kept.watch(frames), source)
-    except (TactileGraphError, ValueError) as error:
-        raise click.ClickException(str(error)) from error
-    click.echo(f"{target}: {n} frames")
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    click.echo(f"{target}: {n} frame{'s' if n != 1 else ''}")
     for where, what in report.troubles:
         click.echo(f"{where}: {what}", err=True)
     if target.suffix == ".csv" and kept.names:

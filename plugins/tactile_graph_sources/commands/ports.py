@@ -15,6 +15,7 @@ import click
 )
 def ports(wait_s: float | None) -> None:
     """List the serial ports, or find the one that appears when a pad is plugged in."""
+    from tactile_graph.errors import UsageError
     from tactile_graph_sources.devices.port_list import PortInfo, list_ports, wait_for_new_port
 
     def show(port: PortInfo) -> None:
@@ -24,7 +25,7 @@ def ports(wait_s: float | None) -> None:
         click.echo("plug the pad in now (unplug it first if it is in) …", err=True)
         new = wait_for_new_port(wait_s)
         if new is None:
-            raise click.ClickException(f"no new port within {wait_s:g} s")
+            raise UsageError(f"no new port within {wait_s:g} s")
         show(new)
         return
     found = list_ports()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 import sys
+import threading
 import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import FrameType
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,6 +19,7 @@ if TYPE_CHECKING:
     from tactile_graph_sources.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
+FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 
 
 @click.command()
@@ -61,27 +65,69 @@ def record(
     from tactile_graph_sources.serial_port import serial
     from tactile_graph_sources.write_store import StoreWriter
 
+    _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
     frames = serial(
         port=port, preset=preset, baud=baud, n_frames=n_frames, give_up_s=give_up, report=report
     )
-    about = {"preset": preset, "pad": pad, "port": port}
     failure: Exception | None = None
-    try:
-        with StoreWriter(target, chunk, append, about) as store:
-            _keep(_until(frames, seconds), store)
-    except KeyboardInterrupt:
-        pass  # the usual way to end a recording; what was held is written by now
-    except TactileGraphError as error:
-        failure = error
-    finally:
-        if isinstance(frames, Generator):
-            frames.close()
+    with _Ended() as ended:
+        try:
+            about = {"preset": preset, "pad": pad, "port": port}
+            with StoreWriter(target, chunk, append, about) as store:
+                _keep(_until(frames, seconds), store)
+        except KeyboardInterrupt:
+            pass  # the usual way to end a recording; what was held is written by now
+        except TactileGraphError as error:
+            failure = error
+        finally:
+            if isinstance(frames, Generator):
+                frames.close()
     if failure is None or report.counts["good frames"]:
-        click.echo(f"{target}: {store.n_frames} frames")
-        _tell(report)
+        _tell(store, report)
     if failure is not None:
-        raise click.ClickException(str(failure))
+        raise failure
+    if ended.by:
+        click.get_current_context().exit(128 + ended.by)
+
+
+def _check_target(target: Path) -> None:
+    """Refuse what could not be written, or would be looked for in vain, before the work."""
+    from tactile_graph.errors import UsageError
+    from tactile_graph.files import check_target
+
+    if target.suffix.lower() in FILES:
+        name = target.with_suffix(".zarr").name
+        raise UsageError(
+            f"TARGET {target}: a recording is a Zarr store; record {name}, and "
+            f"'tactile-graph convert' makes a {target.suffix} of it"
+        )
+    if not target.exists():
+        check_target("TARGET", target)
+
+
+class _Ended:
+    """While entered, what ends programs (a shutdown, a closed terminal) ends as Ctrl-C does."""
+
+    def __init__(self) -> None:
+        self.by = 0
+        self._before: dict[signal.Signals, Any] = {}
+
+    def __enter__(self) -> _Ended:
+        if threading.current_thread() is threading.main_thread():
+            for name in ("SIGTERM", "SIGHUP"):  # the latter is not on Windows
+                number = getattr(signal, name, None)
+                if number is not None:
+                    self._before[number] = signal.signal(number, self._came)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+
+    def _came(self, number: int, _frame: FrameType | None) -> None:
+        self.by = number
+        raise KeyboardInterrupt
 
 
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
@@ -108,8 +154,10 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
         click.echo("", err=True)
 
 
-def _tell(report: Report) -> None:
-    """Say what the link was like, leaving out what is as it should be."""
+def _tell(store: StoreWriter, report: Report) -> None:
+    """Say what is written, and what the link was like, leaving out what is as it should be."""
+    n = store.n_written
+    click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in ("bytes", "good frames", "troubles")]
     for name in names:
         click.echo(f"  {name}: {report.counts[name]}", err=True)

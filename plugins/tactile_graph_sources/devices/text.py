@@ -39,6 +39,7 @@ class TextFramer:
         self._run = (False, False)
         self._no_rows = (np.zeros((0, self.n_numbers), np.int64), np.zeros(0, np.int64))
         self._n_last = 0
+        self._odd = b""
 
     def feed(self, data: bytes) -> list[Units]:
         """Take bytes, return the runs of good lines that they complete."""
@@ -90,6 +91,10 @@ class TextFramer:
             return f"the device announces {self.announced}, the preset has {g.rows} x {g.columns}"
         if self._n_last:
             return f"lines come with {self._n_last} numbers, the preset expects {self.n_numbers}"
+        if self._odd:
+            wanted = f"with {self.head.decode()!r}" if self.head else "with a number"
+            got = repr(self._odd).removeprefix("b")
+            return f"a line begins with {got}, the preset expects it to begin {wanted}"
         return ""
 
     def _bound(self) -> None:
@@ -164,6 +169,7 @@ class TextFramer:
         self.announced = got.decode("ascii", "replace").replace(",", " x ")
 
     def _junk(self, line: bytes) -> None:
+        self._odd = line[:20]
         self.counts.discarded_bytes += len(line) + 1
         self._opens = True
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ from typing import NamedTuple
 MISSING = frozenset({"", "b", "nan", "na", "n/a", "null"})
 _NUMERIC = re.compile(r"[-+.\d,;\s\"eEnaNIifB]+")
 _DIGIT = re.compile(r"\d")
+_QUOTED_COMMA = re.compile(r'(?:^|,)\s*"[^",]*,[^"]*"\s*(?:,|$)')
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 
 
@@ -39,6 +41,9 @@ class Dialect(NamedTuple):
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
+        if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
+            # Of thousands, or decimal? Kept together it is told as no number, never as two.
+            return next(csv.reader([line]))
         if '"' in line:
             line = line.replace('"', "")
         if self.decimal_comma:

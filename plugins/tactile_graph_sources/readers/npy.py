@@ -20,6 +20,15 @@ def recognises(head: Head) -> bool:
     return head.raw.startswith(b"\x93NUMPY")
 
 
+def _words(error: Exception) -> str:
+    text = str(error)
+    if "mmap length" in text:
+        return "the file is cut off: it holds less than its header says"
+    if "Python objects" in text:
+        return "it holds Python objects, not numbers"
+    return text
+
+
 def read(reading: Reading) -> Iterator[Frame]:
     """Yield the matrices of the array, read from disk as they are asked for.
 
@@ -32,7 +41,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         # Mapped, not read: a long recording never stands in memory as a whole; no pickle, ever.
         array = np.load(reading.path, mmap_mode="r", allow_pickle=False)
     except Exception as error:  # NumPy raises a dozen kinds over a damaged header
-        raise DataError(str(reading.path), f"its array cannot be read: {error}") from error
+        raise DataError(str(reading.path), f"its array cannot be read: {_words(error)}") from error
     values = stack_of(reading, array, "its array")
     reading.report.expect(len(values))
     for matrix in values:

@@ -38,7 +38,9 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
             array = array.reshape(-1, rows, columns)
         elif array.ndim == 3 and array.shape[:2] == (rows, columns) != array.shape[1:]:
             array = np.moveaxis(array, -1, 0)
-    if array.ndim not in (2, 3) or 0 in array.shape:
+    if array.ndim in (2, 3) and 0 in array.shape:
+        raise DataError(where, f"{name} has shape {array.shape}: it holds no cell")
+    if array.ndim not in (2, 3):
         raise DataError(
             where,
             f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read",

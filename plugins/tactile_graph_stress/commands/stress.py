@@ -35,6 +35,7 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
     is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, or an
     answer was wrong.
     """
+    from tactile_graph.cli.endings import INTERRUPTED
     from tactile_graph.cli.terminal import console
     from tactile_graph.errors import UsageError
     from tactile_graph.plugins.registry import installed
@@ -47,27 +48,36 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         raise UsageError(f"--seed must be >= 0, got {seed}")
     if output is not None:
         check_ending(output)
-    found, _ = subjects(installed())
-    rows = _rows(chosen(found, names), seed, quick, console(stderr=True))
+    found, left = subjects(installed())
+    wanted = chosen(found, names, left)
+    rows, n = _rows(wanted, seed, quick, console(stderr=True))
     _show(rows)
     if output is not None:
         options = "" if quick else " --full"
         options += f" --seed {seed}" if seed else ""
         write(output, rows, " ".join(["tactile-graph stress", *names]) + options)
         click.echo(f"wrote {output}")
+    if n < len(wanted):
+        click.echo(f"interrupted: {n} of {len(wanted)} steps", err=True)
+        click.get_current_context().exit(INTERRUPTED)
     if any(r.verdict.outcome.name == "BROKEN" for r in rows):
         click.get_current_context().exit(1)
 
 
-def _rows(wanted: list[Subject], seed: int, quick: bool, say: Console) -> list[Row]:
+def _rows(wanted: list[Subject], seed: int, quick: bool, say: Console) -> tuple[list[Row], int]:
+    """Return the rows of all steps, or of those done when Ctrl-C came, and of how many."""
     from tactile_graph_stress.study import stressed
 
     rows: list[Row] = []
-    with _bar(say, len(wanted)) as at:
-        for k, subject in enumerate(wanted):
-            at(k, subject.label)
-            rows += stressed(subject, seed, quick)
-    return rows
+    k = 0
+    try:
+        with _bar(say, len(wanted)) as at:
+            for k, subject in enumerate(wanted):
+                at(k, subject.label)
+                rows += list(stressed(subject, seed, quick))
+    except KeyboardInterrupt:
+        return rows, k
+    return rows, len(wanted)
 
 
 @contextmanager

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target, write_whole
 from tactile_graph_stress.report.markdown import markdown
 from tactile_graph_stress.study import Row
 
@@ -22,14 +23,13 @@ def check_ending(path: Path) -> None:
     """
     if path.suffix.lower() not in ENDINGS:
         raise UsageError(f"-o {path}: its name must end in {', '.join(ENDINGS)}")
-    if not path.parent.is_dir():
-        raise UsageError(f"-o {path}: there is no folder {str(path.parent)!r}")
+    check_target("-o", path)
 
 
 def write(path: Path, rows: Sequence[Row], command: str) -> None:
     """Write the rows; ``command`` is what made them."""
     make = {".md": markdown, ".csv": _csv, ".json": _json}[path.suffix.lower()]
-    path.write_text(make(rows, command), encoding="utf-8")
+    write_whole(path, make(rows, command))
 
 
 def _fields(row: Row) -> list[object]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import accumulate
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.cli.terminal import console
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from tactile_graph_thesis.making import Outcome
 
 MOST_ROWS, MOST_COLUMNS = 24, 12
+GAP = 2
+"""Blanks between two columns."""
 
 
 def _grid(*heads: str, text: int = 1) -> Any:
@@ -144,16 +148,23 @@ def show_item(item: Item, made: Made) -> None:
 def _show_table(say: Any, made: Made) -> None:
     assert made.table is not None
     columns, rows = made.table.columns[:MOST_COLUMNS], made.table.rows
-    grid = _grid(*columns, text=0)
     step = max(1, -(-len(rows) // MOST_ROWS))
-    for row in rows[::step]:
-        cells = row[: len(columns)]
-        grid.add_row(*(number(v) if isinstance(v, float) else str(v) for v in cells))
+    cells = [[number(v) if isinstance(v, float) else str(v) for v in row] for row in rows[::step]]
+    heads = [column.replace("_", " ") for column in columns]
+    # Words of a heading may stand one below the other, but no number is broken.
+    least = [max(map(len, [*head.split(), *(row[k] for row in cells)]))
+             for k, head in enumerate(heads)]  # fmt: skip
+    room = sum(end - GAP <= say.width for end in accumulate(w + GAP for w in least))
+    columns = columns[: max(1, room)]
+    folded = ["\n".join(wrap(h, w)) for h, w in zip(heads, least, strict=True)]
+    grid = _grid(*folded[: len(columns)], text=0)
+    for row in cells:
+        grid.add_row(*row[: len(columns)])
     say.print(grid)
     if step > 1 or len(columns) < len(made.table.columns):
         shown = f"{len(rows[::step])} of {len(rows)} rows"
         shown += f" and {len(columns)} of {len(made.table.columns)} columns"
-        say.print(f"{shown}; all are in the CSV file", style="dim")
+        say.print(f"{shown}; all are in the CSV file", style="dim", soft_wrap=True)
 
 
 def show_end(found: Sequence[Outcome], folder: Path, book: str | None, seconds: float) -> None:

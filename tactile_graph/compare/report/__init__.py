@@ -16,7 +16,7 @@ def write_report(comparison: Comparison, path: Path | str) -> None:
     path : path
         An existing file is replaced.
     """
-    from tactile_graph.compare.export import write_whole
     from tactile_graph.compare.report.page import page
+    from tactile_graph.files import write_whole
 
     write_whole(path, page(comparison))

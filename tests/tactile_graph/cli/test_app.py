@@ -143,10 +143,7 @@ def test_plugins_lists_what_is_offered_broken_blocked_and_refused(hand_made, mon
     assert cells["torn"][4:] == ["failed", "to", "load,", "see", "below"]
     assert cells["twin"][4:] == ["1", "step"]
     assert cells["shut"] == ["shut", "shut-package", "4", "blocked"]
-    assert (
-        "plugin 'torn' (package torn-package): ImportError: No module named 'antigravity'"
-        in got.stdout
-    )
+    assert "plugin 'torn' (package torn-package): No module named 'antigravity'" in got.stdout
     assert (
         "clash: step 'disc' of plugin 'twin' (package twin-package) is refused: plugin 'hand' "
         "(package hand-made) has it already" in got.stdout
@@ -251,7 +248,7 @@ def test_the_files_name_decides_the_graphs_format(hand_made, name, start):
         (["discs", "-o", "g.bmp"], "-o g.bmp: its name must end in .svg, .mmd"),
         (["dics"], "no pipeline named 'dics'; did you mean 'discs'?"),
         ([], "name a pipeline, or a file of one"),
-        (["discs", "-o", "no/g.svg"], "no/g.svg: No such file or directory"),
+        (["discs", "-o", "no/g.svg"], "-o no/g.svg: there is no folder 'no'"),
     ],
 )
 def test_mistakes_with_graphs(args, message):

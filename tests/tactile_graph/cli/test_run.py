@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import re
@@ -13,8 +14,12 @@ import time
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from helpers_cli import DISCS, call
+from tactile_graph import Frame, load
+from tactile_graph.cli.live_table import LiveTable
+from tactile_graph.engine.columns import columns_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -42,6 +47,22 @@ def test_people_get_a_table_with_units_and_errors_against_the_nearest_true_objec
     assert first == ["0", "0.000", "1.000", "2.000", "1.128", "0.000", "0.128"]
     assert "circle is off, on average over 4 frames, by centre 0.000 cm" in got.stdout
     assert re.search(r"4 frames in .* s \(.* a second\): 4 with all outputs", got.stdout)
+
+
+def test_times_that_count_from_long_ago_still_tell_frames_apart():
+    pipeline = load("discs")
+    images = [f.image for f in pipeline.frames()]
+    frames = [Frame(images[i], i, 12452.031 + 0.03 * i) for i in range(2)]
+    results = list(pipeline.stream(frames))
+    out = io.StringIO()
+    columns = columns_of(pipeline, tuple(pipeline.outputs))
+    table = LiveTable(Console(file=out, width=100), columns, results[0])
+    for result in results:
+        table.row(result)
+    _, names, units, _, *rows = out.getvalue().splitlines()
+    assert [row.split()[1] for row in rows] == ["12452.031", "12452.061"]
+    end = rows[0].index("12452.031") + len("12452.031")
+    assert end == names.index("time") + len("time") == units.index("s") + 1
 
 
 def test_a_frame_without_an_output_says_why_and_the_run_goes_on():
@@ -324,8 +345,8 @@ def test_when_the_source_fails_what_was_done_is_kept_and_told(tmp_path):
     assert got.exit_code == 2
     assert len(lines((tmp_path / "out.jsonl").read_text())) == 2
     assert "2 frames in" in got.stderr
-    assert "error: RuntimeError: the cable is off" in got.stderr
-    assert "(--debug shows where)" in got.stderr
+    told = r"error: source 'broken_source': RuntimeError: the cable is off \(.*py:\d+ in broken_s"
+    assert re.search(told, got.stderr)
     assert json.loads((tmp_path / "out.jsonl.meta.json").read_text())["complete"] is False
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from helpers_cli import call
-from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.cli.endings import INTERRUPTED, PIPE_CLOSED
 
 TWO = ("compare", "discs", "next.yaml", "--frames", "10")
 
@@ -67,6 +67,16 @@ def test_a_row_for_each_frame_variant_and_quantity_goes_to_a_file_or_four_files_
     assert not list(hand_made.glob("**/.*.part"))
 
 
+def test_the_files_are_written_though_whoever_read_along_went_away(hand_made, monkeypatch):
+    def gone(*_: object) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr("tactile_graph.compare.shown.show", gone)
+    assert call(*TWO, "--csv", "out", "--json", "a.json").exit_code == PIPE_CLOSED
+    assert len(rows(hand_made / "out/times.csv")) == 20
+    assert json.loads((hand_made / "a.json").read_text())["frames"]["n"] == 10
+
+
 def test_json_holds_all_figures_and_how_they_were_made(hand_made):
     got = call(*TWO, "--json", "-", "--seed", "3")
     data = json.loads(got.stdout)
@@ -109,7 +119,7 @@ def test_recordings_are_told_from_pipelines(hand_made):
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        (["dics"], r"no pipeline named 'dics'; did you mean 'discs'\?.*, nor a file of that name"),
+        (["dics"], r"no file 'dics', and no pipeline named 'dics'; did you mean 'discs'\?"),
         ([], r"name the pipelines to compare"),
         (["discs", "discs"], r"the same variant is named twice: discs"),
         (["discs", "--sweep", "footprint.level=1,2"],

@@ -14,6 +14,7 @@ from tactile_graph import Circle, Ellipse, Frame, load, loads
 from tactile_graph.compare import compare
 from tactile_graph.compare.graph_records import STATES
 from tactile_graph.compare.keep import Keeper
+from tactile_graph.compare.lineage_records import SettingChange
 from tactile_graph.compare.tables import heading
 from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.wires import TrueObject
@@ -142,6 +143,12 @@ def test_a_condition_of_the_same_words_that_means_something_else_is_a_change():
 
     (change,) = nodes_between(a, b)[2]
     assert str(change.changes[0]) == "when: footprint.count > 0 -> footprint.count > 1"
+
+
+def test_a_change_is_told_in_the_words_of_a_pipeline_file():
+    assert str(SettingChange("when", "touched", None)) == "when: touched -> none"
+    assert str(SettingChange("each", None, True)) == "each: none -> true"
+    assert str(SettingChange("factor", 2, 3)) == "factor: 2 -> 3"
 
 
 def test_difference_images_are_of_equally_named_nodes_cell_by_cell():

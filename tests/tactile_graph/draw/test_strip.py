@@ -323,11 +323,10 @@ def test_a_write_that_fails_leaves_the_old_file_alone(
     path = tmp_path / "strip.png"
     path.write_text("old")
 
-    def full(self: Path, data: bytes) -> int:
-        self.touch()
+    def full(self: Path, target: Path) -> Path:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(Path, "replace", full)
     with pytest.raises(UsageError, match="cannot be written: No space left on device"):
         save_strip(results[:1], path, ["circle"])
     assert path.read_text() == "old"

@@ -60,6 +60,22 @@ def needs(image: Image, *, gain: float, table: Annotated[list[int], Len(2)] = [1
     return image
 
 
+def several(images: list[Image]) -> Image:
+    return images[0]
+
+
+def maybe(image: Image) -> Mask | None:
+    return None
+
+
+class Torn:
+    def __init__(self) -> None:
+        raise KeyError("x")
+
+    def __call__(self, image: Image) -> int:
+        return 1
+
+
 class Refuses:
     def __init__(self, *, n: int = 1) -> None:
         if n == 7:
@@ -74,9 +90,12 @@ def frames(*, n: Annotated[int, Ge(1)] = 1) -> Iterator[Annotated[Frame, Quantit
         yield Frame.of([[1.0]], quantity="counts", index=i)  # type: ignore[arg-type]
 
 
-ALL: dict[str, Any] = {**STEPS, "refuses": Refuses, "frames": frames, "count": Count} | {
-    f.__name__: f for f in (threshold, volts, to_grams, finer, both, sixteen, masks, needs)
-}
+ALL: dict[str, Any] = {
+    **STEPS, "refuses": Refuses, "frames": frames, "count": Count, "torn": Torn
+} | {
+    f.__name__: f
+    for f in (threshold, volts, to_grams, finer, both, sixteen, masks, needs, several, maybe)
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -119,7 +138,7 @@ BAD_NODES = [
     ("m: {use: ''}", "node 'm': 'use' is empty"),
     ("m: {step: [a], in: frame}", r"node 'm', 'step' must be a text, got a list: \['a'\]"),
     ("m: 3", "node 'm' must be a mapping, got 3"),
-    (M + "2x: {step: threshold, in: frame}", "node name '2x': letters, digits and '_' only"),
+    (M + "2x: {step: threshold, in: frame}", "node name '2x': letters a to z, digits and '_' only"),
     (M + "frame: {step: threshold, in: frame}", "node name 'frame' is reserved"),
     (M + "m: {step: threshold, in: frame}", "'m' is given twice; the first is in line 3"),
     ("m: {step: threshold, in: 3}", "node 'm', 'in': a node or node.field is needed, got 3"),
@@ -129,7 +148,7 @@ BAD_NODES = [
     ("m: {step: threshold, in: frm}", "node 'm': no node named 'frm'; did you mean 'frame'"),
     ("m: {step: threshold, in: frame.imag}", r"frame \(Frame\) has no field 'imag'; did you mean"),
     ("m: {step: threshold, in: frame._x}", "has no field '_x'"),
-    ("m: {step: threshold, in: [frame, frame]}", "2 inputs for 1 ports of 'threshold'"),
+    ("m: {step: threshold, in: [frame, frame]}", "2 inputs for 1 port of 'threshold'"),
     ("m: {step: threshold, in: {image: [frame]}}", "takes one input, not a list"),
     ("m: {step: constant, in: frame}", "step 'constant' has no ports"),
     ("m: {step: add1, in: frame}", "'frame' is a Frame, but port 'a' of step 'add1' takes an int"),
@@ -153,11 +172,11 @@ BAD_NODES = [
     ("m: {step: threshold, in: frame, with: {level_v: -1}}", "level_v: must be > 0(.0)?, got -1"),
     (
         "m: {step: threshold, in: frame, with: {level_v: a}}",
-        "level_v: must be float | None, got 'a",
+        "level_v: must be a number or null, got 'a",
     ),
     (
         "m: {step: threshold, in: frame, with: {level_v: true}}",
-        "level_v: must be float .*, got True",
+        "level_v: must be a number .*, got True",
     ),
     (
         "m: {step: threshold, in: frame, with: {level: 1}}",
@@ -172,9 +191,12 @@ BAD_NODES = [
         "kind: must be one of 'hard' | 'soft', got 'hrd'; did you mean 'hard'",
     ),
     ("m: {step: threshold, in: frame, with: {cells: 3}}", "cells: must be a multiple of 2, got 3"),
-    ("m: {step: threshold, in: frame, with: {cells: 2.5}}", "cells: must be int, got 2.5"),
+    (
+        "m: {step: threshold, in: frame, with: {cells: 2.5}}",
+        "cells: must be a whole number, got 2.5",
+    ),
     ("m: {step: threshold, in: frame, with: 3}", "node 'm': 'with' must be a mapping, got 3"),
-    ("m: {step: needs, in: frame}", r"setting 'gain' is missing \(float\)"),
+    ("m: {step: needs, in: frame}", r"setting 'gain' is missing \(a number\)"),
     ("m: {step: needs, in: frame, with: {gain: 1, table: [1, x]}}", "table: must be .*, got 'x'"),
     (
         "m: {step: needs, in: frame, with: {gain: 1, table: [1]}}",
@@ -208,8 +230,31 @@ BAD_NODES = [
         M + "n: {step: finer, in: m, when: m > 1}",
         "m is a Mask and cannot be compared; it has: area",
     ),
-    (M + "n: {step: finer, in: m, when: m.count >}", "node 'n', 'when': invalid syntax"),
+    (
+        M + "n: {step: finer, in: m, when: m.count >}",
+        "'when': 'm.count >' is no condition: invalid s",
+    ),
     (M + "n: {step: finer, in: m, when: m.count > ((1}", "was never closed"),
+    (
+        M + "n: {step: finer, in: m, when: m.count > 'b'}",
+        "'when': m.count is a number and 'b' is a text: they cannot be compared",
+    ),
+    (M + "n: {step: finer, in: m, when: 0 < m.count < 'b'}", "they cannot be compared"),
+    (
+        M + "n: {step: finer, in: m, when: qqq.count > 1}",
+        "no node named 'qqq'; there are: frame, m, n",
+    ),
+    (
+        "early: {step: threshold, in: frame, when: lste.count > 1}\nlate: {step: masks, in: frame}",
+        "'when': no node named 'lste'; did you mean 'late'",
+    ),
+    (
+        "early: {step: finer, in: lste}\nlate: {step: masks, in: frame}",
+        "no node named 'lste'; did you mean 'late'",
+    ),
+    ("m: {step: several, in: frame}", r"takes a list\[Image\]; as a list of nodes it is \[frame\]"),
+    ("m: {step: torn, in: frame}", r"node 'm': step 'torn' cannot be made: KeyError: 'x' \(.*py:"),
+    ("m: {step: maybe, in: frame}", r"may return None .*Degenerate.* \(plugin '.*', package "),
     (
         M + "n: {step: finer, in: m, when: __import__('os')}",
         "only abs, len, max, min can be called",
@@ -237,7 +282,7 @@ BAD_NODES = [
         "settings of an embedded pipeline are named node.setting",
     ),
     ("m: {use: inner, with: {m.levl_v: 1}}", "unknown setting 'levl_v'; did you mean 'level_v'"),
-    ("m: {use: inner, with: {q.level_v: 1}}", "setting q.level_v: no node named 'q'"),
+    ("m: {use: inner, with: {q.level_v: 1}}", "node 'm', q.level_v: no node named 'q'"),
     ("m: {use: inner, in: [frame]}", "an embedded pipeline has one port, 'frame'"),
     (
         "c: {step: constant}\nm: {use: inner, in: c}",
@@ -274,7 +319,7 @@ BAD_FILES = [
     ("just text", "a pipeline file is a mapping, got a text: 'just text'"),
     ("a: [", "this is not YAML: "),
     ("a: b: c", "this is not YAML: mapping values are not allowed here"),
-    ("a: 1\n--- \nb: 2", "this is not YAML: but found another document"),
+    ("a: 1\n--- \nb: 2", "not YAML: '---' begins a second document, but"),
     ("a: \x01", r"a character that YAML does not allow: '\\x01'"),
     ("[" * 2000, "deeper than 40 levels"),
     ("a: " + "[" * 60 + "]" * 60, "deeper than 40 levels"),
@@ -289,6 +334,7 @@ BAD_FILES = [
         "more than 20000 values",
     ),
     ("a: *b", "this is not YAML: found undefined alias 'b'"),
+    ("a:\n\tb: 1", "this is not YAML: a tab cannot stand here: YAML is indented with spaces"),
     ("pipeline: !!python/object:os.system p", "the tag 'tag:yaml.org,2002:python/object:os.system"),
     ("pipeline: !mine p", "the tag '!mine' is refused: pipeline files hold plain values only"),
     ("!!python/name:os.system pipeline: p", "the tag 'tag:yaml.org,2002:python/name:os.system' is"),
@@ -308,7 +354,8 @@ BAD_FILES = [
     ("pipeline: p", "'nodes' is missing: it maps a name to each node"),
     ("pipeline: p\nnodes: [a]", "'nodes' must be a mapping of nodes, got a list"),
     (text_of(rest=""), "'outputs' is missing: a list of nodes out of m"),
-    (text_of(rest="outputs: []"), "'outputs' must be a list of nodes, got a list"),
+    (text_of(rest="outputs: []"), "'outputs' must be a list of nodes, got an empty list"),
+    (text_of(rest="outputs: [m/n]"), "got a text: 'm/n'; what is inside .* to be seen by --only"),
     (text_of(rest="outputs: {m: 1}"), "'outputs' must be a list of nodes, got a mapping"),
     (text_of(rest="outputs: [n]"), "output 'n': no node named 'n'; did you mean 'm'|there are"),
     (text_of(rest="outputs: [m.x]"), r"output 'm.x': m \(Mask\) has no field 'x'"),
@@ -392,7 +439,7 @@ outputs: [last]
         (6, 71, "node 'footprint', levl: unknown setting 'levl'"),
         (7, 16, "node 'fine': no step named 'finr'"),
         (8, 3, "the nodes form a cycle: c1 -> c2 -> c1"),
-        (8, 38, "node 'c1', k: must be int, got 'x'"),
+        (8, 38, "node 'c1', k: must be a whole number, got 'x'"),
         (10, 3, "the nodes form a cycle: d1 -> d2 -> d1"),
         (12, 23, "node 't': 'footprint' is a Mask, but port 'a' of step 'add1' takes an int"),
         (12, 40, "node 't', 'when': footprint (Mask) has no field 'cuont'"),

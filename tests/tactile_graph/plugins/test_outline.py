@@ -41,6 +41,16 @@ class Bare:
 
 from tg_outline_other import moved as renamed
 CONSTANT = 3
+made: Any = functools.partial(two)
+if True:
+    def under_if() -> float:
+        """Inside."""
+try:
+    import nothing
+except ImportError:
+    class InHandler:
+        """Handled."""
+        def __call__(self, image: Image) -> Mask: ...
 '''
 
 
@@ -51,6 +61,7 @@ def _module(tmp_path, monkeypatch):
     (tmp_path / "tg_outline.py").write_text(MODULE)
     (tmp_path / "tg_outline_other.py").write_text('def moved() -> float:\n    """Elsewhere."""\n')
     (tmp_path / "tg_outline_torn.py").write_text("def (")
+    (tmp_path / "tg_outline_star.py").write_text("from tg_outline_other import *\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     module._tree.cache_clear()
     yield
@@ -81,15 +92,26 @@ def test_a_name_that_is_handed_on_is_followed():
     assert outline("tg_outline:renamed").summary == "Elsewhere."
 
 
+def test_what_stands_under_if_and_try_is_found():
+    assert outline("tg_outline:under_if").summary == "Inside."
+    assert outline("tg_outline:InHandler").wiring == "Image → Mask"
+
+
 @pytest.mark.parametrize(
     ("target", "trouble"),
     [
         ("tg_outline:absent", "tg_outline has no 'absent'"),
-        ("tg_outline:CONSTANT", "tg_outline has no 'CONSTANT'"),
+        ("tg_outline:CONSTANT", "tg_outline makes 'CONSTANT' when it is imported"),
+        ("tg_outline:made", "tg_outline makes 'made' when it is imported; nothing to read here"),
+        ("tg_outline_star:x", "tg_outline_star defines no 'x'; an 'import *' may bring it"),
+        ("tg_outline.two", "'tg_outline.two' is no import string 'module:name'"),
         ("tg_outline:Bare", "it is no function and has no __call__"),
         ("tg_no_such:x", "there is no module tg_no_such"),
         ("tg_no_such.inner:x", "cannot import tg_no_such.inner: No module named 'tg_no_such'"),
-        ("tg_outline_torn:x", "cannot read tg_outline_torn: invalid syntax"),
+        (
+            "tg_outline_torn:x",
+            "cannot read tg_outline_torn: invalid syntax (tg_outline_torn.py, line 1)",
+        ),
         (3, "its source cannot be read"),
     ],
 )

@@ -46,22 +46,22 @@ def troubles(**given: Any) -> dict[str, str]:
     ("model", "place", "message"),
     [
         ({"weight": -2}, "model.weight", "must be > 0.0, got -2"),
-        ({"weight": "a"}, "model.weight", "must be float, got 'a'"),
-        ({"weight": True}, "model.weight", "must be float, got True"),
+        ({"weight": "a"}, "model.weight", "must be a number, got 'a'"),
+        ({"weight": True}, "model.weight", "must be a number, got True"),
         ({"weight": 1, "inner": {"depth": 0}}, "model.inner.depth", "must be >= 1, got 0"),
         (
             {"weight": 1, "inner": {"kind": "hrd"}},
             "model.inner.kind",
             "must be one of 'soft' | 'hard', got 'hrd'; did you mean 'hard'?",
         ),
-        ({"weight": 1, "steps": [1, "x"]}, "model.steps.1", "must be int, got 'x'"),
+        ({"weight": 1, "steps": [1, "x"]}, "model.steps.1", "must be a whole number, got 'x'"),
         (
             {"weight": 1, "wight": 1},
             "model.wight",
             "unknown setting 'wight'; did you mean 'weight'?",
         ),
-        ({"weight": 1, "sure": "perhaps"}, "model.sure", "must be bool, got 'perhaps'"),
-        ({}, "model", "'weight' is missing (float)"),
+        ({"weight": 1, "sure": "perhaps"}, "model.sure", "must be true or false, got 'perhaps'"),
+        ({}, "model", "'weight' is missing (a number)"),
         ({"weight": 1, "inner": 3}, "model.inner", "must be Inner, got 3"),
     ],
 )

@@ -263,7 +263,7 @@ class StarInit:
         (print, "step 'x': "),
         (max, "step 'x': "),
         (int, "step 'x': class int has no __call__"),
-        (functools.partial(function), "step 'x': its annotations cannot be read"),
+        (functools.partial(function), r"step 'x': functools\.partial.* write one around it"),
     ],
     ids=lambda v: getattr(v, "__name__", None) or type(v).__name__,
 )

@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from tactile_graph import Frame
+from tactile_graph.cli import cli
 from tactile_graph.steps.injected import Report
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.frames_of import frames_of
@@ -71,6 +72,7 @@ def test_a_target_that_will_not_do_is_refused(
 
 def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("hello\n")
-    result = CliRunner().invoke(convert, [str(tmp_path / "a.txt"), str(tmp_path / "b.npz")])
-    assert result.exit_code == 1
+    args = ["convert", str(tmp_path / "a.txt"), str(tmp_path / "b.npz")]
+    result = CliRunner().invoke(cli, args)
+    assert result.exit_code == 2
     assert "a.txt: no recording" in result.output

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from click.testing import CliRunner
 
+from tactile_graph.cli import cli
 from tactile_graph_sources.commands.ports import ports
 from tactile_graph_sources.devices import port_list
 from tactile_graph_sources.devices.port_list import PortInfo
@@ -31,6 +32,6 @@ def test_the_port_that_appears_is_named(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_no_new_port_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(port_list, "wait_for_new_port", lambda timeout_s: None)
-    result = CliRunner().invoke(ports, ["--wait", "1"])
-    assert result.exit_code == 1
+    result = CliRunner().invoke(cli, ["ports", "--wait", "1"])
+    assert result.exit_code == 2
     assert "no new port within 1 s" in result.output

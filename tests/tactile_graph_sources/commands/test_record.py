@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +13,8 @@ import pytest
 from click.testing import CliRunner
 
 from helpers_serial import KITS, FakePad
-from tactile_graph_sources.commands.record import record
+from tactile_graph import Frame
+from tactile_graph.cli import cli
 from tactile_graph_sources.devices.port import Port
 from tactile_graph_sources.devices.reader import Reader
 from tactile_graph_sources.store import read_store
@@ -56,7 +59,7 @@ def encoded(n: int) -> tuple[list[np.ndarray], bytes]:
 
 def run(pad: FakePad, target: Path, *args: object):
     fixed = [str(target), "--port", str(pad.link), "--preset", KIT.preset, "--give-up", "20"]
-    return CliRunner().invoke(record, [*fixed, *map(str, args)])
+    return CliRunner().invoke(cli, ["record", *fixed, *map(str, args)])
 
 
 def test_every_frame_is_recorded_and_gone_on_with(tmp_path: Path, pad: FakePad, sends) -> None:
@@ -99,7 +102,7 @@ def test_a_pad_that_falls_silent_ends_in_an_error_and_keeps_what_came(
     _, data = encoded(5)
     sends(data)
     result = run(pad, tmp_path / "a.zarr", "--give-up", "0.5")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "a.zarr: 5 frames" in result.output
     assert "no frame for 0.5 s" in result.output
 
@@ -107,5 +110,65 @@ def test_a_pad_that_falls_silent_ends_in_an_error_and_keeps_what_came(
 def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path, pad: FakePad) -> None:
     (tmp_path / "a.zarr").mkdir()
     result = run(pad, tmp_path / "a.zarr")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "is there already" in result.output
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
+def test_a_shutdown_or_closed_terminal_keeps_what_was_recorded(
+    tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+) -> None:
+    _, data = encoded(10)
+    real = StoreWriter.write
+
+    def write(self: StoreWriter, frame) -> None:
+        real(self, frame)
+        if self.n_frames == 10:
+            os.kill(os.getpid(), number)
+
+    monkeypatch.setattr(StoreWriter, "write", write)
+    before = signal.getsignal(number)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr")
+    assert result.exit_code == 128 + number
+    assert "a.zarr: 10 frames" in result.output
+    assert len(list(read_store(tmp_path / "a.zarr"))) == 10
+    assert signal.getsignal(number) is before
+
+
+def test_a_full_disc_is_told_with_the_store_and_what_is_in_it(
+    tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, data = encoded(10)
+    real = StoreWriter._write
+
+    def write(self: StoreWriter, name: str, low: int, rows: object) -> None:
+        if low >= 8:
+            raise OSError(28, "No space left on device")
+        real(self, name, low, rows)
+
+    monkeypatch.setattr(StoreWriter, "_write", write)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr", "--chunk", 8, "--frames", 10)
+    assert result.exit_code == 2
+    assert "a.zarr: 8 frames\n" in result.output
+    assert "a.zarr: cannot be written: No space left on device" in result.output
+    assert len(list(read_store(tmp_path / "a.zarr"))) == 8
+
+
+def test_a_name_of_a_file_is_refused_before_the_port_is_opened(tmp_path: Path) -> None:
+    args = ["record", "a.npz", "--port", "/dev/no", "--preset", KIT.preset]
+    result = CliRunner().invoke(cli, args)
+    assert result.exit_code == 2
+    assert "TARGET a.npz: a recording is a Zarr store; record a.zarr, and" in result.output
+
+
+def test_frames_of_another_pad_are_not_appended(tmp_path: Path, pad: FakePad, sends) -> None:
+    frame = Frame.of(np.zeros((3, 2)), (1.3, 1.0), quantity="volt")
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(frame)
+    sends(encoded(1)[1])
+    result = run(pad, tmp_path / "a.zarr", "--append")
+    assert result.exit_code == 2
+    told = "holds 3 x 2 cells of 1.3 x 1 cm from (0, 0) cm on, volt; this one is 8 x 8 cells of 1 x"
+    assert told in result.output

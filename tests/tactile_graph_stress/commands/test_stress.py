@@ -67,6 +67,25 @@ def test_what_broke_is_said_in_table_and_report():
     assert "- **BROKEN** `mine`, NaN: a NaN: x_cm is nan" in markdown([row], "command")
 
 
+def test_ctrl_c_shows_and_writes_the_steps_that_are_done(tmp_path, monkeypatch):
+    from tactile_graph_stress import study
+
+    whole = study.stressed
+
+    def interrupted(subject, *args):
+        if subject.name == "hull_qhull":
+            yield next(whole(subject, *args))
+            raise KeyboardInterrupt
+        yield from whole(subject, *args)
+
+    monkeypatch.setattr(study, "stressed", interrupted)
+    path = tmp_path / "out.csv"
+    result = run("hull_graham", "hull_qhull", "-o", path)
+    assert result.exit_code == 130
+    assert {r["step"] for r in csv.DictReader(path.read_text().splitlines())} == {"hull_graham"}
+    assert "interrupted: 1 of 2 steps\n" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("args", "words"),
     [

@@ -11,9 +11,11 @@ from click.testing import CliRunner, Result
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_thesis import catalogue
+from tactile_graph_thesis.book.text import number
 from tactile_graph_thesis.catalogue import items
 from tactile_graph_thesis.commands.reproduce import reproduce
-from tactile_graph_thesis.item import Item, Made
+from tactile_graph_thesis.commands.showing import show_item
+from tactile_graph_thesis.item import Item, Made, Table
 from tactile_graph_thesis.work import Work
 
 
@@ -81,3 +83,22 @@ def test_unknown_names_and_folders_that_cannot_be_are_told_before_the_work(tmp_p
 
 def test_a_group_needs_twenty_readings() -> None:
     assert run("4.5", "--readings", 19).exit_code == 2
+
+
+@pytest.mark.parametrize("width", [40, 60, 160])
+def test_a_narrow_terminal_leaves_columns_out_and_breaks_no_number(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = ("resistance_ohm", *(f"{10 * k}_kOhm alone_V" for k in range(1, 11)))
+    rows = tuple((1000.0 * r, *(r + k / 8 for k in range(10))) for r in range(1, 4))
+    made = Made(table=Table(names, rows))
+    monkeypatch.setenv("COLUMNS", str(width))
+    show_item(Item("mine", "Mine", "A table.", lambda work: made), made)
+    lines = capsys.readouterr().out.splitlines()
+    last = max(i for i, line in enumerate(lines) if line.startswith(" ") and line.strip())
+    assert all(len(line.rstrip()) <= width for line in lines[: last + 1])
+    n = len(lines[last].split())
+    assert lines[last].split() == [number(v) for v in rows[-1][:n]]
+    assert n == 11 if width == 160 else 1 < n < 11
+    told = f"3 of 3 rows and {n} of 11 columns; all are in the CSV file"
+    assert (told in lines) is (n < 11)

@@ -1,0 +1,71 @@
+"""Why a port cannot be opened, in words, and what to do."""
+
+from __future__ import annotations
+
+import errno
+import os
+
+from tactile_graph.errors import did_you_mean, one_of
+
+BUSY = (errno.EAGAIN, errno.EBUSY)
+FORBIDDEN = (errno.EACCES, errno.EPERM)
+NO_PORT = (errno.EISDIR, errno.ENOTTY)
+
+
+def refusal(port: str, error: BaseException, ports: list[str]) -> str:
+    """Return what to say when a port cannot be opened.
+
+    Parameters
+    ----------
+    port : str
+        As it was given.
+    error : Exception
+        What pyserial raised.
+    ports : list of str
+        The ports of this machine.
+    """
+    there = f"; ports here: {one_of(ports)}"
+    number = getattr(error, "errno", None)
+    head = f"port {port!r} cannot be opened: "
+    if "://" in port:
+        return head + _of_url(port, error)
+    if number in BUSY:
+        return f"{head}another program has it open"
+    if number in FORBIDDEN:
+        return f"{head}permission denied{_who_may(port)}"
+    if number == errno.ENOENT:
+        return f"{head}there is no such port{did_you_mean(port, ports)}{there}"
+    if number in NO_PORT or "configure port" in str(error):
+        return f"{head}it is no serial port{there}"
+    return f"{head}{_last(error)}{there}"
+
+
+def _of_url(port: str, error: BaseException) -> str:
+    scheme, _, place = port.partition("://")
+    host, _, number = place.partition(":")
+    if scheme in ("socket", "rfc2217") and not (host and number):
+        return f"it names no host and port; a URL is like {scheme}://host:port"
+    hint = "" if scheme in ("socket", "rfc2217") else "; a URL is like socket://host:port"
+    return f"{_last(error)}{hint}"
+
+
+def _last(error: BaseException) -> str:
+    """Return the end of pyserial's text: before it stand the port and the number once more."""
+    text = str(error) or type(error).__name__
+    return text.rpartition("] ")[2] if "[Errno" in text else text
+
+
+def _who_may(port: str) -> str:
+    """Return how to be let in, where the port belongs to a group as on Linux."""
+    try:
+        import grp
+
+        group = grp.getgrgid(os.stat(port).st_gid).gr_name
+    except (ImportError, OSError, KeyError):
+        return ""
+    return (
+        f"; it belongs to the group {group!r}: 'sudo usermod -aG {group} $USER' lets you in "
+        "when you log in next"
+        if group != "root"
+        else ""
+    )

@@ -1,0 +1,101 @@
+"""Write files that are there whole or not at all, and say beforehand what cannot be written."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from tactile_graph.errors import UsageError
+
+Name = str | os.PathLike[str]
+
+
+@contextmanager
+def whole_file(name: Name) -> Iterator[BinaryIO]:
+    """Give a file to write to, which gets its name, and replaces another, only at the end.
+
+    If anything is raised meanwhile, nothing is left behind and an older file stays. A link stays a
+    link. What is no plain file (a device, a pipe) takes what comes as it comes.
+
+    Raises
+    ------
+    UsageError
+        If it cannot be written.
+    """
+    with said(name):
+        if not is_plain(name):
+            with Path(name).open("wb") as file:
+                yield file
+            return
+        target = Path(os.path.realpath(name))
+        part = target.with_name(f".{target.name}.{os.getpid()}.part")
+        try:
+            with part.open("wb") as file:
+                yield file
+            if target.exists():
+                part.chmod(stat.S_IMODE(target.stat().st_mode))
+            part.replace(target)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+
+
+def write_whole(name: Name, content: str | bytes) -> None:
+    """Write a file at once or not at all, a text as UTF-8; see `whole_file`."""
+    with whole_file(name) as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def said(name: Name) -> Iterator[None]:
+    """Say which file it is that cannot be written, and why, in place of any OSError.
+
+    Raises
+    ------
+    UsageError
+    """
+    try:
+        yield
+    except BrokenPipeError:  # whoever read it is gone: no trouble with the file
+        raise
+    except OSError as error:
+        why = error.strerror or error
+        raise UsageError(f"{os.fspath(name)}: cannot be written: {why}") from error
+
+
+def is_plain(name: Name) -> bool:
+    """Return whether a name is, or would be, a plain file: no device, no pipe, no /dev/stdout."""
+    if os.path.abspath(name).startswith(("/dev/", "/proc/")):
+        return False
+    try:
+        return stat.S_ISREG(os.stat(name).st_mode)
+    except OSError:
+        return True
+
+
+def check_target(option: str, name: Name) -> None:
+    """Refuse a file that could not be written in the end, before the work.
+
+    Parameters
+    ----------
+    option : str
+        That names it on the command line, for the message.
+    name : path
+
+    Raises
+    ------
+    UsageError
+    """
+    path = Path(name)
+    folder = path.parent
+    if not folder.is_dir():
+        raise UsageError(f"{option} {name}: there is no folder {str(folder)!r}")
+    if path.is_dir():
+        raise UsageError(f"{option} {name}: is a folder; name a file in it")
+    written = Path(os.path.realpath(path)).parent if is_plain(path) else path
+    if not os.access(written, os.W_OK):
+        raise UsageError(f"{option} {name}: no permission to write in {str(written)!r}")

@@ -1,0 +1,117 @@
+"""Check that a step's signature holds together: defaults fit, rules name what is there."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Callable, Iterator
+from typing import Any, Union, get_args, get_origin
+
+import annotated_types as at
+
+from tactile_graph.errors import PluginError, did_you_mean, one_of, shown
+from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.steps.signature import Kind, Setting, Signature, strip, type_name
+
+_UNION = (Union, types.UnionType)
+_PLAIN: dict[Any, Any] = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}
+_LIMITS: tuple[tuple[type, str, str, Callable[[Any, Any], bool]], ...] = (
+    (at.Gt, "gt", ">", lambda value, limit: value > limit),
+    (at.Ge, "ge", ">=", lambda value, limit: value >= limit),
+    (at.Lt, "lt", "<", lambda value, limit: value < limit),
+    (at.Le, "le", "<=", lambda value, limit: value <= limit),
+)
+
+
+def check_signature(signature: Signature) -> None:
+    """Check what a step's author may have got wrong, before anybody uses the step.
+
+    Raises
+    ------
+    PluginError
+        With the first thing that does not hold together.
+    """
+    for trouble in (*_defaults(signature), *_rules(signature), *_output(signature)):
+        raise PluginError(f"step {signature.name!r}: {trouble}")
+
+
+def _defaults(signature: Signature) -> Iterator[str]:
+    for setting in signature.settings:
+        if not setting.required:
+            why = _misfit(setting, setting.annotation, setting.default)
+            if why:
+                yield f"default of setting {setting.name!r} {why}, got {shown(setting.default)}"
+
+
+def _misfit(setting: Setting, annotation: Any, value: Any) -> str:
+    """Return what a default should be and is not; types of a plugin's own are not looked into."""
+    bare, metadata = strip(annotation)
+    if get_origin(bare) in _UNION:
+        troubles = [_misfit(setting, arm, value) for arm in get_args(bare)]
+        fits = "" in troubles
+        return _limit(metadata, value) if fits else next(filter(None, troubles))
+    if get_origin(bare) is typing.Literal:
+        return "" if value in get_args(bare) else f"must be one of {type_name(bare)}"
+    if bare is type(None):
+        return "" if value is None else "must be None"
+    if value is None and bare not in (Any, object):
+        return f"must be {type_name(bare)}, or the annotation {type_name(bare)} | None"
+    allowed = _PLAIN.get(bare)
+    if allowed is None:
+        return ""
+    if not isinstance(value, allowed) or (isinstance(value, bool) and bare is not bool):
+        return f"must be {type_name(bare)}"
+    return _limit(metadata, value)
+
+
+def _limit(metadata: tuple[Any, ...], value: Any) -> str:
+    if not isinstance(value, int | float):
+        return ""
+    for rule in metadata:
+        for kind, name, sign, holds in _LIMITS:
+            if isinstance(rule, kind) and not holds(value, getattr(rule, name)):
+                return f"must be {sign} {getattr(rule, name)}"
+    return ""
+
+
+def _rules(signature: Signature) -> Iterator[str]:
+    """Yield what is wrong with rules that name another port or a setting."""
+    ports = [p.name for p in signature.ports]
+    settings = [s.name for s in signature.settings]
+    named: list[tuple[str, Quantity | Grid | None]] = [
+        (f"port {p.name!r}", rule) for p in signature.ports for rule in (p.quantity, p.grid)
+    ]
+    named += [(f"setting {s.name!r}", s.quantity) for s in signature.settings]
+    named += [("the return", r) for r in (signature.output_quantity, signature.output_grid)]
+    for where, rule in named:
+        if rule is None:
+            continue
+        what = f"the {type(rule).__name__} of {where} names"
+        if rule.port and rule.port not in ports:
+            hint = did_you_mean(rule.port, ports) or f"; ports: {one_of(ports)}"
+            yield f"{what} {rule.port!r}, which is no port{hint}"
+        finer = rule.finer_by if isinstance(rule, Grid) else 1
+        if isinstance(finer, str) and finer not in settings:
+            hint = did_you_mean(finer, settings) or f"; settings: {one_of(settings)}"
+            yield f"{what} {finer!r}, which is no setting{hint}"
+
+
+def _output(signature: Signature) -> Iterator[str]:
+    output = signature.output
+    if get_origin(output) in _UNION and type(None) in get_args(output):
+        yield (
+            f"it may return None ({type_name(output)}): where there is no answer, "
+            "raise Degenerate with the reason"
+        )
+    if signature.kind is not Kind.SOURCE and _yields_frames(output):
+        yield (
+            "it promises frames, but is no generator function: "
+            "yield them, or 'yield from' what has them"
+        )
+
+
+def _yields_frames(output: Any) -> bool:
+    from tactile_graph.wires.frame import Frame
+
+    origin = getattr(get_origin(output), "__name__", "")
+    return origin in ("Iterator", "Generator") and get_args(output)[:1] == (Frame,)

@@ -1,0 +1,56 @@
+"""What the command line says to slips of the hand."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from helpers_cli import call
+
+pytestmark = pytest.mark.usefixtures("hand_made")
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["discs"], "no command named 'discs'; a pipeline is run by 'cli run discs'"),
+        (["x.yaml"], "a pipeline is run by 'cli run x.yaml'"),
+        (["run", "discs", "--frames", "9" * 30], "more frames than can be counted"),
+        (["run", "discs", "--frames", f"{'9' * 30}:"], "more frames than can be counted"),
+        (["check", "."], "'.' is a folder; name a file in it"),
+        (["compare", "discs", "no.npz"], "no file 'no.npz', and no pipeline named 'no.npz'"),
+    ],
+)
+def test_a_slip_is_answered_with_what_to_do(args: list[str], message: str) -> None:
+    got = call(*args)
+    assert got.exit_code == 2
+    assert message in got.stdout + got.stderr
+
+
+def test_a_condition_that_fails_is_told_by_its_words_not_by_a_place_in_no_file() -> None:
+    guarded = "{step: load, in: frame, when: 1 / (l.total - l.total) > 1}"
+    nodes = f"{{l: {{step: load, in: frame}}, c: {guarded}}}"
+    Path("p.yaml").write_text(f"{{pipeline: p, nodes: {nodes}, outputs: [c]}}")
+    got = call("run", "p.yaml", "--source", "made")
+    assert got.exit_code == 1
+    told = "ZeroDivisionError: float division by zero (when 1 / (l.total - l.total) > 1)\n"
+    assert told in got.stdout
+
+
+def test_ctrl_c_while_the_program_is_still_being_imported_leaves_no_traceback() -> None:
+    code = """\
+import builtins, sys
+real = builtins.__import__
+def interrupted(name, *args, **kwargs):
+    if name == "tactile_graph.cli.app":
+        raise KeyboardInterrupt
+    return real(name, *args, **kwargs)
+builtins.__import__ = interrupted
+from tactile_graph.cli import main
+main()
+"""
+    got = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (got.returncode, got.stderr) == (130, "interrupted\n")

@@ -1,0 +1,157 @@
+"""What commands write: whole lines on a full disc, nothing beside a pipe, refusals beforehand."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import resource
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from helpers_cli import call, install
+from tactile_graph import Image
+from tactile_graph.cli import cli
+from tactile_graph.cli.endings import words
+
+pytestmark = pytest.mark.usefixtures("hand_made")
+
+
+@contextmanager
+def full_at(n_bytes: int) -> Iterator[None]:
+    """Let no file be larger, as if the disc were full then."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_full_disc_ends_a_run_with_whole_lines_and_says_how_many(tmp_path: Path) -> None:
+    with full_at(4096):
+        got = call("run", "discs", "--frames", 100, "-o", "out.jsonl")
+    lines = (tmp_path / "out.jsonl").read_text().splitlines(keepends=True)
+    assert got.exit_code == 2
+    assert all(line.endswith("\n") and json.loads(line) for line in lines)
+    n = len(lines)
+    kept = f"the first {n} frames are in it"
+    assert f"error: out.jsonl: cannot be written: File too large; {kept}\n" in got.stderr
+    assert "wrote" not in got.stderr
+    assert "the source ended" not in got.stderr
+
+
+@pytest.mark.parametrize(
+    "command",
+    [("schema", "-o", "out"), ("graph", "discs", "--format", "svg", "-o", "out")],
+    ids=lambda c: c[0],
+)
+def test_a_full_disc_leaves_no_half_file(tmp_path: Path, command: tuple[str, ...]) -> None:
+    before = set(os.listdir(tmp_path))
+    with full_at(1000):
+        got = call(*command)
+    assert got.exit_code == 2
+    assert "error: out: cannot be written: File too large\n" in got.stderr
+    assert set(os.listdir(tmp_path)) == before
+
+
+def test_nothing_is_written_beside_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo("pipe")
+    got: list[str] = []
+    reader = threading.Thread(target=lambda: got.append(Path("pipe").read_text()))
+    reader.start()
+    assert call("run", "discs", "-o", "pipe", "--format", "csv").exit_code == 0
+    reader.join(10.0)
+    assert got[0].count("\n") == 5
+    assert not (tmp_path / "pipe.meta.json").exists()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("run", "discs", "-o", "out.csv"),
+        ("run", "discs", "--plot", "out.png"),
+        ("graph", "discs", "-o", "out.svg"),
+        ("schema", "-o", "out.json"),
+        ("compare", "discs", "--report", "out.html"),
+        ("compare", "discs", "--csv", "out.csv"),
+        ("compare", "discs", "--csv", "folder"),
+        ("audit", "discs", "--json", "out.json"),
+    ],
+    ids=" ".join,
+)
+def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
+    command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
+    got = call(*command)
+    assert got.exit_code == 2
+    assert got.stdout == ""
+    assert f"error: {command[-2]} {command[-1]}: no permission to write in" in got.stderr
+
+
+def test_a_table_that_could_not_be_written_is_told_without_a_type() -> None:
+    assert words(OSError(errno.ENOSPC, "No space left on device")) == (
+        "the output cannot be written: No space left on device"
+    )
+    assert words(ValueError()) == "ValueError"
+
+
+def test_a_step_that_ends_the_program_is_told_and_what_was_done_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def leaving(image: Image) -> float:
+        if image.values[1, 1]:
+            sys.exit("enough")
+        return 1.0
+
+    install(monkeypatch, tmp_path, steps={"leaving": leaving})
+    nodes = "nodes: {a: {step: leaving, in: frame}}, outputs: [a]"
+    Path("p.yaml").write_text(f"{{pipeline: p, {nodes}}}")
+    got = call("run", "p.yaml", "--source", "made", "--with", "empty=[0]", "-o", "out.jsonl")
+    assert got.exit_code == 2
+    assert Path("out.jsonl").read_text().count("\n") == 1
+    assert "error: a plugin ended the program: SystemExit('enough'), " in got.stderr
+    assert "test_outputs.py:" in got.stderr
+    assert call("explain", "p.yaml", "--source", "made").exit_code == 2
+
+
+def chatty(image: Image) -> float:
+    print("debug!", image.peak)  # noqa: T201 -- what authors leave in their steps
+    return 1.0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("run", "p.yaml", "--source", "made", "-o", "-"),
+        ("compare", "p.yaml", "--source", "made", "--json", "-"),
+    ],
+    ids=lambda c: c[0],
+)
+def test_what_steps_print_does_not_get_between_lines_for_programs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: tuple[str, ...]
+) -> None:
+    install(monkeypatch, tmp_path, steps={"chatty": chatty})
+    nodes = "nodes: {a: {step: chatty, in: frame}}, outputs: [a]"
+    Path("p.yaml").write_text(f"{{pipeline: p, {nodes}}}")
+    got = call(*command)
+    assert got.exit_code == 0
+    assert "debug!" not in got.stdout
+    assert "debug! 1." in got.stderr
+    assert sys.stdout is not sys.stderr
+
+
+def test_a_narrow_terminal_still_shows_whole_words_of_what_plugins_offer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    got = CliRunner(env={"COLUMNS": "60"}).invoke(cli, ["plugins"])
+    assert "…" not in got.stdout
+    assert "import" not in got.stdout
+    assert "2 pipelines" in " ".join(got.stdout.split())

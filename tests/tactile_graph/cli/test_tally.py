@@ -1,0 +1,89 @@
+"""What a run says in closing: why nodes failed, in a line each, and what is no finite number."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_cli import call, install
+from tactile_graph import Circle, Image
+
+
+def nowhere(image: Image) -> Circle:
+    peak = image.peak
+    return Circle(float("nan") if peak else 9.0, 9.0, 1.0)
+
+
+def endless(image: Image) -> float:
+    return np.float32("inf")  # type: ignore[return-value]
+
+
+class InPlace:
+    """Adds up, in an array that it has given away."""
+
+    def __init__(self) -> None:
+        self.sum: Any = None
+
+    def __call__(self, image: Image) -> Image:
+        if self.sum is None:
+            self.sum = image.values.copy()
+        else:
+            self.sum += image.values
+        return image.with_values(self.sum)
+
+
+def wordy(image: Image) -> float:
+    raise ValueError("one\n  two " + "x" * 500)
+
+
+def silent(image: Image) -> float:
+    raise ValueError
+
+
+STEPS = {f.__name__: f for f in (nowhere, endless, InPlace, wordy, silent)}
+
+
+@pytest.fixture(autouse=True)
+def _steps(hand_made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    install(monkeypatch, hand_made, steps=STEPS)
+
+
+def run(step: str, *args: object) -> Any:
+    nodes = f"nodes: {{a: {{step: {step}, in: frame}}}}, outputs: [a]"
+    Path("p.yaml").write_text(f"{{pipeline: p, {nodes}}}")
+    return call("run", "p.yaml", "--source", "made", "--frames", 3, *args)
+
+
+def test_an_output_that_is_no_number_is_told_counted_and_no_error_of_the_others() -> None:
+    got = run("nowhere", "--with", "empty=[1]")
+    assert got.exit_code == 1
+    told = "strange  a.x_cm in 2 frames, first in frame 0: nan, which is no answer\n"
+    assert told in got.stdout
+    assert got.stdout.endswith(": 1 with all outputs, 2 not finite\n")
+    assert "truth    a is off, on average over 2 frames, by radius" in got.stdout
+
+
+def test_infinity_of_any_precision_is_told_and_kept_in_the_record() -> None:
+    got = run("endless", "-o", "out.jsonl")
+    assert got.exit_code == 1
+    assert "strange  a in 3 frames, first in frame 0: inf" in got.stderr
+    assert json.loads(Path("out.jsonl.meta.json").read_text())["result"]["frames_not_finite"] == 3
+
+
+def test_writing_into_what_was_given_away_says_what_to_do() -> None:
+    got = run("InPlace")
+    assert "read-only (" in got.stdout
+    assert "; what goes into and comes out of steps is read-only: change a copy\n" in got.stdout
+
+
+def test_a_wordy_failure_takes_one_line_and_a_silent_one_only_its_type() -> None:
+    lines = run("wordy").stdout.splitlines()
+    told = next(line for line in lines if line.startswith("failed"))
+    assert told.startswith("failed   a in 3 frames, first in frame 0: ValueError: one two xxx")
+    assert len(told) < 500
+    assert " in wordy)" in told
+    assert "first in frame 0: ValueError (" in run("silent").stdout

@@ -1,0 +1,126 @@
+"""A step whose defaults or rules contradict it is refused, with what is wrong and what is near."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import pytest
+from annotated_types import Ge, Lt
+
+from tactile_graph import Circle, Frame, Image, Mask
+from tactile_graph.errors import PluginError
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps import Grid, Quantity
+from tactile_graph.steps.checks import check_signature
+from tactile_graph.steps.signature import read_signature
+
+
+def below(image: Image, *, level: Annotated[int, Ge(3)] = 1) -> Image:
+    return image
+
+
+def inside_union(image: Image, *, level: Annotated[float, Lt(1)] | None = 1.5) -> Image:
+    return image
+
+
+def around_union(image: Image, *, level: Annotated[float | None, Lt(1)] = 1.5) -> Image:
+    return image
+
+
+def text(image: Image, *, level: int = "x") -> Image:  # type: ignore[assignment]
+    return image
+
+
+def yes(image: Image, *, level: float = True) -> Image:
+    return image
+
+
+def none(image: Image, *, level: float = None) -> Image:  # type: ignore[assignment] # noqa: RUF013
+    return image
+
+
+def choice(image: Image, *, mode: Literal["a", "b"] = "c") -> Image:  # type: ignore[assignment]
+    return image
+
+
+def quantity(image: Image) -> Annotated[Image, Quantity.like("img")]:
+    return image
+
+
+def grid(image: Image, *, factor: int = 2) -> Annotated[Image, Grid.like("image", "factr")]:
+    return image
+
+
+def setting(
+    image: Image, *, level_v: Annotated[float, Quantity("volt", of="picture")] = 1.0
+) -> Image:
+    return image
+
+
+def port(image: Image, mask: Annotated[Mask, Grid.like("pad")]) -> Image:
+    return image
+
+
+def maybe(image: Image) -> Circle | None:
+    return None
+
+
+def returned(*, n: int = 3) -> Iterator[Frame]:
+    return iter([])
+
+
+@pytest.mark.parametrize(
+    ("target", "message"),
+    [
+        (below, "step 'x': default of setting 'level' must be >= 3, got 1"),
+        (inside_union, "step 'x': default of setting 'level' must be < 1, got 1.5"),
+        (around_union, "step 'x': default of setting 'level' must be < 1, got 1.5"),
+        (text, "step 'x': default of setting 'level' must be int, got 'x'"),
+        (yes, "step 'x': default of setting 'level' must be float, got True"),
+        (none, "'level' must be float, or the annotation float | None, got None"),
+        (choice, "default of setting 'mode' must be one of 'a' | 'b', got 'c'"),
+        (
+            quantity,
+            "the Quantity of the return names 'img', which is no port; did you mean 'image'?",
+        ),
+        (grid, "names 'factr', which is no setting; did you mean 'factor'?"),
+        (setting, "the Quantity of setting 'level_v' names 'picture', which is no port"),
+        (port, "the Grid of port 'mask' names 'pad', which is no port; ports: image, mask"),
+        (maybe, "it may return None (Circle | None): where there is no answer, raise Degenerate"),
+        (returned, "it promises frames, but is no generator function: yield them"),
+    ],
+    ids=lambda v: getattr(v, "__name__", ""),
+)
+def test_what_contradicts_itself_is_told(target: Callable[..., Any], message: str) -> None:
+    with pytest.raises(PluginError) as caught:
+        check_signature(read_signature("x", target))
+    assert message in str(caught.value)
+
+
+def fine(
+    image: Image,
+    *,
+    whole: float = 1,
+    level: Annotated[float, Ge(0)] | None = None,
+    place: tuple[float, float] | None = None,
+    path: Path = Path("x"),
+    anything: Any = None,
+    mode: Literal["a", 3] = 3,
+    factor: Annotated[int, Ge(1)] = 2,
+) -> Annotated[Image, Quantity.like("image"), Grid.like("image", finer_by="factor")]:
+    return image
+
+
+def sink(image: Image) -> None: ...
+
+
+@pytest.mark.parametrize("target", [fine, sink])
+def test_what_holds_together_is_let_through(target: Callable[..., Any]) -> None:
+    check_signature(read_signature("x", target))
+
+
+def test_every_installed_step_holds_together() -> None:
+    found = installed()
+    assert [found.step(name).name for name in found.names("steps")] == found.names("steps")

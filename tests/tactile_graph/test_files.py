@@ -1,0 +1,112 @@
+"""Files are there whole or not at all, whatever they are written to."""
+
+from __future__ import annotations
+
+import os
+import resource
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target, is_plain, whole_file, write_whole
+
+
+@pytest.fixture
+def full_at_4096() -> Iterator[None]:
+    """No file can be larger than 4096 bytes, as if the disc were full then."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.usefixtures("full_at_4096")
+def test_a_full_disc_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    write_whole(path, "old")
+    with pytest.raises(UsageError, match=r"a\.txt: cannot be written: File too large"):
+        write_whole(path, "x" * 5000)
+    assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["a.txt"]
+
+
+def test_an_error_on_the_way_leaves_nothing_behind(tmp_path: Path) -> None:
+    def interrupted() -> None:
+        with whole_file(tmp_path / "a.txt") as file:
+            file.write(b"half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_text_is_utf_8_and_keeps_its_line_ends(tmp_path: Path) -> None:
+    write_whole(tmp_path / "a.txt", "größe\n")
+    assert (tmp_path / "a.txt").read_bytes() == b"gr\xc3\xb6\xc3\x9fe\n"
+
+
+def test_a_link_stays_a_link_and_what_it_points_to_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "there").mkdir()
+    (tmp_path / "link").symlink_to("there/a.txt")
+    write_whole(tmp_path / "link", "new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "there" / "a.txt").read_text() == "new"
+
+
+def test_a_replaced_file_keeps_who_may_read_it(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    path.touch(0o600)
+    write_whole(path, "new")
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    got: list[str] = []
+    reader = threading.Thread(target=lambda: got.append(pipe.read_text()))
+    reader.start()
+    write_whole(pipe, "through")
+    reader.join(10.0)
+    assert got == ["through"]
+    assert pipe.is_fifo()
+
+
+def test_a_device_is_written_to_and_what_it_refuses_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def replace(self: Path, target: Path) -> Path:
+        raise AssertionError(f"{target} would be gone")
+
+    monkeypatch.setattr(Path, "replace", replace)  # root could really do it
+    with pytest.raises(UsageError, match="/dev/full: cannot be written: No space left on device"):
+        write_whole("/dev/full", "x")
+    write_whole("/dev/null", "x")
+
+
+def test_what_is_plain(tmp_path: Path) -> None:
+    (tmp_path / "dangling").symlink_to("nowhere")
+    assert is_plain(tmp_path / "new")
+    assert is_plain(tmp_path / "dangling")
+    assert not is_plain("/dev/stdout")
+    assert not is_plain("/dev/null")
+    assert not is_plain(tmp_path)
+
+
+def test_what_cannot_be_written_is_refused_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    check_target("-o", "new.csv")
+    check_target("-o", "/dev/null")
+    with pytest.raises(UsageError, match=r"^-o no/a\.csv: there is no folder 'no'$"):
+        check_target("-o", "no/a.csv")
+    with pytest.raises(UsageError, match=r"^-o \.: is a folder; name a file in it$"):
+        check_target("-o", ".")
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
+    with pytest.raises(UsageError, match=r"^--plot a\.png: no permission to write in '.*'$"):
+        check_target("--plot", "a.png")

@@ -1,0 +1,79 @@
+"""Why a port cannot be opened is told in words, with what to do."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+import serial
+
+from tactile_graph.errors import UsageError
+from tactile_graph.steps.injected import Report
+from tactile_graph_sources.devices.port_words import refusal
+from tactile_graph_sources.serial_port import serial as source
+
+PORTS = ["/dev/ttyACM0", "/dev/ttyUSB0"]
+
+
+def opening(port: str) -> str:
+    with pytest.raises(UsageError) as caught:
+        next(source(port=port, preset="m1616", report=Report()))
+    return str(caught.value)
+
+
+def test_a_port_that_is_not_there_is_told_with_the_nearest() -> None:
+    error = serial.SerialException(errno.ENOENT, "could not open port x: [Errno 2] No such")
+    assert refusal("/dev/ttyACM1", error, PORTS) == (
+        "port '/dev/ttyACM1' cannot be opened: there is no such port; "
+        "did you mean '/dev/ttyACM0'?; ports here: /dev/ttyACM0, /dev/ttyUSB0"
+    )
+    assert opening("/dev/no-such-port").startswith(
+        "port '/dev/no-such-port' cannot be opened: there is no such port"
+    )
+
+
+def test_what_is_no_port_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    for name in (tmp_path, tmp_path / "file", "/dev/null"):
+        assert f"port '{name}' cannot be opened: it is no serial port; ports" in opening(str(name))
+
+
+def test_a_port_that_another_program_has_open_is_told(tmp_path: Path) -> None:
+    master, slave = os.openpty()
+    name = os.ttyname(slave)
+    try:
+        with serial.Serial(name, exclusive=True):
+            assert opening(name) == f"port {name!r} cannot be opened: another program has it open"
+    finally:
+        os.close(master)
+        os.close(slave)
+
+
+def test_a_port_that_may_not_be_opened_says_who_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    import grp
+
+    error = serial.SerialException(errno.EACCES, "could not open port")
+    monkeypatch.setattr(grp, "getgrgid", lambda _: grp.struct_group(("dialout", "x", 20, [])))
+    told = refusal("/dev/null", error, PORTS)
+    assert told.startswith(
+        "port '/dev/null' cannot be opened: permission denied; it belongs to the group 'dialout': "
+        "'sudo usermod -aG dialout $USER' lets you in"
+    )
+    assert refusal("/dev/no-such", error, PORTS).endswith("permission denied")
+
+
+@pytest.mark.parametrize(
+    ("url", "message"),
+    [
+        ("socket://127.0.0.1:1", "cannot be opened: Connection refused"),
+        ("socket://", "it names no host and port; a URL is like socket://host:port"),
+        ("http://x", "protocol 'http' not known; a URL is like socket://host:port"),
+    ],
+)
+def test_a_url_that_leads_nowhere_is_told(url: str, message: str) -> None:
+    got: Any = opening(url)
+    assert got.startswith(f"port {url!r} cannot be opened: ")
+    assert message in got
