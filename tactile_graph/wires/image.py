@@ -95,9 +95,9 @@ class Image(_Gridded):
         quantity: str = "raw",
         valid: NDArray[np.bool_] | None = None,
     ) -> None:
-        values.setflags(False)  # by keyword it takes twice as long
+        values.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
         if valid is not None:
-            valid.setflags(False)
+            valid.setflags(False)  # type: ignore[call-arg]
         _set_values(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
@@ -169,7 +169,7 @@ class Mask(_Gridded):
         origin_cm: tuple[float, float] = (0.0, 0.0),
         count: int | None = None,
     ) -> None:
-        values.setflags(False)
+        values.setflags(False)  # type: ignore[call-arg]
         _set_values(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)

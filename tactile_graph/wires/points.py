@@ -21,7 +21,7 @@ class Points:
     xy_cm: NDArray[np.float64]
 
     def __init__(self, xy_cm: NDArray[np.float64]) -> None:
-        xy_cm.setflags(False)
+        xy_cm.setflags(write=False)
         _set_xy(self, xy_cm)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:

@@ -128,7 +128,7 @@ class Polygon:
     provides: ClassVar[Mapping[type, str]] = {Points: "points"}
 
     def __post_init__(self) -> None:
-        self.xy_cm.setflags(False)
+        self.xy_cm.setflags(write=False)
 
     @property
     def points(self) -> Points:

@@ -17,7 +17,7 @@ from tactile_graph.errors import PipelineError
 from tactile_graph.pipeline.conditions import FUNCTIONS
 from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.registry import installed
-from tactile_graph.steps.signature import read_signature
+from tactile_graph.steps.signature import Kind, read_signature
 from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage import coverage_cm2
@@ -145,9 +145,9 @@ def test_the_preset_shown_is_a_preset(tmp_path: Path) -> None:
 
 
 def test_the_plugin_shown_is_one() -> None:
-    hooks, step = fenced("plugins", "python")
-    spaces: list[dict[str, Any]] = [{"__name__": "shown"}, {"__name__": "shown"}]
-    for code, space in zip((hooks, step), spaces, strict=True):
+    shown = fenced("plugins", "python")
+    spaces: list[dict[str, Any]] = [{"__name__": "shown"} for _ in shown]
+    for code, space in zip(shown, spaces, strict=True):
         exec(compile(code, "plugins.md", "exec"), space)
     assert spaces[0]["tactile_graph_steps"]() == {"median": "tactile_graph_median.median:median"}
     target = spaces[1]["part"]
@@ -158,6 +158,13 @@ def test_the_plugin_shown_is_one() -> None:
     assert read.fields == ("mask", "level")
     assert read.ports[0].quantity is not None
     assert read.ports[0].quantity.names == ("volt", "gram")
+    ramp = spaces[2]["ramp"]
+    ramp.__globals__.update(spaces[2])
+    assert read_signature("ramp", ramp).kind is Kind.SOURCE
+    frames = list(ramp(frames=3, rows=4))
+    assert [(f.index, f.time_s, f.image.peak) for f in frames] == [
+        (k, 0.01 * k, k) for k in range(3)
+    ]
 
 
 def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:

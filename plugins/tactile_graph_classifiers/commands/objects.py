@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table
 
 if TYPE_CHECKING:
@@ -53,16 +53,14 @@ def objects(
 
 
 def _export(known: Known, file: str) -> None:
+    from tactile_graph.files import write_whole
     from tactile_graph_classifiers.database.text import to_text
 
     text = to_text(known)
     if file == "-":
         click.echo(text, nl=False)
         return
-    try:
-        Path(file).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise DataError(file, f"cannot be written: {error.strerror or error}") from None
+    write_whole(file, text)
     click.echo(f"{file}: {len(known.objects)} objects exported")
 
 
