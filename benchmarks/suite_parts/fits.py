@@ -5,35 +5,22 @@ from __future__ import annotations
 import itertools
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from suite_parts.contestants import error_of
+from suite_parts.fits_common import NOISE_CM, POINTS, Case, Fit, Values, opencv_box, ours
+from suite_parts.fits_ellipses import ellipse_cases, ellipse_fits
 from suite_parts.records import Measured
 from suite_parts.rounds_of import in_turn
-from tactile_graph import Circle, Ellipse, Points, Polygon, Rectangle
+from tactile_graph import Circle, Polygon, Rectangle
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires.frame import TrueObject
 
-Values = NDArray[np.float64]
-Fit = Callable[[Values], list[Any]]
-POINTS = 60
-NOISE_CM = 0.15
 ARCS_DEG = (30, 60, 120, 360)
-
-
-@dataclass(frozen=True)
-class Case:
-    """Point sets that one shape was drawn from, with noise."""
-
-    name: str
-    sets: tuple[Values, ...]
-    truth: tuple[TrueObject, ...]
 
 
 def measured(
@@ -75,15 +62,6 @@ def _tried(fit: Fit, xy: Values) -> list[Any]:
             return []
 
 
-def _ours(*steps: str) -> dict[str, Fit]:
-    found: dict[str, Fit] = {}
-    for where in steps:
-        module, _, name = where.rpartition(":")
-        step = getattr(import_module(module), name)
-        found[name] = lambda xy, step=step: [step(Points(xy))]
-    return found
-
-
 # -- circles ---------------------------------------------------------------------------------
 
 
@@ -103,7 +81,7 @@ def circle_cases(n_sets: int, seed: int) -> Iterator[Case]:
 def circle_fits() -> dict[str, Fit]:
     base = "tactile_graph_fitters"
     kinds = ("", "_thesis", "_kasa", "_taubin", "_hyper")
-    fits = _ours(*(f"{base}.fit_circle{k}:fit_circle{k}" for k in kinds))
+    fits = ours(*(f"{base}.fit_circle{k}:fit_circle{k}" for k in kinds))
     if find_spec("circle_fit"):
         module = import_module("circle_fit")
         for name in ("kmh", "prattSVD", "taubinSVD", "hyperSVD", "riemannSWFLa"):
@@ -160,65 +138,6 @@ def _opencv_circle() -> Fit:
     return fit
 
 
-# -- ellipses --------------------------------------------------------------------------------
-
-
-def ellipse_cases(n_sets: int, seed: int) -> Iterator[Case]:
-    for degrees in (120, 360):
-        rng = np.random.default_rng([seed, degrees, 1])
-        sets, truth = [], []
-        for _ in range(n_sets):
-            a, b, turn = rng.uniform(4, 7), rng.uniform(2, 3.5), rng.uniform(0, np.pi)
-            shape = Ellipse(rng.uniform(8, 12), rng.uniform(8, 12), a, b, turn)
-            t = rng.uniform(0, 2 * np.pi) + np.radians(degrees) * rng.random(POINTS)
-            u, v = a * np.cos(t), b * np.sin(t)
-            cos, sin = np.cos(turn), np.sin(turn)
-            xy = np.column_stack([shape.x_cm + u * cos - v * sin, shape.y_cm - u * sin - v * cos])
-            sets.append(xy + rng.normal(0, NOISE_CM, xy.shape))
-            truth.append(TrueObject(shape, 0.0, "ellipse"))
-        yield Case(f"arc of {degrees} degrees", tuple(sets), tuple(truth))
-
-
-def ellipse_fits() -> dict[str, Fit]:
-    base = "tactile_graph_fitters"
-    fits = _ours(f"{base}.fit_ellipse:fit_ellipse", f"{base}.fit_ellipse_direct:fit_ellipse_direct")
-    if find_spec("cv2"):
-        import cv2
-
-        for name in ("fitEllipse", "fitEllipseAMS", "fitEllipseDirect"):
-            fits[f"OpenCV {name}"] = _opencv_box(getattr(cv2, name), Ellipse, 0.5)
-    if find_spec("skimage"):
-        fits["skimage EllipseModel"] = _skimage_ellipse()
-    return fits
-
-
-def _opencv_box(function: Callable[..., Any], kind: type, share: float) -> Fit:
-    def fit(xy: Values) -> list[Any]:
-        (x, y), (a, b), turn = function(xy.astype(np.float32))
-        if not np.isfinite(x + y + a + b) or min(a, b) <= 0.0:
-            return []
-        angle = np.radians(-turn if a >= b else -turn - 90.0)
-        sides = float(max(a, b)) * share, float(min(a, b)) * share
-        return [kind(float(x), float(y), *sides, float(angle))]
-
-    return fit
-
-
-def _skimage_ellipse() -> Fit:
-    from skimage.measure import EllipseModel
-
-    def fit(xy: Values) -> list[Any]:
-        model = EllipseModel.from_estimate(xy)
-        if not model:
-            return []
-        (x, y), (a, b), turn = model.center, model.axis_lengths, model.theta
-        if a < b:
-            a, b, turn = b, a, turn + np.pi / 2
-        return [Ellipse(float(x), float(y), float(a), float(b), float(-turn))]
-
-    return fit
-
-
 # -- rectangles ------------------------------------------------------------------------------
 
 
@@ -244,13 +163,13 @@ def rectangle_cases(n_sets: int, seed: int) -> Iterator[Case]:
 
 def rectangle_fits() -> dict[str, Fit]:
     base = "tactile_graph_fitters"
-    fits = _ours(
+    fits = ours(
         f"{base}.fit_rectangle:fit_rectangle", f"{base}.min_area_rectangle:min_area_rectangle"
     )
     if find_spec("cv2"):
         import cv2
 
-        fits["OpenCV minAreaRect"] = _opencv_box(cv2.minAreaRect, Rectangle, 1.0)
+        fits["OpenCV minAreaRect"] = opencv_box(cv2.minAreaRect, Rectangle, 1.0)
     return fits
 
 
@@ -276,7 +195,7 @@ def _exact_hull(xy: Values) -> Polygon:
 def hulls() -> dict[str, Fit]:
     base = "tactile_graph_hull"
     kinds = ("hull", "hull_graham", "hull_beneath_beyond", "hull_qhull")
-    fits = _ours(*(f"{base}.{k}:{k}" for k in kinds))
+    fits = ours(*(f"{base}.{k}:{k}" for k in kinds))
     if find_spec("cv2"):
         import cv2
 

@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.fit_ellipse_origin import OK, origin_fit
+from tactile_graph_fitters.fit_ellipse_origin import FLATTEST, OK, origin_fit, polar
 from tactile_graph_fitters.fitted_ellipse import FittedEllipse, in_order
 from tactile_graph_fitters.orientation import Orientation
 from tactile_graph_fitters.principal import LARGEST
 
-SETTLED = 1e-6  # of the half axes, while sweeping
+SETTLED = 1e-6  # of the half axes, where the simplex has to find them
+STEPS = 12  # of Newton's method, which needs about five
+SMALL = 1e-8  # relative step after which the next would be below rounding
 NARROW_RAD = 1e-4  # width at which halving the angle's interval ends
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -89,8 +91,52 @@ def ellipse_sweep(
 def _at(dx: Values, dy: Values, angle: float) -> tuple[float, float, float]:
     """Return half axes and rms of the best ellipse at an angle as seen; infinite rms for none."""
     cos, sin = math.cos(angle), math.sin(angle)
-    status, a, b, rms, _ = origin_fit(dx * cos - dy * sin, dx * sin + dy * cos, SETTLED, 1000)
+    x, y = dx * cos - dy * sin, dx * sin + dy * cos
+    scale, a, b, r, cos2, sin2 = polar(x, y)
+    if scale > 0.0:
+        a, b, error = straight(r, cos2, sin2, a, b)
+        if FLATTEST * a < b < a / FLATTEST:
+            return scale * a, scale * b, scale * math.sqrt(error / r.shape[0])
+    status, a, b, rms, _ = origin_fit(x, y, SETTLED, 1000)
     return (a, b, rms) if status == OK else (0.0, 0.0, np.inf)
+
+
+@compiled_as_is
+def straight(
+    r: Values, cos2: Values, sin2: Values, a: float, b: float
+) -> tuple[float, float, float]:
+    """Return half axes of least squared radial distances near a and b, and the sum of these.
+
+    Newton's method on 1 / a**2 and 1 / b**2, as long as each step is at most half the one before;
+    half axes of 0 where it does not lead straight to a minimum.
+    """
+    p, q, last = 1.0 / (a * a), 1.0 / (b * b), 1.0
+    for _ in range(STEPS):
+        error = g_p = g_q = h_pp = h_pq = h_qq = 0.0
+        for i in range(r.shape[0]):
+            c, s = cos2[i], sin2[i]
+            square = 1.0 / (c * p + s * q)
+            rho = math.sqrt(square)
+            off, cube = r[i] - rho, rho * square
+            bend = cube * (0.5 * cube - 1.5 * off * square)
+            error += off * off
+            g_p += off * cube * c
+            g_q += off * cube * s
+            h_pp += bend * c * c
+            h_pq += bend * c * s
+            h_qq += bend * s * s
+        det = h_pp * h_qq - h_pq * h_pq
+        if not (h_pp > 0.0 and det > 1e-12 * h_pp * h_qq):
+            break
+        d_p, d_q = (h_pq * g_q - h_qq * g_p) / det, (h_pq * g_p - h_pp * g_q) / det
+        size = max(abs(d_p) / p, abs(d_q) / q)
+        if not size <= 0.5 * last:
+            break
+        p, q, last = p + d_p, q + d_q, size
+        if size <= SMALL:
+            left = max(0.0, error + 0.5 * (g_p * d_p + g_q * d_q))
+            return 1.0 / math.sqrt(p), 1.0 / math.sqrt(q), left
+    return 0.0, 0.0, 0.0
 
 
 @compiled_as_is

@@ -159,7 +159,7 @@ def simplex_search(
 
 
 @compiled_as_is
-def _polar(x: Values, y: Values) -> tuple[float, float, float, Values, Values, Values]:
+def polar(x: Values, y: Values) -> tuple[float, float, float, Values, Values, Values]:
     """Return the scale, the start a and b, and r, cos**2 and sin**2 of the points, all scaled.
 
     The scale is 0 where no ellipse fits: too few points, not finite, or on one line.
@@ -193,7 +193,7 @@ def origin_fit(
     x: Values, y: Values, tolerance: float, most: int
 ) -> tuple[int, float, float, float, int]:
     """Return status, half axes along x and y, rms in cm, and the steps of all searches."""
-    scale, a, b, r, cos2, sin2 = _polar(x, y)
+    scale, a, b, r, cos2, sin2 = polar(x, y)
     if scale == 0.0:
         return NO_SPREAD, 0.0, 0.0, 0.0, 0
     settled, a, b, error, steps = simplex_search(r, cos2, sin2, a, b, tolerance, most)

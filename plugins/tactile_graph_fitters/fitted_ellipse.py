@@ -48,17 +48,19 @@ def in_order(
     """
     if second_cm > first_cm:
         first_cm, second_cm, angle_rad = second_cm, first_cm, angle_rad + 0.5 * math.pi
-    # Plain references leave NumPy's own floats.
-    return FittedEllipse(
-        float(x_cm),
-        float(y_cm),
-        float(first_cm),
-        float(second_cm),
-        axis_angle(angle_rad),
-        float(rms_cm),
-        n_points,
-        iterations,
+    ellipse = object.__new__(FittedEllipse)
+    # At once: a frozen dataclass sets its fields one by one. Plain references leave NumPy's floats.
+    ellipse.__dict__.update(
+        x_cm=float(x_cm),
+        y_cm=float(y_cm),
+        semi_major_cm=float(first_cm),
+        semi_minor_cm=float(second_cm),
+        angle_rad=axis_angle(angle_rad),
+        rms_cm=float(rms_cm),
+        n_points=n_points,
+        iterations=iterations,
     )
+    return ellipse
 
 
 def axis_angle(angle_rad: float) -> float:

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from helpers_rectangles import off_rad, points, rectangle_xy, seeds, some_ellipse
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points, Rectangle
-from tactile_graph_fitters.ellipse_sweep import ellipse_sweep
+from tactile_graph_fitters.ellipse_sweep import ellipse_sweep, straight
+from tactile_graph_fitters.fit_ellipse_origin import origin_fit, polar
 from tactile_graph_fitters.orientation import Orientation
 
 
@@ -22,6 +23,28 @@ def test_truth_to_points_to_truth(seed):
     assert off_rad(got.angle_rad, truth.angle_rad) < 1e-3
     assert got.semi_major_cm == pytest.approx(truth.semi_major_cm, rel=1e-4)
     assert got.semi_minor_cm == pytest.approx(truth.semi_minor_cm, rel=1e-4)
+
+
+def test_straight_to_the_axes_that_the_simplex_finds():
+    found = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        xy = some_ellipse(rng).outline_cm(30) + rng.normal(0, 0.2, (30, 2))
+        x, y = (xy - xy.mean(axis=0)).T
+        scale, a, b, r, cos2, sin2 = polar(x, y)
+        a, b, error = straight.loops(r, cos2, sin2, a, b)
+        _, first, second, rms, _ = origin_fit(x, y, 1e-8, 1000)
+        if a > 0.0:
+            assert (scale * a, scale * b) == pytest.approx((first, second), rel=1e-6)
+            assert scale * math.sqrt(error / 30) == pytest.approx(rms, rel=1e-9)
+            assert scale * math.sqrt(error / 30) <= rms * (1 + 1e-12)
+            found += 1
+    assert found > 30
+
+
+def test_it_goes_straight_nowhere_from_far_away():
+    r, t = np.ones(12), np.linspace(0, 2 * np.pi, 12)
+    assert straight.loops(r, np.cos(t) ** 2, np.sin(t) ** 2, 30.0, 0.01) == (0.0, 0.0, 0.0)
 
 
 def test_without_refining_the_angle_is_one_of_the_steps():

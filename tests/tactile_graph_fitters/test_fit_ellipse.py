@@ -122,7 +122,7 @@ def test_says_why_there_is_no_ellipse(fit, xy, words):
 
 def test_points_on_a_parabola_give_no_endless_ellipse():
     t = np.linspace(-1, 1, 21)
-    with pytest.raises(Degenerate, match=r"no ellipse found|no ellipse is near|without a real"):
+    with pytest.raises(Degenerate, match="no ellipse is near them, but another conic"):
         fit_ellipse(Points(np.column_stack([t, t * t])))
 
 

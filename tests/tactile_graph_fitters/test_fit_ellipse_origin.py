@@ -12,8 +12,8 @@ from helpers_rectangles import off_rad, points, rectangle_xy, seeds, some_ellips
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Points, Rectangle
 from tactile_graph_fitters.fit_ellipse_origin import (
-    _polar,
     fit_ellipse_origin,
+    polar,
     radial_error,
     simplex_search,
 )
@@ -84,7 +84,7 @@ def test_finds_the_minimum_scipy_finds(seed):
 def test_where_the_search_starts_makes_no_difference(times):
     for seed in range(5):
         x, y = np.random.default_rng(seed).normal(0.0, [[4.0], [1.5]], (2, 40))
-        scale, a, b, r, cos2, sin2 = _polar(x, y)
+        scale, a, b, r, cos2, sin2 = polar(x, y)
         _, a, b, _, _ = settled = simplex_search(r, cos2, sin2, a, b, 1e-8, 2000)
         other = simplex_search(r, cos2, sin2, times[0] * a, times[1] * b, 1e-8, 2000)
         again = simplex_search(r, cos2, sin2, other[1], other[2], 1e-8, 2000)

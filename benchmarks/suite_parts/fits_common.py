@@ -1,0 +1,52 @@
+"""What the families of fits share: point sets of known shapes, and fits with one signature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Points
+from tactile_graph.wires.frame import TrueObject
+
+Values = NDArray[np.float64]
+Fit = Callable[[Values], list[Any]]
+POINTS = 60
+NOISE_CM = 0.15
+
+
+@dataclass(frozen=True)
+class Case:
+    """Point sets that one shape was drawn from, with noise."""
+
+    name: str
+    sets: tuple[Values, ...]
+    truth: tuple[TrueObject, ...]
+
+
+def ours(*steps: str) -> dict[str, Fit]:
+    """Return steps, each named ``module:function``, as fits."""
+    found: dict[str, Fit] = {}
+    for where in steps:
+        module, _, name = where.rpartition(":")
+        step = getattr(import_module(module), name)
+        found[name] = lambda xy, step=step: [step(Points(xy))]
+    return found
+
+
+def opencv_box(function: Callable[..., Any], kind: type, share: float) -> Fit:
+    """Return OpenCV's fit of a turned box as a fit of a shape; ``share`` of its sides counts."""
+
+    def fit(xy: Values) -> list[Any]:
+        (x, y), (a, b), turn = function(xy.astype(np.float32))
+        if not np.isfinite(x + y + a + b) or min(a, b) <= 0.0:
+            return []
+        angle = np.radians(-turn if a >= b else -turn - 90.0)
+        sides = float(max(a, b)) * share, float(min(a, b)) * share
+        return [kind(float(x), float(y), *sides, float(angle))]
+
+    return fit
