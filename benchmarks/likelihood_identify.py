@@ -2,7 +2,8 @@
 
 Run with ``python benchmarks/likelihood_identify.py`` (about two minutes); ``--pads N`` takes other
 than 3 simulated pads. Five objects of table 4.9, 25 readings each to learn, 25 others to test;
-then each of them as a stranger; then objects that weigh and cover the same, of other shapes.
+then each of them as a stranger; then objects that weigh and cover the same, of other shapes;
+then the discs among the five pressing unevenly, as in ``likelihood_shapes.py``.
 """
 
 from __future__ import annotations
@@ -17,9 +18,11 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+from likelihood_robustness import HEIGHT, THESIS, WIDTH
+from likelihood_shapes import FACES
 from rounds import print_table, time_side_by_side
 
-from tactile_graph import Frame, load
+from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph_classifiers.identity import UNKNOWN
 from tactile_graph_classifiers.known import Known
@@ -131,6 +134,51 @@ def strangers(pads: int) -> None:
         print(f"  {name:<22} {count / total:7.2%} of {total} called unknown")
 
 
+def pressed(objects: int, seed: int) -> None:
+    """Print how often discs that press unevenly are known, by the setting ``pressure``."""
+    known, _ = tested("identify", 0)
+    data = as_database(known)
+    things = [g[0] for g in load_scene("identify").in_turn]
+    sizes = {it.name: _lengths(it) for it in things}
+    discs = [it for it in things if it.shape == "disc"]
+    grams = load("circle-likelihood").runner(only=["grams"])
+    for name, face in FACES.items():
+        rng = np.random.default_rng(seed)
+        rows: dict[str, list[tuple[bool, bool, float]]] = defaultdict(list)
+        for k in range(objects):
+            it = discs[k % len(discs)]
+            r = it.radius_cm
+            disc = Circle(rng.uniform(r, WIDTH - r), rng.uniform(r, HEIGHT - r), r)
+            siemens = THESIS.conductance_s(face(disc, it.weight_g, rng), THESIS.built(rng))
+            siemens *= np.exp(THESIS.law.repeatability * rng.standard_normal(siemens.shape))
+            counts = THESIS.scan.counts(THESIS.volts_of(siemens), THESIS.converter, rng)
+            volts = THESIS.image(THESIS.converter.volts(counts), "volt")
+            image = grams(Frame(volts, k, float(k)))["grams"]
+            for pressure in ("even", "any"):
+                step = _steps(pressure, data, sizes)
+                found = step(image)
+                off = np.hypot(found.object.x_cm - disc.x_cm, found.object.y_cm - disc.y_cm)
+                rows[pressure].append((found.name == it.name, found.name == UNKNOWN, off))
+        print(f"  {name}")
+        for pressure, its in rows.items():
+            right, strange, off = np.mean(its, axis=0)
+            print(
+                f"    pressure: {pressure:<5} {right:7.2%} right, {strange:7.2%} called unknown,"
+                f" centre off by {off:.3f} cm"
+            )
+
+
+_made: dict[str, IdentifyFootprint] = {}
+
+
+def _steps(pressure: Any, data: Any, sizes: Any) -> IdentifyFootprint:
+    if pressure not in _made:
+        _made[pressure] = IdentifyFootprint(
+            database=data, sizes=sizes, on_pad="whole", pressure=pressure
+        )
+    return _made[pressure]
+
+
 def times() -> None:
     frames = list(
         load("identify-likelihood").with_source("simulate", scene="identify", frames=10).frames(3)
@@ -158,6 +206,8 @@ def main() -> None:
     for exact in (False, True):
         print(f"Same weight and area, other shape, sizes {'stated' if exact else 'learned'}")
         run_all(ALIKE, chosen.pads, exact)
+    print("Discs of the five pressing unevenly, sizes stated")
+    pressed(120, 5)
     print("One frame of the five, objects of the shipped sample")
     times()
 

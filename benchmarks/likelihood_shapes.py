@@ -4,7 +4,9 @@ Run with ``python benchmarks/likelihood_shapes.py`` (about a minute); ``--object
 than 400. Objects as in ``shape_confidence.py``: discs, ellipses, rectangles and regular polygons of
 3, 5 and 6 corners of 12 to 140 cm2 on the pad ``thesis``. First without the polygons, three shapes
 to choose from; then all four. `shape_decision` gets the same choice: its confidences in the
-others are left out and the rest normalised.
+others are left out and the rest normalised. Then the three shapes pressing unevenly: as a ball
+does, (1 - r**2) to the power 1/2 or 1, with the weight a fifth of the way from the middle to the
+rim, and through foam half a cell wide.
 """
 
 from __future__ import annotations
@@ -21,13 +23,19 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
+from likelihood_robustness import GEOMETRY, THESIS, gains
 from rounds import print_table, time_side_by_side
 from shape_confidence import frames
 
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
+from tactile_graph.wires import Circle, Ellipse, Rectangle
 from tactile_graph_likelihood.choose_shape import ChooseShape
+from tactile_graph_pads.contact import spread
 
+FINE = 24
+Shape = Circle | Ellipse | Rectangle
+Load = np.ndarray[Any, np.dtype[np.float64]]
 BINS = (0.25, 0.5, 0.7, 0.8, 0.9, 0.97, 1.0)
 Answer = dict[str, float]
 
@@ -99,6 +107,78 @@ def show(title: str, names: tuple[str, ...], some: list[Frame], contestants: Any
                 )
 
 
+def round_face(shape: Shape, power: float) -> Load:
+    """Return the mean of ``(1 - r**2) ** power`` over each element, r the distance to the rim."""
+    steps = (np.arange(FINE) + 0.5) / FINE - 0.5
+    off = (steps * (GEOMETRY.pitch_cm - GEOMETRY.gap_cm))[None, :]
+    x, y = np.meshgrid(
+        (GEOMETRY.x_cm[:, None] + off).ravel(), (GEOMETRY.y_cm[:, None] + off).ravel()
+    )
+    angle = getattr(shape, "angle_rad", 0.0)
+    u = (x - shape.x_cm) * np.cos(angle) - (y - shape.y_cm) * np.sin(angle)
+    v = (x - shape.x_cm) * np.sin(angle) + (y - shape.y_cm) * np.cos(angle)
+    if isinstance(shape, Rectangle):
+        r = np.maximum(2.0 * np.abs(u) / shape.length_cm, 2.0 * np.abs(v) / shape.breadth_cm)
+    elif isinstance(shape, Ellipse):
+        r = np.hypot(u / shape.semi_major_cm, v / shape.semi_minor_cm)
+    else:
+        r = np.hypot(u, v) / shape.radius_cm
+    pressure = np.where(r < 1.0, np.maximum(1.0 - r * r, 0.0) ** power, 0.0)
+    rows, columns = GEOMETRY.shape
+    return np.asarray(pressure.reshape(rows, FINE, columns, FINE).mean(axis=(1, 3)))
+
+
+def ball(power: float) -> Callable[[Shape, float, np.random.Generator], Load]:
+    def load_g(shape: Shape, weight: float, rng: np.random.Generator) -> Load:
+        part = round_face(shape, power) * gains(rng)
+        return np.asarray(part * (weight / part.sum()))
+
+    return load_g
+
+
+def leaning(shape: Shape, weight: float, rng: np.random.Generator) -> Load:
+    way, off = rng.uniform(0.0, 2.0 * np.pi), 0.1 * np.sqrt(shape.area_cm2 / np.pi) * 2.0
+    offset = off * np.cos(way), off * np.sin(way)
+    return THESIS.contact.load_g(shape, weight, GEOMETRY, gains(rng), offset)
+
+
+def even(shape: Shape, weight: float, rng: np.random.Generator) -> Load:
+    return THESIS.contact.load_g(shape, weight, GEOMETRY, gains(rng))
+
+
+FACES: dict[str, Callable[[Shape, float, np.random.Generator], Load]] = {
+    "even": even,
+    "ball on an elastic pad": ball(0.5),
+    "ball on a soft layer": ball(1.0),
+    "weight off centre": leaning,
+    "foam, half a cell": lambda *of: spread(even(*of), GEOMETRY, 0.65),
+}
+
+
+def uneven(some: list[Frame], seed: int) -> None:
+    """Print how often each setting of ``pressure`` names the shape, by how it presses."""
+    print(f"\nThree shapes pressing unevenly, {len(some)} objects: named rightly, and stated")
+    grams = load("circle-likelihood").runner(only=["grams"])
+    steps = {p: ChooseShape(on_pad="whole", pressure=p) for p in ("even", "any")}  # type: ignore[arg-type]
+    for name, face in FACES.items():
+        rng = np.random.default_rng(seed)
+        found: dict[str, list[tuple[bool, float]]] = {p: [] for p in steps}
+        for frame in some:
+            assert frame.truth is not None
+            true: Any = frame.truth[0]
+            siemens = THESIS.conductance_s(face(true.shape, true.weight_g, rng), THESIS.built(rng))
+            siemens *= np.exp(THESIS.law.repeatability * rng.standard_normal(siemens.shape))
+            counts = THESIS.scan.counts(THESIS.volts_of(siemens), THESIS.converter, rng)
+            volts = THESIS.image(THESIS.converter.volts(counts), "volt")
+            image = grams(Frame(volts, frame.index, frame.time_s))["grams"]
+            for pressure, step in steps.items():
+                answer = step(image)
+                found[pressure].append((answer.name == true.name, answer.probability))
+        text = (f"{p}: {np.mean(its, axis=0)[0]:6.1%}, {np.mean(its, axis=0)[1]:6.1%}"
+                for p, its in found.items())  # fmt: skip
+        print(f"  {name:<24}", "   ".join(text))
+
+
 def times(some: list[Frame]) -> None:
     run = load("circle-likelihood").runner(only=["grams"])
     images = [image for f in some[:24] if (image := run(f).get("grams")) is not None]
@@ -130,6 +210,7 @@ def main() -> None:
             "choose_shape": by_evidence(names), "shape_decision": by_outline(names),
         }  # fmt: skip
         show(title, names, of, contestants)
+    uneven(no_polygons, chosen.seed)
     times(some)
 
 

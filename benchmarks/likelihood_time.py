@@ -3,18 +3,24 @@
 Run with ``python benchmarks/likelihood_time.py`` (about two minutes); ``--series N`` takes other
 than 40 of each kind. DISC I of the thesis. At rest the unevenness stays, so only the scatter of
 readings averages out: shown on the thesis' pad, on one whose readings scatter by 50 %, and on an
-even one. Put down again, the sizes' posterior is the next prior.
+even one. Put down again, the sizes' posterior is the next prior; also of a ball, of weight off
+centre and on foam, as in ``likelihood_robustness.py``, with pressure ``any`` and ``even``.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import likelihood_robustness
 
 from tactile_graph import Image, Pipeline, load
 from tactile_graph.compiled import warm_up
@@ -59,14 +65,29 @@ def grams_of(scene: dict[str, Any], on: dict[str, Any], frames: int, seed: int) 
     return [(frame, run(frame)["grams"]) for frame in pipeline.frames(seed)]
 
 
+def pressed_of(kind: str, frames: int, seed: int) -> list[Any]:
+    """Return (frame, image in grams) of the disc put down anew and pressing otherwise."""
+    run = load("circle-likelihood").runner(only=["grams"])
+    discs = likelihood_robustness.DISCS  # in turn; the first is DISC I
+    every = likelihood_robustness.frames(
+        *likelihood_robustness.KINDS[kind], len(discs) * frames, seed
+    )
+    return [(frame, run(frame)["grams"]) for frame in list(every)[:: len(discs)]]
+
+
 def rows_of(
-    name: str, scene: dict[str, Any], on: dict[str, Any], series: int, step: Callable[[], Any]
-) -> None:
+    name: str, scene: dict[str, Any] | str, on: dict[str, Any], series: int,
+    step: Callable[[], Any],
+) -> None:  # fmt: skip
     """Print centre and radius error, and how often the 90 % region holds, by frame."""
     centre, radius, inside = defaultdict(list), defaultdict(list), defaultdict(list)
     for seed in range(series):
         follow = step()
-        for k, (frame, image) in enumerate(grams_of(scene, on, max(SHOWN), seed), 1):
+        if isinstance(scene, str):
+            seen = pressed_of(scene, max(SHOWN), 1000 + seed)
+        else:
+            seen = grams_of(scene, on, max(SHOWN), seed)
+        for k, (frame, image) in enumerate(seen, 1):
             found = follow(image)
             if k not in SHOWN:
                 continue
@@ -163,6 +184,12 @@ def main() -> None:
     rows_of(
         "  without the fixed share", same, thesis, chosen.series, lambda: step_of(thesis, fixed=0)
     )
+    for kind in ("ball on an elastic pad", "weight off centre", "foam, half a cell"):
+        for pressure in ("any", "even"):
+            rows_of(
+                f"{kind}, {pressure}", kind, thesis, chosen.series,
+                lambda pressure=pressure: step_of(thesis, pressure=pressure),
+            )  # fmt: skip
     moves(chosen.series)
     false_alarms(chosen.frames)
 

@@ -108,7 +108,7 @@ def orders(found: dict[str, Values]) -> None:
     for one, other in pairs:
         ratios = "  ".join(f"{x:7.2f}" for x in (found[one] / found[other]).ravel())
         print(f"  {ratios}   {one} over {other}")
-    print("  targets, of rectangle-2, full axes: rectangle-3 at most 0.5, rectangle-likelihood 0.25")
+    print("  targets, of rectangle-2, full axes: rectangle-3 0.5, rectangle-likelihood 0.25")
 
 
 def alternatives(readings: int, seed: int) -> None:

@@ -8,19 +8,13 @@ from typing import Annotated, Any, Literal, NamedTuple
 from annotated_types import Gt, Le, Len
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pressure import EVEN, AnyPressure, asked_by, chances
 from tactile_graph_likelihood.fit_footprint import KINDS
 from tactile_graph_likelihood.footprint_of import Load, Part, Positive, model_of
+from tactile_graph_likelihood.frame_fits import FrameFits
 from tactile_graph_likelihood.likely import Likely, likely
-from tactile_graph_likelihood.model import Model, Top
 from tactile_graph_likelihood.outlines import REGULAR
-from tactile_graph_likelihood.posterior import Posterior
-from tactile_graph_likelihood.readings import Readings, readings_of
-
-FAR = 8.0
-"""Nats below the largest evidence from which on a shape is not looked around."""
-HOPELESS = 25.0
-"""Nats below it from which on a shape's search begins no second time."""
+from tactile_graph_likelihood.readings import readings_of
 
 Name = Literal["disc", "ellipse", "rectangle", "polygon"]
 
@@ -60,10 +54,16 @@ class ChooseShape:
     precision : float
         As in `fit_footprint`.
 
+    pressure : "any" or "even"
+        Whether the object may press unevenly, as in `fit_footprint`: a ball's or a leaning
+        disc's load else passes for an ellipse's. Looked at where a likely shape with an even face
+        leaves such a pattern over, then of all shapes.
+
     Notes
     -----
-    By Bayes' rule over the shapes' evidence, the frame's likelihood averaged over the prior. A
-    shape that explains nothing has probability 0. See `fit_footprint` for the model.
+    By Bayes' rule over the shapes' evidence, the frame's likelihood averaged over the prior, with
+    ``pressure: any`` over pressures too, equally likely beforehand with each shape. A shape that
+    explains nothing has probability 0. See `fit_footprint` for the model.
     """
 
     stateless = True
@@ -78,17 +78,17 @@ class ChooseShape:
         smallest_cm: Positive | None = None,
         largest_cm: Positive | None = None,
         precision: Annotated[float, Gt(0), Le(1)] = 0.2,
+        pressure: Literal["any", "even"] = "any",
     ) -> None:
-        self._models = {
-            name: [
-                model_of(
-                    REGULAR if n else KINDS[name], n, pad, None, None, 1e-3, None, None, None,
-                    estimate, on_pad, smallest_cm, largest_cm, precision, 1024, 0,
-                )
-                for n in (CORNERS if name == "polygon" else (0,))
-            ]
+        self._outlines = [
+            (name, AnyPressure(model_of(
+                REGULAR if n else KINDS[name], n, pad, None, None, 1e-3, None, None, None,
+                estimate, on_pad, smallest_cm, largest_cm, precision, 1024, 0,
+            )))
             for name in dict.fromkeys(shapes)
-        }  # fmt: skip
+            for n in (CORNERS if name == "polygon" else (0,))
+        ]  # fmt: skip
+        self._others = self._outlines[0][1].others if pressure == "any" else {}
 
     def __call__(self, image: Load) -> Chosen:
         """Return the choice.
@@ -98,49 +98,39 @@ class ChooseShape:
         Degenerate
             If nothing is touched, or none of the shapes explains what is.
         """
-        tops, readings = self._tops(image)
-        logs = [top.evidence for _, _, top in tops]
-        found: dict[int, Posterior] = {}
-        reason = "none of the shapes explains what is touched"
-        for k in sorted(range(len(tops)), key=logs.__getitem__, reverse=True):
-            _, model, top = tops[k]
-            if top.height == -math.inf or logs[k] < max(logs) - FAR:
-                continue
-            try:
-                found[k] = model.around(readings, top)
-                logs[k] = found[k].log_evidence
-            except Degenerate as why:
-                logs[k], reason = -math.inf, str(why)
-        if not found:
-            raise Degenerate(reason)
-        own = {
-            name: [log for log, top in zip(logs, tops, strict=True) if top[0] == name]
-            for name in self._models
+        outlines = [outline for _, outline in self._outlines]
+        first = outlines[0].even
+        fits = FrameFits(readings_of(image, first.gap_cm, first.noise.least))
+        fits.add_even(outlines)
+        before = {EVEN: 1.0}
+        fits.look_around(before)
+        if asked := asked_by(fits.found.values(), self._others):
+            fits.add_others(outlines, asked)
+            fits.look_around(chances(dict.fromkeys(asked)))
+            before = chances({part: fits.likeliest(part) for part in asked})
+        if not fits.found:
+            raise Degenerate(fits.reason)
+        return self._chosen(fits, before)
+
+    def _chosen(self, fits: FrameFits, before: dict[str, float]) -> Chosen:
+        logs = [fits.evidence(k, before) for k in range(len(self._outlines))]
+        names = [name for name, _ in self._outlines]
+        evidence = {
+            name: _log_mean([log for log, its in zip(logs, names, strict=True) if its == name])
+            for name in dict.fromkeys(names)
         }
-        evidence: dict[str, float] = {name: _log_mean(its) for name, its in own.items()}
         likeliest = max(evidence.values())
         weights = {name: math.exp(log - likeliest) for name, log in evidence.items()}
         total = sum(weights.values())
-        chances = dict.fromkeys(Chosen._fields[3:], 0.0)
-        chances |= {n: w / total for n, w in weights.items()}
-        best = max(dict.fromkeys(tops[k][0] for k in found), key=lambda name: evidence[name])
-        shape = max((k for k in found if tops[k][0] == best), key=logs.__getitem__)
+        shares = dict.fromkeys(Chosen._fields[3:], 0.0)
+        shares |= {n: w / total for n, w in weights.items()}
+        seen = {k for k, _ in fits.found}
+        best = max(dict.fromkeys(names[k] for k in sorted(seen)), key=lambda name: evidence[name])
+        shape = max((k for k in sorted(seen) if names[k] == best), key=logs.__getitem__)
         return Chosen(
-            likely(found[shape]), best, chances[best],
-            chances["disc"], chances["ellipse"], chances["rectangle"], chances["polygon"],
+            likely(fits.posterior(shape, before)), best, shares[best],
+            shares["disc"], shares["ellipse"], shares["rectangle"], shares["polygon"],
         )  # fmt: skip
-
-    def _tops(self, image: Image) -> tuple[list[tuple[str, Model, Top]], Readings]:
-        """Return the top of each outline to choose from, and the readings it comes from."""
-        models = [(name, model) for name, its in self._models.items() for model in its]
-        first = models[0][1]
-        readings = readings_of(image, first.gap_cm, first.noise.least)
-        tops = [model.top_of(readings) for _, model in models]
-        likeliest = max(top.evidence for top in tops)
-        for k, (_, model) in enumerate(models):
-            if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
-                tops[k] = model.top_of(readings, tops[k])
-        return [(*model, top) for model, top in zip(models, tops, strict=True)], readings
 
 
 def _log_mean(logs: list[float]) -> float:

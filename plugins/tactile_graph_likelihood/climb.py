@@ -7,30 +7,38 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.information import STEP, add_prior, information, steps_of
+from tactile_graph_likelihood.information import STEP, add_prior, steps_of
+from tactile_graph_likelihood.inside import Inside, settle
 from tactile_graph_likelihood.linear import cholesky, solved
-from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.log_posterior import log_rest
 from tactile_graph_likelihood.outline_prior import TURN, pulled_in
 from tactile_graph_likelihood.outlines import Values, period, sizes, unknowns
 from tactile_graph_likelihood.problem import Problem, believed
+from tactile_graph_likelihood.rim_information import information_at
+from tactile_graph_likelihood.rim_likelihood import likelihood_at
 
 TIED = 0.01  # information, per squared pitch, that every length has: readings may leave one free
 
 
 @compiled_as_is
 def climbed(
-    problem: Problem, p: Values, most: int, enough: float, root: Values
-) -> tuple[float, int]:
+    problem: Problem, inside: Inside, p: Values, most: int, enough: float, stride: float,
+    root: Values,
+) -> tuple[float, int]:  # fmt: skip
     """Bring a point, in place, to the top of the log posterior.
 
     Parameters
     ----------
     problem, p
         As in `log_posterior`; the prior's `TURN` is not looked at.
+    inside : Inside
+        As in `rim_likelihood.likelihood_at`; written.
     most : int
         Rounds.
     enough : float
         Gain in log posterior still promised, below which the search ends.
+    stride : float
+        Pitches that an edge moves at most in a round.
     root : ndarray, shape (K, K)
         Written: the lower root of the information at the top.
 
@@ -49,10 +57,12 @@ def climbed(
     pulled_in(kind, corners, p, prior)
     if turn >= 0:
         loose[TURN] = p[turn]
-    now = log_rest(near, p) + log_likelihood(problem, p)
+    settle(problem, inside, p)
+    now = log_rest(near, p) + likelihood_at(problem, inside, p)
     damping = 0.0
     for rounds in range(1, most + 1):
-        information(problem, p, slope, matrix)
+        settle(problem, inside, p)
+        information_at(problem, inside, p, slope, matrix)
         add_prior(problem, p, slope, matrix)
         widths = steps_of(kind, corners, p, grid)
         for k in range(n):
@@ -67,6 +77,12 @@ def climbed(
         if promised < enough:
             return now, rounds
         share, better = 1.0, False
+        if stride < math.inf:
+            moved = 0.0
+            for k in range(first):
+                moved += abs(step[k]) * STEP / widths[k]
+            share = stride / max(moved, stride)
+        whole = share
         for _ in range(6):
             for k in range(n):
                 trial[k] = p[k] + share * step[k]
@@ -75,7 +91,7 @@ def climbed(
                 loose[TURN] = trial[turn]
             new = log_rest(near, trial)
             if new > -math.inf:
-                new += log_likelihood(problem, trial)
+                new += likelihood_at(problem, inside, trial)
             if new > now:
                 better = True
                 break
@@ -88,7 +104,7 @@ def climbed(
         gained = new - now
         now = new
         p[:] = trial
-        damping = 0.0 if share == 1.0 else 0.3
+        damping = 0.0 if share == whole else 0.3
         if gained < 0.5 * enough:
             return now, rounds
     return now, most

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import replace
 from typing import Annotated, Any, Literal, NamedTuple
@@ -10,6 +11,7 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps import TimeGap
+from tactile_graph_likelihood.any_pressure import AnyPressure, asked_by
 from tactile_graph_likelihood.at_rest import AtRest
 from tactile_graph_likelihood.fit_footprint import KINDS
 from tactile_graph_likelihood.footprint_of import Load, Positive, model_of
@@ -40,6 +42,15 @@ class Followed(NamedTuple):
     moved: bool
 
 
+class _Fit(NamedTuple):
+    """An even face's posterior, and what it came from."""
+
+    model: AnyPressure
+    readings: Readings
+    known: KnownSizes | None
+    even: Posterior
+
+
 class FollowFootprint:
     """Return the posterior of an outline from all frames that tell something about it.
 
@@ -61,7 +72,11 @@ class FollowFootprint:
     same_object : float
         Probability that what is put down next is the same object: its sizes are then known. 0
         begins anew with each move.
-    on_pad, smallest_cm, largest_cm, precision
+    smallest_cm, largest_cm : float, optional
+        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
+    pressure : "any" or "even"
+        Whether the object may press unevenly, as in `fit_footprint`.
+    on_pad, precision
         As in `fit_footprint`.
 
     Notes
@@ -85,9 +100,10 @@ class FollowFootprint:
         rest_s: Positive = 60.0,
         same_object: Annotated[float, Ge(0), Lt(1)] = 0.5,
         on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive = 0.5,
-        largest_cm: Positive = 15.0,
+        smallest_cm: Positive | None = None,
+        largest_cm: Positive | None = None,
         precision: Annotated[float, Gt(0), Le(1)] = 0.15,
+        pressure: Literal["any", "even"] = "any",
     ) -> None:
         from tactile_graph_pads.pad import load_pad
 
@@ -101,7 +117,7 @@ class FollowFootprint:
             KINDS[shape], 0, pad, self._sigma, None, 1e-3, None, None, None, [], on_pad,
             smallest_cm, largest_cm, precision, 1024, 0,
         )  # fmt: skip
-        noise = self._model.noise
+        noise, self._any = self._model.noise, pressure == "any"
         self._least = math.log(noise.least) if noise.least > 0.0 else -700.0
         self._resting: AtRest | None = None
         self._posterior: Posterior | None = None
@@ -134,7 +150,7 @@ class FollowFootprint:
         resting = self._resting
         if resting is None or not resting.fits_grid(readings):
             return False
-        prior = math.log(max(math.expm1(gap_s / self._rest_s), 1e-12))
+        prior = math.log(max(math.expm1(min(gap_s / self._rest_s, 700.0)), 1e-12))
         return resting.log_odds_of_move(readings) + prior < 0.0
 
     def _again(self, readings: Readings) -> Followed:
@@ -146,23 +162,25 @@ class FollowFootprint:
         scatter = self._frame_sigma**2
         if (1.0 / self._used - 1.0 / n) * scatter > WORTH * (self._sigma**2 + scatter / n):
             start = self._posterior.most_likely_shape
-            self._posterior = self._seen(resting.averaged, self._known, n, start)
+            fit = self._fit(resting.averaged, self._known, n, start)
+            self._posterior = self._completed(fit, self._asked([fit]))
             self._used = n
         return Followed(likely(self._posterior), n, self._placements, moved=False)
 
     def _put_down(self, readings: Readings) -> Followed:
         before, self._resting = self._posterior, None
-        alone = self._seen(readings, None, 1)
-        chosen, known = alone, None
+        fits = [self._fit(readings, None, 1)]
         if before is not None and self._same > 0.0:
-            known = self._carried(before, alone)
-            try:
-                carried = self._seen(readings, known, 1)
-                gain = carried.log_evidence - known.log_share(self._model) - alone.log_evidence
-                if gain + math.log(self._same / (1.0 - self._same)) > 0.0:
-                    chosen = carried
-            except Degenerate:
-                pass
+            with contextlib.suppress(Degenerate):
+                fits.append(self._fit(readings, self._carried(before, fits[0].even), 1))
+        asked = self._asked(fits)
+        alone = chosen = self._completed(fits[0], asked)
+        known = fits[-1].known
+        if known is not None:
+            carried = self._completed(fits[1], asked)
+            gain = carried.log_evidence - known.log_share(self._model, readings)
+            gain += math.log(self._same / (1.0 - self._same)) - alone.log_evidence
+            chosen = carried if gain > 0.0 else alone
         same = chosen is not alone
         self._placements = self._placements + 1 if same else 1
         self._known = known if same else None
@@ -178,12 +196,21 @@ class FollowFootprint:
         r = self._fixed * max(0.0, 1.0 - off / pitch)
         return found._replace(covariance=found.covariance * ((1.0 + r) / (1.0 - r)))
 
-    def _seen(
+    def _fit(
         self, readings: Readings, known: KnownSizes | None, frames: int, start: Any = None
-    ) -> Posterior:
-        """Return the posterior of a mean of frames."""
+    ) -> _Fit:
+        """Return the posterior of an even face by a mean of frames."""
         self._pitch = float(readings.grid[2])
         sigma = math.hypot(self._sigma, self._frame_sigma / math.sqrt(frames))
         model = replace(self._model, noise=replace(self._model.noise, sigma=sigma))
         belief = None if known is None else known.belief(model)
-        return model.posterior_of(readings, start, belief)
+        even = model.posterior_of(readings, start, belief)
+        return _Fit(AnyPressure(model), readings, known, even)
+
+    def _asked(self, fits: list[_Fit]) -> list[str]:
+        """Return the pressures that any of the fits asks for."""
+        return asked_by([fit.even for fit in fits], fits[0].model.others) if self._any else []
+
+    def _completed(self, fit: _Fit, asked: list[str]) -> Posterior:
+        belief = None if fit.known is None else fit.known.belief(fit.model.even)
+        return fit.model.completed(fit.readings, fit.even, asked, belief)

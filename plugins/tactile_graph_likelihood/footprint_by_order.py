@@ -11,7 +11,8 @@ from annotated_types import Ge, Gt, Le, Lt
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Circle, Ellipse, Image, Mask, Polygon, Rectangle
-from tactile_graph_likelihood.element_terms import OFF, ON
+from tactile_graph_filters.decouple import Decouple
+from tactile_graph_likelihood.element_terms import OFF, ON, UNKNOWN
 from tactile_graph_likelihood.fit_footprint import KINDS
 from tactile_graph_likelihood.footprint_of import Positive, Share, model_of
 from tactile_graph_likelihood.likely import Likely, likely
@@ -33,7 +34,8 @@ class FootprintByOrder:
     shape, corners, strays, gap_cm, on_pad, smallest_cm, largest_cm, precision
         As in `fit_footprint`.
     pad : str or mapping
-        Gap, unevenness and voids come from it, unless given here; its law is not used.
+        Gap, unevenness and voids come from it, unless given here, and the circuit that volts are
+        freed of; its law is not used.
     sigma : float, optional
         Standard deviation of the logarithm of an element's gain, in load.
     voids : float, optional
@@ -47,9 +49,14 @@ class FootprintByOrder:
 
     Notes
     -----
-    Any strictly monotone change of the readings leaves the answer as it is. The likelihood is in
-    `order_likelihood`; ``sliver`` is the middle of a guess, a factor of 7 wide, and is estimated
-    with the outline. ``fits`` is always True: an order alone cannot contradict itself.
+    Any strictly monotone change of the readings leaves the answer as it is. Volts of a circuit
+    whose elements shadow each other are no such change of the load: an image in volts is decoupled
+    first; another quantity is taken as it is. The likelihood is in `order_likelihood`; ``sliver``
+    is the middle of a guess, a factor of 7 wide, and is estimated with the outline.
+
+    ``fits`` is False where touch and order are less likely than the model's own by more than
+    three standard deviations, or where they leave a pattern over, as with `fit_footprint`. The
+    load that an element's place in the order stands for takes the place of its own.
     """
 
     stateless = True
@@ -68,8 +75,8 @@ class FootprintByOrder:
         touched_from: Annotated[float, Ge(0)] = 0.0,
         sliver: Share = 0.1,
         on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive = 0.5,
-        largest_cm: Positive = 15.0,
+        smallest_cm: Positive | None = None,
+        largest_cm: Positive | None = None,
         precision: Annotated[float, Gt(0), Le(1)] = 0.15,
     ) -> None:
         kind = KINDS[shape]
@@ -81,7 +88,7 @@ class FootprintByOrder:
         self._touch = [
             replace(self.model, noise=replace(noise, sigma=s), precision=0.3) for s in TOUCH_SIGMAS
         ]
-        self._touched_from = touched_from
+        self._touched_from, self._decouple = touched_from, Decouple(pad=pad)
 
     def __call__(
         self,
@@ -105,7 +112,8 @@ class FootprintByOrder:
         ValueError
             If ``start`` is of another shape, or the image's cells are not square.
         Degenerate
-            If nothing is touched, or no such outline on the pad explains what is.
+            If nothing is touched, or no such outline on the pad explains what is; if volts are
+            not the circuit's.
         """
         return likely(self.posterior(self._readings(image, touched), start))
 
@@ -122,6 +130,16 @@ class FootprintByOrder:
         raise reason
 
     def _readings(self, image: Image, touched: Mask | None) -> Readings:
+        found = self._touched_of(image, touched)
+        if image.quantity != "volt":
+            return found
+        siemens = self._decouple(image)
+        states = found.states
+        if siemens.valid is not None:
+            states = np.where(siemens.valid, states, UNKNOWN).astype(np.uint8)
+        return _touching(found._replace(logs=siemens.filled(0.0), states=states))
+
+    def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
         gap = self.model.gap_cm
         if touched is None:
             return readings_of(image, gap, self._touched_from, 0.0)
@@ -131,6 +149,11 @@ class FootprintByOrder:
         found = readings_of(image.with_values(values - lift + 1.0), gap, 0.0, 0.0)
         on = touched.values & (found.states == ON)
         states = np.where(on, ON, np.where(found.states == ON, OFF, found.states)).astype(np.uint8)
-        if not on.any():
-            raise Degenerate("no element is touched: no outline fits")
-        return found._replace(states=states, touched=int(on.sum()))
+        return _touching(found._replace(states=states))
+
+
+def _touching(found: Readings) -> Readings:
+    count = int((found.states == ON).sum())
+    if count == 0:
+        raise Degenerate("no element is touched: no outline fits")
+    return found._replace(touched=count)

@@ -12,9 +12,19 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Quantity
-from tactile_graph.wires import Circle, Ellipse, Image, Rectangle, Shape
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pressure import (
+    EVEN,
+    FIRST,
+    AnyPressure,
+    asked_by,
+    chances,
+    log_of,
+    mixed,
+)
 from tactile_graph_likelihood.element_terms import SPAN
 from tactile_graph_likelihood.footprint_of import Positive, model_of
+from tactile_graph_likelihood.frame_fits import FrameFits
 from tactile_graph_likelihood.known_footprints import (
     KnownFootprint,
     known_footprints,
@@ -23,9 +33,9 @@ from tactile_graph_likelihood.known_footprints import (
 from tactile_graph_likelihood.known_sizes import KnownSizes
 from tactile_graph_likelihood.likely import Likely, likely
 from tactile_graph_likelihood.noise import level_of
-from tactile_graph_likelihood.outlines import DISC, ELLIPSE, RECTANGLE
+from tactile_graph_likelihood.outlines import DISC, ELLIPSE, RECTANGLE, Values
 from tactile_graph_likelihood.posterior import Posterior
-from tactile_graph_likelihood.readings import Readings, readings_of
+from tactile_graph_likelihood.readings import readings_of
 
 HOPELESS = 20.0
 """How far, in logarithms, an object's best possible evidence may lie below the best one's."""
@@ -34,6 +44,12 @@ SIZES_TELL = 15.0
 """What known sizes can add to the evidence of a free outline, at most."""
 
 UNKNOWN = "unknown"
+
+FREE_KINDS = (DISC, ELLIPSE, RECTANGLE)
+"""What an unknown object may be."""
+
+Kept = dict[tuple[int, int, str], tuple[float, Posterior]]
+"""Object, its outline, and pressure -> log evidence with the sizes as prior, and posterior."""
 
 
 class Identified(NamedTuple):
@@ -67,7 +83,12 @@ class IdentifyFootprint:
         Probability, before a frame is read, that it is none of them.
     learned_level_v : float
         Voltage from which an element counted as touched when the objects were learned.
-    pad, on_pad, smallest_cm, largest_cm, precision
+    pressure : "any" or "even"
+        Whether objects may press unevenly, as in `fit_footprint`. Looked at where an even face
+        leaves such a pattern over, then of all objects, the unknown one too.
+    smallest_cm, largest_cm : float, optional
+        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
+    pad, on_pad, precision
         As in `fit_footprint`.
 
     Raises
@@ -98,22 +119,23 @@ class IdentifyFootprint:
         learned_level_v: Positive = 0.01,
         pad: str | dict[str, Any] = "thesis",
         on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive = 0.5,
-        largest_cm: Positive = 15.0,
+        smallest_cm: Positive | None = None,
+        largest_cm: Positive | None = None,
         precision: Annotated[float, Gt(0), Le(1)] = 0.2,
+        pressure: Literal["any", "even"] = "any",
     ) -> None:
         from tactile_graph_pads.pad import load_pad
 
         pad_record = load_pad(pad)
-        self._free = {
-            kind: model_of(
-                kind, 0, pad, None, None, 1e-3, None, None, None, [], on_pad,
-                smallest_cm, largest_cm, precision, 1024, 0,
-            )
-            for kind in (DISC, ELLIPSE, RECTANGLE)
-        }  # fmt: skip
+        self._even = model_of(
+            DISC, 0, pad, None, None, 1e-3, None, None, None, [], on_pad, smallest_cm, largest_cm,
+            precision, 1024, 0,
+        )  # fmt: skip
+        self._models: dict[tuple[int, int], AnyPressure] = {}
+        self._free = [self._of(kind, 0) for kind in FREE_KINDS]
+        self._others = self._free[0].others if pressure == "any" else {}
         self._level = level_of(pad_record, learned_level_v)
-        self._objects = known_footprints(database, sizes, self._free[DISC], pad_record, self._level)
+        self._objects = known_footprints(database, sizes, self._even, pad_record, self._level)
         self._log_unknown = math.log(max(unknown, 1e-300))
         self._log_known = math.log((1.0 - unknown) / len(self._objects))
 
@@ -130,73 +152,112 @@ class IdentifyFootprint:
         Degenerate
             If nothing is touched, or nothing explains what is.
         """
-        model = self._free[DISC]
-        readings = readings_of(image, model.gap_cm, model.noise.least)
-        free = self._any(readings)
-        tops = [p.log_evidence for p in free.values()]
-        score = _log_mean(tops, len(self._free)) + self._log_unknown
-        found: list[tuple[float, KnownFootprint | None, Posterior]] = [
-            (score, None, max(free.values(), key=lambda p: p.log_evidence))
-        ]
+        even = self._even
+        fits = FrameFits(readings_of(image, even.gap_cm, even.noise.least))
+        fits.add_even(self._free)
+        before = {EVEN: 1.0}
+        fits.look_around(before)
+        if not fits.found:
+            raise Degenerate("no outline explains what is touched")
         log_weight = math.log(max(weight_of(image, self._level), 1e-300))
-        rest = [
-            (it.log_density(log_weight) + math.log(SPAN) + self._log_known, it)
-            for it in self._objects
-        ]
-        best = score
-        for level, it in sorted(rest, key=lambda pair: -pair[0]):
-            if level + max(tops) + SIZES_TELL < best - HOPELESS:
+        levels = [it.log_density(log_weight) + math.log(SPAN) + self._log_known
+                  for it in self._objects]  # fmt: skip
+        kept: Kept = {}
+        self._look_at_known(fits, levels, before, kept)
+        first = max(self._scored(fits, levels, before, kept), key=lambda one: one[0])
+        # if none fits well, a known one may by another pressure
+        known = [one for _, one in kept.values()] if first[1] is None else [first[2]]
+        if asked := asked_by([*fits.found.values(), *known], self._others):
+            fits.add_others(self._free, asked)
+            fits.look_around(chances(dict.fromkeys(asked)))
+            before = chances({part: fits.likeliest(part) for part in asked})
+            self._look_at_known(fits, levels, before, kept)
+        return _chosen(self._scored(fits, levels, before, kept))
+
+    def _of(self, kind: int, corners: int) -> AnyPressure:
+        """Return the model of a kind of outline, under any pressure."""
+        if (kind, corners) not in self._models:
+            even = replace(self._even, kind=kind, corners=corners)
+            self._models[kind, corners] = AnyPressure(even)
+        return self._models[kind, corners]
+
+    def _unknown(self, fits: FrameFits, before: dict[str, float]) -> float:
+        logs = [fits.evidence(k, before) for k in range(len(self._free))]
+        return _log_mean(logs, len(logs)) + self._log_unknown
+
+    def _look_at_known(
+        self, fits: FrameFits, levels: list[float], before: dict[str, float], kept: Kept
+    ) -> None:
+        """Find the posteriors of those objects that may be as likely as any."""
+        most = max(fits.evidence(k, before) for k in range(len(self._free)))
+        best = self._unknown(fits, before)
+        for k in sorted(range(len(levels)), key=levels.__getitem__, reverse=True):
+            if levels[k] + most + SIZES_TELL < best - HOPELESS:
                 break
-            seen = self._seen(it, readings, free)
-            if seen is not None:
-                found.append((level + seen[0], it, seen[1]))
-                best = max(best, level + seen[0])
-        return _chosen(found)
+            for n in range(len(self._objects[k].outlines)):
+                self._look_at(fits, (k, n), before, kept)
+            best = max(best, levels[k] + self._evidence(k, before, kept))
 
-    def _any(self, readings: Readings) -> dict[int, Posterior]:
-        """Return the posteriors of outlines of any size."""
-        found, reason = {}, Degenerate("no outline explains what is touched")
-        for kind, model in self._free.items():
+    def _look_at(
+        self, fits: FrameFits, outline: tuple[int, int], before: dict[str, float], kept: Kept
+    ) -> None:
+        """Find an outline's posteriors under each pressure."""
+        kind, corners, known = self._objects[outline[0]].outlines[outline[1]]
+        models = self._of(kind, corners)
+        for part in before:
+            model = models.even if part == EVEN else models.others[part]
+            if (*outline, part) in kept:
+                continue
+            if part == EVEN:
+                start = _start(fits, kind, known)
+            elif (*outline, EVEN) in kept:
+                start = np.append(kept[*outline, EVEN][1].most_likely, FIRST[part])
+            else:
+                continue
             try:
-                found[kind] = model.posterior_of(readings)
-            except Degenerate as why:
-                reason = why
-        if not found:
-            raise reason
-        return found
-
-    def _seen(
-        self, it: KnownFootprint, readings: Readings, free: dict[int, Posterior]
-    ) -> tuple[float, Posterior] | None:
-        """Return an object's log evidence by its outline, and the posterior; None without one."""
-        found = []
-        for kind, corners, known in it.outlines:
-            model = replace(self._free[DISC], kind=kind, corners=corners)
-            start = _start(free[kind], known) if kind in free else None
-            try:
-                posterior = model.posterior_of(readings, start, known.belief(model))
+                found = model.posterior_of(fits.readings, start, known.belief(model))
             except Degenerate:
                 continue
-            found.append((posterior.log_evidence - known.log_share(model), posterior))
-        if not found:
-            return None
-        logs = [log for log, _ in found]
-        return _log_mean(logs, len(it.outlines)), max(found, key=lambda pair: pair[0])[1]
+            log = found.log_evidence - known.log_share(model, fits.readings)
+            kept[*outline, part] = log, found
+
+    def _evidence(self, k: int, before: dict[str, float], kept: Kept) -> float:
+        """Return an object's log evidence by its outlines, over all pressures."""
+        logs = [log + log_of(before[key[2]]) for key, (log, _) in kept.items() if key[0] == k]
+        return _log_mean(logs, len(self._objects[k].outlines))
+
+    def _scored(
+        self, fits: FrameFits, levels: list[float], before: dict[str, float], kept: Kept
+    ) -> list[tuple[float, KnownFootprint | None, Posterior]]:
+        """Return log probability, object and posterior of all that were seen, unknown ones too."""
+        free = max({k for k, _ in fits.found}, key=lambda k: fits.evidence(k, before))
+        found: list[tuple[float, KnownFootprint | None, Posterior]] = [
+            (self._unknown(fits, before), None, fits.posterior(free, before))
+        ]
+        for k in dict.fromkeys(key[0] for key in kept):
+            _, n, _ = max((key for key in kept if key[0] == k), key=lambda key: kept[key][0])
+            its = {part: one for (i, j, part), (_, one) in kept.items() if (i, j) == (k, n)}
+            score = levels[k] + self._evidence(k, before, kept)
+            posterior = its[EVEN] if [*its] == [EVEN] else mixed(its, before)
+            found.append((score, self._objects[k], posterior))
+        return found
 
 
-def _start(free: Posterior, known: KnownSizes) -> Shape:
-    """Return the outline of known sizes where one of any size was found."""
-    shape = free.most_likely_shape
-    if isinstance(shape, Circle):
-        return Circle(shape.x_cm, shape.y_cm, float(known.mean[0]))
-    assert isinstance(shape, Ellipse | Rectangle)
-    factor = 2.0 if isinstance(shape, Rectangle) else 1.0
-    long, short = (factor * known.mean).tolist()
-    return type(shape)(shape.x_cm, shape.y_cm, long, short, shape.angle_rad)
+def _start(fits: FrameFits, kind: int, known: KnownSizes) -> Values | None:
+    """Return an outline of known sizes where one of any size was found."""
+    if kind not in FREE_KINDS:
+        return None
+    start = fits.point((FREE_KINDS.index(kind), EVEN)).copy()
+    n = len(known.mean)
+    longer_first = n == 1 or start[2] >= start[3]
+    start[2 : 2 + n] = known.mean if longer_first else known.mean[::-1]
+    return start
 
 
 def _log_mean(logs: list[float], count: int) -> float:
-    top = max(logs)
+    top = max(logs, default=-math.inf)
+    if top == -math.inf:
+        return top
     return top + math.log(sum(math.exp(log - top) for log in logs) / count)
 
 

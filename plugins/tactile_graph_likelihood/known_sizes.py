@@ -9,6 +9,7 @@ import numpy as np
 
 from tactile_graph_likelihood.model import Model
 from tactile_graph_likelihood.outlines import Values, sizes, unknowns
+from tactile_graph_likelihood.readings import Readings
 
 
 class KnownSizes(NamedTuple):
@@ -32,13 +33,15 @@ class KnownSizes(NamedTuple):
         precision[2 : 2 + n, 2 : 2 + n] = np.linalg.inv(self.covariance)
         return mean, precision
 
-    def log_share(self, model: Model) -> float:
+    def log_share(self, model: Model, readings: Readings) -> float:
         """Return the logarithm of the integral of belief times the prior of the sizes.
 
         What the evidence under the belief must be divided by to be that of a proper prior: the
         integral, and 2 where the longer of two sizes has a name, for the prior takes both orders.
+        The readings tell the range of sizes where the model does not.
         """
-        span = math.log(model.largest_cm / model.smallest_cm)
+        smallest, largest = model.range_cm(readings)
+        span = math.log(largest / smallest)
         n = len(self.mean)
         sign, log_det = np.linalg.slogdet(2.0 * math.pi * self.covariance)
         assert sign > 0

@@ -11,6 +11,8 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Shape
+from tactile_graph_likelihood.around import Found, log_volume, spread_out
+from tactile_graph_likelihood.element_terms import LEAST, States
 from tactile_graph_likelihood.even_points import even_points
 from tactile_graph_likelihood.noise import Noise
 from tactile_graph_likelihood.outlines import ELLIPSE, FREE, OVAL, REGULAR, Values, packed, unknowns
@@ -19,14 +21,8 @@ from tactile_graph_likelihood.posterior import Posterior
 from tactile_graph_likelihood.problem import Places, Problem
 from tactile_graph_likelihood.readings import Readings, readings_of
 from tactile_graph_likelihood.sampling import spread_of
-from tactile_graph_likelihood.search import (
-    ATTEMPTS,
-    Found,
-    log_volume,
-    searched,
-    spread_out,
-    topped,
-)
+from tactile_graph_likelihood.search import ATTEMPTS, searched, topped
+from tactile_graph_likelihood.solid import LARGE_PAD, least_shown, silenced
 from tactile_graph_likelihood.start import moments
 
 BLOCK = 32
@@ -124,7 +120,7 @@ class Model:
     ) -> Posterior:
         """Return the same from readings."""
         problem = self._problem(readings, belief)
-        begin = self._begin(start, readings, problem)
+        begin = self._begin(start, problem)
         table = self._table(problem)
         found = searched.call(problem, table, BLOCK, self.precision**-2, begin)
         return self._answer(readings, problem.kind, found)
@@ -140,7 +136,7 @@ class Model:
         else:
             attempts = 1, ATTEMPTS
         p, root = before.p.copy(), before.root.copy()
-        begin = self._begin(start, readings, problem)
+        begin = self._begin(start, problem)
         height, unsure = topped.call(problem, table, begin, attempts, before.height, p, root)
         possible = height > -math.inf
         evidence = height + log_volume.call(problem.kind, p, root) if possible else height
@@ -160,8 +156,11 @@ class Model:
         if kind == ELLIPSE and belief is None:
             kind = OVAL
         mean, precision = (np.zeros(n), np.zeros((n, n))) if belief is None else belief
+        states = readings.states
+        if states.size > LARGE_PAD:
+            noise, states = _quiet(readings, noise)
         return Problem(
-            kind, self.corners, readings.grid, readings.logs, readings.states, noise, places, guess,
+            kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
             self._prior(readings), mean, precision,
         )  # fmt: skip
 
@@ -216,7 +215,7 @@ class Model:
         n = unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated)
         return _table(max(1, math.ceil(self.most_points / BLOCK)) * BLOCK, n, self.seed)
 
-    def _begin(self, start: Start, readings: Readings, problem: Problem) -> Values:
+    def _begin(self, start: Start, problem: Problem) -> Values:
         if start is None:
             return NO_START
         if not isinstance(start, Shape):
@@ -229,11 +228,21 @@ class Model:
             p = _as_regular(start)
         elif kind != self.kind or (kind == FREE and corners != self.corners):
             raise ValueError(f"start: a {type(start).__name__} is not of the shape to be fitted")
-        load = moments.call(readings.grid, readings.logs, readings.states)[6]
+        load = moments.call(problem.grid, problem.logs, problem.states)[6]
         begin = np.concatenate([p, [load], problem.guess[:, 0]])
         if problem.kind == OVAL:
             to_oval.call(begin)
         return begin
+
+
+def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:
+    """Return noise and states of a large pad on which the converter's noise shows as loads."""
+    least = least_shown.call(readings.logs, readings.states, noise)
+    if least <= noise[LEAST]:
+        return noise, readings.states
+    raised = noise.copy()
+    raised[LEAST] = least
+    return raised, silenced.call(readings.logs, readings.states, least)
 
 
 def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, Values, Values]:

@@ -1,16 +1,18 @@
 """How likely it is what is touched, and in which order elements read: no law is used.
 
-An element of coverage c bears the load ``c W``, W of Weibull's distribution with the shape
-``a = 0.8 / sigma``; beyond the least load ``exp(-t)`` it is touched, but for voids:
+An element of coverage c bears the load ``c g`` of a fully covered one's, its gain g lognormal;
+beyond the least load ``exp(-t)`` it is touched, but for voids:
 
-    P(touched) = (1 - v) exp(-(c exp(t))**-a)
+    P(touched) = (1 - v) Phi((ln c + t) / sigma)
 
-Loads to the power a are then arrival times at the rates ``c**-a``, and what has not arrived by
-any time is as it was at the start. The order of the touched ones, lightest first, has
+As loads rise from there, one touched element after the other reaches its own. At the load z the
+next to do so is element i with the probability
 
-    P(order) = product over i of  rate_i / (sum of the rates of those not lighter)
+    rate_i(z) / (sum of the rates of those that have not)
 
-(R. L. Plackett 1975, 10.2307/2346567), whatever monotone law turned load into readings.
+where a rate is the density of ln load at z over the chance of more: exact, whatever monotone law
+turned load into readings. The loads at which it happens are not read; that all those left reach
+theirs at a total rate, at which the next comes, tells where it is to be expected.
 """
 
 from __future__ import annotations
@@ -21,35 +23,51 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.covered import blurred, covered, window
+from tactile_graph_likelihood.covered import Box, blurred, covered, window
 from tactile_graph_likelihood.element_terms import (
     FOAM,
     OFF,
     ON,
     SIGMA,
+    SQRT_HALF,
     STRAYS,
     VOIDS,
     States,
 )
+from tactile_graph_likelihood.order_hazards import hazard
 from tactile_graph_likelihood.outline_prior import log_prior
 from tactile_graph_likelihood.outlines import Values, unknowns
 from tactile_graph_likelihood.shares import foam_margin
 
 Order = NDArray[np.int64]
 
-WIDTH = 0.8
-"""Weibull's shape times sigma. At pi / sqrt(6) the logarithm's deviation would be sigma; gains are
-lognormal, and wider tails gave radii without a bias on simulated pads of four laws."""
-
 LEAST_SHARE = 1e-3
 """Coverage below it ranks as it does: a reading is no worse than a slip of the pad."""
 
-_LEGENDRE = np.polynomial.legendre.leggauss(24)
-NODES, HALVES = 0.5 * (_LEGENDRE[0] + 1.0), 0.5 * _LEGENDRE[1]
+STRIDE = 0.5
+"""Standard deviations of ln load over which rates are taken as constant."""
+
+EARLY = 6.0
+"""Standard deviations below the lightest element where loads begin to rise, at the earliest."""
 
 
 @compiled_as_is
-def log_order(shares: Values, ends: Order, shape: float) -> float:
+def _total_rate(
+    marks: Values, left: Values, first: int, z: float, table: Values, rates: Values
+) -> float:
+    """Write the rates of elements from a place on, at a load; return their sum."""
+    total, full = 0.0, hazard(table, z)
+    for k in range(first, marks.shape[0]):
+        if left[k] > 0.0:
+            rates[k] = full if marks[k] == 0.0 else hazard(table, z - marks[k])
+            total += left[k] * rates[k]
+    return total
+
+
+@compiled_as_is
+def log_order(
+    shares: Values, ends: Order, sigma: float, t: float, table: Values, levels: Values
+) -> float:
     """Return the log probability of an order, over that of all orders being alike.
 
     Parameters
@@ -59,53 +77,88 @@ def log_order(shares: Values, ends: Order, shape: float) -> float:
         element's place in the order tells nothing.
     ends : ndarray of int, shape (n,)
         For each element the place after the last that reads the same.
-    shape : float
-        Weibull's.
+    sigma : float
+        Standard deviation of ln gain.
+    t : float
+        Logarithm of a fully covered element's load over the least that is touched.
+    table : ndarray
+        As `order_hazards.hazards` gives it.
+    levels : ndarray, shape (n,)
+        Written: the logarithm of the load at which each is expected, in units of ``sigma``.
 
     Notes
     -----
-    That all of a set of equal readings are lighter than the rest, of rates R in all, has the
-    probability of the integral over u from 0 to 1 of ``product (1 - u**(rate_i / R))``: u is the
-    chance that none of the rest has arrived (R. DeLong et al. 1994, 10.1093/biomet/81.3.607).
-    Those that read most of all are certain to come last.
+    Of equal readings one after the other goes, each in part: by how likely it is the next of
+    them. Those that read most of all are certain to come last.
     """
-    total, product, rest, counted = 0.0, 1.0, 0.0, 0
-    last = shares.shape[0] - 1
-    while last >= 0:
-        first = last
-        while first > 0 and ends[first - 1] == last + 1:
-            first -= 1
-        rates, equal = 0.0, 0
-        for i in range(first, last + 1):
-            if shares[i] > 0.0:
-                rates += 1.0 if shares[i] == 1.0 else max(shares[i], LEAST_SHARE) ** -shape
-                equal += 1
-        if rest > 0.0 and equal == 1:
-            product *= (counted + 1.0) * rates / (rates + rest)
+    n = shares.shape[0]
+    marks, left, rates = np.zeros(n), np.zeros(n), np.zeros(n)
+    counted, lowest = 0, 0.0
+    for k in range(n):
+        if shares[k] > 0.0:
+            counted += 1
+            left[k] = 1.0
+            if shares[k] < 1.0:
+                marks[k] = math.log(max(shares[k], LEAST_SHARE)) / sigma
+                lowest = min(lowest, marks[k])
+    z = edge = max(-t / sigma, lowest - EARLY)
+    total, product, sum_of_rates, first = 0.0, 1.0, 0.0, 0
+    while first < n:
+        last, equal, began = ends[first], 0, z
+        for k in range(first, last):
+            equal += 1 if left[k] > 0.0 else 0
+        for gone in range(equal if equal < counted else 0):
+            need = 1.0
+            while need > (edge - z) * sum_of_rates:
+                need -= (edge - z) * sum_of_rates
+                z, edge = edge, edge + STRIDE
+                sum_of_rates = _total_rate(marks, left, first, z + 0.5 * STRIDE, table, rates)
+            z += need / sum_of_rates
+            theirs = 1e-300
+            for k in range(first, last):
+                theirs += left[k] * rates[k]
+            product *= (counted - gone) / (equal - gone) * min(theirs / sum_of_rates, 1.0)
             if not 1e-200 < product < 1e200:
                 total += math.log(product)
                 product = 1.0
-        elif rest > 0.0 and equal > 1:
-            total += _log_before(shares[first : last + 1], shape, rest)
-            total += math.lgamma(counted + equal + 1.0) - math.lgamma(counted + 1.0)
-            total -= math.lgamma(equal + 1.0)
-        rest += rates
-        counted += equal
-        last = first - 1
+            began = z if gone == 0 else began
+            for k in range(first, last):
+                goes = min(rates[k] / theirs, 1.0) * left[k]
+                left[k] -= goes
+                sum_of_rates -= goes * rates[k]
+        for k in range(first, last):
+            left[k], levels[k] = 0.0, 0.5 * (began + z)
+        counted -= equal
+        first = last
     return total + math.log(product)
 
 
 @compiled_as_is
-def _log_before(shares: Values, shape: float, rest: float) -> float:
-    """Return the log probability that all of a set arrive before any of the rest."""
-    total = 0.0
-    for k in range(NODES.shape[0]):
-        log_u, product = math.log(NODES[k]), 1.0
-        for i in range(shares.shape[0]):
-            if shares[i] > 0.0:
-                product *= -math.expm1(max(shares[i], LEAST_SHARE) ** -shape / rest * log_u)
-        total += HALVES[k] * product
-    return math.log(max(total, 1e-300))
+def log_touched(shares: Values, t: float, box: Box, states: States, noise: Values) -> float:
+    """Return the log likelihood of what is touched, over that of a bare pad.
+
+    Parameters
+    ----------
+    shares : ndarray, shape (rows, columns)
+        Coverage of a window.
+    t, box, states, noise
+        As in `log_order`, `covered.covered` and `order_log_likelihood`.
+    """
+    present, sigma = 1.0 - noise[VOIDS], noise[SIGMA]
+    total, product, known, shows = 0.0, 1.0, -1.0, 0.0
+    for i in range(box[2]):
+        for j in range(box[3]):
+            state, c = states[box[0] + i, box[1] + j], shares[i, j]
+            if c <= 0.0 or (state != ON and state != OFF):
+                continue
+            if c != known:
+                known = c
+                shows = 0.5 * present * math.erfc(-SQRT_HALF * (math.log(c) + t) / sigma)
+            product *= 1.0 + shows / noise[STRAYS] if state == ON else 1.0 - shows
+            if not 1e-200 < product < 1e200:
+                total += math.log(product)
+                product = 1.0
+    return total + math.log(product)
 
 
 @compiled_as_is
@@ -118,6 +171,7 @@ def order_log_likelihood(
     order: Order,
     ends: Order,
     noise: Values,
+    table: Values,
 ) -> float:
     """Return the log likelihood of touch and order over that of a bare pad.
 
@@ -129,7 +183,7 @@ def order_log_likelihood(
         The outline's numbers, and t.
     order : ndarray of int, shape (n, 2)
         Row and column of the touched elements, those that read least first.
-    ends : ndarray of int, shape (n,)
+    ends, table
         As in `log_order`.
     """
     rows, columns = states.shape
@@ -139,30 +193,23 @@ def order_log_likelihood(
     share = covered(kind, corners, p, grid, box)
     if noise[FOAM] > 0.0:
         share = blurred(share, noise[FOAM], box, rows, columns)
-    t, present = p[unknowns(kind, corners)], 1.0 - noise[VOIDS]
-    a = WIDTH / noise[SIGMA]
-    product, known, shows = 1.0, -1.0, 0.0
-    total = 0.0
-    for i in range(box[2]):
-        for j in range(box[3]):
-            state, c = states[box[0] + i, box[1] + j], share[i, j]
-            if c <= 0.0 or (state != ON and state != OFF):
-                continue
-            if c != known:
-                known = c
-                late = min(-a * (math.log(c) + t), 300.0)
-                shows = present * math.exp(-math.exp(late))
-            product *= 1.0 + shows / noise[STRAYS] if state == ON else 1.0 - shows
-            if not 1e-200 < product < 1e200:
-                total += math.log(product)
-                product = 1.0
-    total += math.log(product)
+    t = p[unknowns(kind, corners)]
+    along = shares_along(share, box, order)
+    levels = np.empty(order.shape[0])
+    return log_touched(share, t, box, states, noise) + log_order(
+        along, ends, noise[SIGMA], t, table, levels
+    )
+
+
+@compiled_as_is
+def shares_along(share: Values, box: Box, order: Order) -> Values:
+    """Return a window's coverage of the touched elements, those that read least first."""
     along = np.zeros(order.shape[0])
     for k in range(order.shape[0]):
         i, j = order[k, 0] - box[0], order[k, 1] - box[1]
         if 0 <= i < box[2] and 0 <= j < box[3]:
             along[k] = share[i, j]
-    return total + log_order(along, ends, a)
+    return along
 
 
 @compiled_as_is
@@ -175,6 +222,7 @@ def order_log_densities(
     order: Order,
     ends: Order,
     noise: Values,
+    table: Values,
     prior: Values,
 ) -> Values:
     """Return `order_log_likelihood` plus the outline's log prior of many points, shape (N, K)."""
@@ -183,7 +231,7 @@ def order_log_densities(
         out[k] = log_prior(kind, corners, points[k], prior)
         if out[k] > -math.inf:
             out[k] += order_log_likelihood(
-                kind, corners, points[k], grid, states, order, ends, noise
+                kind, corners, points[k], grid, states, order, ends, noise, table
             )
     return out
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,15 +12,18 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.even_points import even_points
 from tactile_graph_likelihood.model import Model
+from tactile_graph_likelihood.order_hazards import hazards
 from tactile_graph_likelihood.order_likelihood import order_log_densities, ranked
+from tactile_graph_likelihood.order_misfit import order_misfit
 from tactile_graph_likelihood.outline_prior import TURN
-from tactile_graph_likelihood.outlines import Values, period, sizes, unknowns
+from tactile_graph_likelihood.outlines import DISC, Values, period, sizes, unknowns
 from tactile_graph_likelihood.posterior import Posterior
 from tactile_graph_likelihood.readings import Readings
 from tactile_graph_likelihood.sampling import FREEDOM, flatten, spread_of, weigh
 
-ROUND = 128  # points
-ROUNDS = 8
+ROUND = 32  # points
+WIDE_ROUND = 128  # of outlines with an angle or corners: a void at an end looks like the end
+MOST = 1024
 WIDER = 1.3  # a proposal's variance over the posterior's
 FIRST = 3.0  # the first one's over that of the start
 APART = 0.15  # of a pitch: standard deviation that the first adds to every length
@@ -56,12 +60,10 @@ def order_posterior(
     if (turned := period.call(model.kind, model.corners)) > 0.0:
         prior[TURN] = start.mean[2 + sizes.call(model.kind)]
     order, ends = ranked(readings.logs, readings.states)
+    read = readings.grid, readings.states, order, ends, noise, hazards(noise)
 
     def density(points: Values) -> Values:
-        found = order_log_densities.call(
-            model.kind, model.corners, points, readings.grid, readings.states, order, ends, noise,
-            prior,
-        )  # fmt: skip
+        found = order_log_densities.call(model.kind, model.corners, points, *read, prior)
         off = (points[:, first] - middle) / SPREAD
         return np.asarray(found - 0.5 * off * off)
 
@@ -74,7 +76,10 @@ def order_posterior(
     if turned > 0.0:
         k = 2 + sizes.call(model.kind)
         floor[k] /= max(float(start.mean[2:k].max()), pitch) ** 2
-    return _sampled(model, readings, density, centre, spread + np.diag(floor), enough)
+    found = _sampled(model, readings, density, centre, spread + np.diag(floor), enough)
+    seen = order_misfit.call(model.kind, model.corners, found.mean, *read)
+    surprise, neighbours, lean, fall = seen
+    return replace(found, surprise=surprise, neighbours=neighbours, lean=lean, fall=fall)
 
 
 def _sampled(
@@ -86,22 +91,22 @@ def _sampled(
     worth: float,
 ) -> Posterior:
     """Return the posterior from rounds of points, each around what those before it have found."""
-    n = len(centre)
-    table = _table(n, model.seed)
+    n, step = len(centre), ROUND if model.kind == DISC else WIDE_ROUND
+    table, rounds = _table(n, model.seed), MOST // step
     points, logs_p = np.empty(table.shape), np.empty(len(table))
-    logs_q = np.full((ROUNDS, len(table)), -math.inf)
+    logs_q = np.full((rounds, len(table)), -math.inf)
     weights, flat = np.empty(len(table)), np.empty(len(table))
     mean, matrix, aim = np.empty(n), np.empty((n, n)), centre
     proposals: list[tuple[Values, Values]] = []
     evidence, equal, count = -math.inf, 0.0, 0
-    for turn in range(ROUNDS):
+    for turn in range(rounds):
         proposals.append((aim.copy(), np.asarray(np.linalg.cholesky(spread), np.float64)))
-        now = slice(count, count + ROUND)
+        now = slice(count, count + step)
         points[now] = aim + table[now] @ proposals[-1][1].T
         logs_p[now] = density(points[now])
-        count += ROUND
+        count += step
         for c, (middle, root) in enumerate(proposals):
-            here = slice(0 if c == turn else count - ROUND, count)
+            here = slice(0 if c == turn else count - step, count)
             logs_q[c, here] = _log_density(points[here] - middle, root)
         shares = np.full(turn + 1, 1.0 / (turn + 1))
         evidence, equal = weigh.call(logs_p, logs_q, shares, turn + 1, count, weights)
@@ -132,6 +137,6 @@ def _log_density(off: Values, root: Values) -> Values:
 
 @lru_cache(maxsize=16)
 def _table(n: int, seed: int) -> Values:
-    table = even_points(ROUND * ROUNDS, n, seed)
+    table = even_points(MOST, n, seed)
     table.setflags(write=False)
     return table

@@ -7,23 +7,27 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.inside import Inside
+from tactile_graph_likelihood.log_posterior import log_rest
 from tactile_graph_likelihood.outlines import ELLIPSE, OVAL, RECTANGLE, Values
 from tactile_graph_likelihood.oval import as_ellipse, to_oval
 from tactile_graph_likelihood.problem import Problem
+from tactile_graph_likelihood.rim_likelihood import likelihood_at
 
 SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
 
 
 @compiled_as_is
-def widen(problem: Problem, p: Values, top: float, covariance: Values) -> None:
+def widen(problem: Problem, inside: Inside, p: Values, top: float, covariance: Values) -> None:
     """Widen a covariance, in place, towards each side's other likely places.
 
     Parameters
     ----------
     problem, p
         As in `log_posterior`; ``p`` is the most likely point.
+    inside : Inside
+        As in `rim_likelihood.likelihood_at`.
     top : float
         Log posterior there.
     covariance : ndarray, shape (K, K)
@@ -56,7 +60,7 @@ def widen(problem: Problem, p: Values, top: float, covariance: Values) -> None:
             here = log_rest(problem, trial)
             if here == -math.inf:
                 continue
-            here += log_likelihood(problem, trial)
+            here += likelihood_at(problem, inside, trial)
             share = math.exp(FLATTER * min(here - top, 0.0))
             for k in range(5):
                 for m in range(5):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.element_terms import OFF, ON, UNKNOWN, States
 from tactile_graph_likelihood.outlines import Values
+from tactile_graph_likelihood.solid import LARGE_PAD, typical_load
 
 FAINT = 0.015
 """Share of a loaded element's reading below which another counts as nothing. A column of a divider
@@ -70,6 +72,41 @@ def split(values: Values, least: float, logs: Values, states: States) -> int:
     return count
 
 
+def _ranked(values: Values, rank: int) -> float:
+    """Return the value that so many, less one, are at least as large as."""
+    return float(np.partition(values, -rank, axis=None)[-rank])
+
+
+@compiled_twin_of(_ranked)
+def ranked(values: Values, rank: int) -> float:
+    """Do the same in loops; that most values are equal costs no time."""
+    largest = np.full(rank, -np.inf)
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if value <= largest[0]:
+                continue
+            k = 0
+            while k + 1 < rank and largest[k + 1] < value:
+                largest[k] = largest[k + 1]
+                k += 1
+            largest[k] = value
+    return float(largest[0])
+
+
+def _loaded(values: Values, least: float, logs: Values, states: States) -> float:
+    """Return what a loaded element reads; of the last two only the space is used.
+
+    On a large pad more than eight readings may be strays. There it is twice the median of those
+    among other readings, 0 where there are none.
+    """
+    if values.size <= LARGE_PAD:
+        return ranked.call(values, RANK)
+    split.call(values, least, logs, states)
+    typical = typical_load.call(logs, states)
+    return 0.0 if math.isnan(typical) else 2.0 * math.exp(typical)
+
+
 def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT) -> Readings:
     """Return an image's readings.
 
@@ -82,7 +119,8 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
     least : float
         Readings below it count as nothing.
     faint : float
-        So do those below this share of the eighth largest reading, as beside saturated elements.
+        So do those below this share of the eighth largest reading, as beside saturated elements;
+        on a large pad, of twice the median.
 
     Raises
     ------
@@ -100,7 +138,7 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
     if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
-        least = max(least, faint * float(np.partition(values, -RANK, axis=None)[-RANK]))
+        least = max(least, faint * _loaded(values, least, logs, states))
     touched = split.call(values, least, logs, states)
     if touched < 0:
         raise ValueError("a valid cell holds NaN or infinity")

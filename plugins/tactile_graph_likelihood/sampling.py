@@ -13,11 +13,13 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.inside import Inside
 from tactile_graph_likelihood.linear import cholesky, squared_length
-from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.log_posterior import log_rest
 from tactile_graph_likelihood.outlines import DISC, OVAL, Values
 from tactile_graph_likelihood.oval import log_stretch
 from tactile_graph_likelihood.problem import Problem
+from tactile_graph_likelihood.rim_likelihood import likelihood_at
 
 FREEDOM = 8.0  # of Student's t
 WIDER = 1.3  # the proposal's variance over the posterior's
@@ -163,6 +165,7 @@ def spread_of(points: Values, weights: Values, count: int, mean: Values, matrix:
 @compiled_as_is
 def sampled(
     problem: Problem,
+    inside: Inside,
     centre: Values,
     covariance: Values,
     table: Values,
@@ -180,6 +183,8 @@ def sampled(
     ----------
     problem : Problem
         As in `log_posterior`.
+    inside : Inside
+        As in `rim_likelihood.likelihood_at`.
     centre, covariance : ndarray, shape (K,) and (K, K)
         First proposal.
     table : ndarray, shape (N, K)
@@ -235,7 +240,7 @@ def sampled(
                 points[i, k] = place
             here = log_rest(problem, points[i])
             if here > -math.inf:
-                here += log_likelihood(problem, points[i])
+                here += likelihood_at(problem, inside, points[i])
                 if kind == OVAL:
                     here += log_stretch(points[i])
             logs_p[i] = here

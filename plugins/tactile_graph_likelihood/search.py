@@ -3,57 +3,29 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.climb import climbed
-from tactile_graph_likelihood.element_terms import STRAYS
-from tactile_graph_likelihood.linear import inverted
-from tactile_graph_likelihood.log_posterior import LN_TWO_PI, log_likelihood, log_rest
-from tactile_graph_likelihood.misfit import misfit
-from tactile_graph_likelihood.other_tops import widen
+from tactile_graph_likelihood.around import Found, spread_out
+from tactile_graph_likelihood.ascents import climbed_from, climbed_twice
+from tactile_graph_likelihood.coarse import coarsened, in_one_piece
+from tactile_graph_likelihood.element_terms import VOIDS
+from tactile_graph_likelihood.inside import inside_of, settle
+from tactile_graph_likelihood.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.outlines import OVAL, Values, period, sizes, unknowns
-from tactile_graph_likelihood.oval import log_stretch
-from tactile_graph_likelihood.problem import Problem, believed, read_by
-from tactile_graph_likelihood.sampling import sampled
-from tactile_graph_likelihood.start import first_outline, moments, turns
+from tactile_graph_likelihood.outlines import Values, period, sizes, unknowns
+from tactile_graph_likelihood.problem import Problem, believed
+from tactile_graph_likelihood.rim_misfit import surprise_at
+from tactile_graph_likelihood.solid import LARGE_PAD
+from tactile_graph_likelihood.start import THINNEST, moments, outline_of_moments, turns
 
-ROUNDS = 25  # of the climb
-ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second climb end
 ATTEMPTS = 3
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR = -1.5  # surprise from which on there is no further attempt
-SOFT = 0.05  # share of its load that an element takes from its surroundings in the first climb
-NO_STRAYS = 1e-12
 TRIES = 24  # outlines tried around the moments own, in attempts after the first
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
-
-
-class Found(NamedTuple):
-    """A posterior as weighted points.
-
-    ``used`` points made it, 0 if no outline is possible; ``likeliest`` is the one with the
-    largest density, ``height`` its log posterior; ``equal`` says how many equally weighted points
-    they are worth; the last four numbers are those of `misfit`.
-    """
-
-    used: int
-    likeliest: Values
-    points: Values
-    weights: Values
-    mean: Values
-    covariance: Values
-    evidence: float
-    equal: float
-    height: float
-    surprise: float
-    alike: float
-    lean: float
-    fall: float
 
 
 @compiled_as_is
@@ -67,10 +39,12 @@ def begun(problem: Problem, table: Values, tries: int, p: Values) -> None:
     best, trial = -math.inf, p.copy()
     loose = problem.prior.copy()
     near = believed(problem, loose)
+    thinnest = THINNEST if problem.states.size <= LARGE_PAD else 0.0
     n, pitch = sizes(kind), grid[2]
     ways = turns(kind, corners)
     for t in range(ways + tries):
-        first_outline(kind, corners, found, (t % ways) * period(kind, corners) / ways, trial)
+        turn = (t % ways) * period(kind, corners) / ways
+        outline_of_moments(kind, corners, found, turn, thinnest, trial)
         if t >= ways:
             for k in range(first):
                 if 2 <= k < 2 + n:
@@ -91,40 +65,44 @@ def begun(problem: Problem, table: Values, tries: int, p: Values) -> None:
 
 
 @compiled_as_is
-def _climbed_twice(problem: Problem, p: Values, root: Values) -> float:
-    """Climb with elements that feel a little beyond their edge, then with the true ones.
-
-    Otherwise a touched element that is not covered would not pull at all.
-    """
-    soft, strict = problem.grid.copy(), problem.noise.copy()
-    soft[4], soft[5] = SOFT, problem.grid[2]
-    strict[STRAYS] = NO_STRAYS
-    climbed(read_by(problem, soft, strict), p, ROUNDS, ROUGH, root)
-    top, _ = climbed(problem, p, ROUNDS, ENOUGH, root)
-    return top
-
-
-@compiled_as_is
-def log_volume(kind: int, p: Values, root: Values) -> float:
-    """Return ln of the volume that a normal top of a posterior takes, of its own height.
+def _begun_large(
+    problem: Problem, rough: Problem, block: int, load: float, start: Values, table: Values,
+    tries: int, p: Values,
+) -> None:  # fmt: skip
+    """Write where a climb on a large pad begins into ``p``: near the top, if blocks show it.
 
     Parameters
     ----------
-    kind, p : int, ndarray
-        The top.
-    root : ndarray, shape (K, K)
-        Lower root of the information there.
+    problem, start, table, p
+        As in `topped`.
+    rough, block, load
+        As `coarse.coarsened` gives them.
+    tries : int
+        As in `begun`.
     """
-    n = p.shape[0]
-    volume: float = 0.5 * n * LN_TWO_PI
-    for k in range(n):
-        volume -= math.log(root[k, k])
-    if kind == OVAL:
-        # the mean of 1 / d under a normal distribution, right where it is narrow and in a middle
-        spread = inverted(root)
-        d2 = p[3] * p[3] + p[4] * p[4] + 0.32 * (spread[3, 3] + spread[4, 4])
-        volume -= 0.5 * math.log(d2)
-    return volume
+    first = unknowns(problem.kind, problem.corners)
+    given = start.shape[0] == p.shape[0]
+    if given:
+        p[:] = start
+    if block == 1:
+        if not given:
+            begun(rough, table, tries, p)
+        return
+    at, root = np.zeros(first + 1), np.zeros((first + 1, first + 1))
+    if given:
+        at[:first], at[first] = start[:first], math.log(1.0 - problem.noise[VOIDS])
+    else:
+        begun(rough, table, tries, at)
+        for k in range(problem.guess.shape[0]):
+            p[first + 1 + k] = problem.guess[k, 0]
+    climbed_twice(rough, math.inf, at, root)
+    at[first] = load
+    if given:
+        moved = p.copy()
+        moved[: first + 1] = at
+        if log_likelihood(problem, p) > log_likelihood(problem, moved):
+            return
+    p[: first + 1] = at
 
 
 @compiled_as_is
@@ -156,57 +134,29 @@ def topped(
     """
     n = p.shape[0]
     trial, its_root = np.zeros(n), np.zeros((n, n))
+    large = problem.states.size > LARGE_PAD
+    rough, block, load = coarsened(problem)
     for attempt in range(attempts[0], attempts[1]):
-        if attempt == 0 and start.shape[0] == n:
-            trial[:] = start
+        given = start if attempt == 0 else start[:0]
+        if large:
+            seen = in_one_piece(rough) if attempt == 0 else rough
+            _begun_large(problem, seen, block, load, given, table, attempt * TRIES, trial)
+        elif given.shape[0] == n:
+            trial[:] = given
         else:
             begun(problem, table, attempt * TRIES, trial)
-        here = _climbed_twice(problem, trial, its_root)
+        here = climbed_from(problem, block, trial, its_root)
         again = attempt > 0 and abs(here - top) < SAME
         if here > top:
             top = here
             p[:] = trial
             root[:] = its_root
         if top > -math.inf:
-            surprise, _, _, _ = misfit(problem, p)
-            if surprise > POOR or again:
+            inside = inside_of(problem, p)
+            settle(problem, inside, p)
+            if surprise_at(problem, inside, p) > POOR or again:
                 return top, False
     return top, attempts[1] < ATTEMPTS
-
-
-@compiled_as_is
-def spread_out(
-    problem: Problem, table: Values, block: int, worth: float, p: Values, root: Values, top: float
-) -> Found:
-    """Return the posterior around a top, as `topped` gives it."""
-    kind, n = problem.kind, p.shape[0]
-    near = problem.prior.copy()
-    if period(kind, problem.corners) > 0.0:
-        near[TURN] = p[2 + sizes(kind)]
-    around = believed(problem, near)
-    count = table.shape[0]
-    points, logs_p, weights = np.empty((count, n)), np.empty(count), np.empty(count)
-    mean, matrix = np.empty(n), np.empty((n, n))
-    surprise, alike, lean, fall, likeliest = 0.0, 0.0, 0.0, 0.0, p.copy()
-    covariance = inverted(root)
-    widen(around, p, top, covariance)
-    used, evidence, equal = sampled(
-        around, p, covariance, table, block, worth, points, logs_p, weights, mean, matrix
-    )
-    if equal <= 0.0:
-        used = 0
-    if kind == OVAL:
-        top += log_stretch(p)
-    for i in range(used):
-        if logs_p[i] > top:
-            top = logs_p[i]
-            likeliest[:] = points[i]
-    if used > 0:
-        surprise, alike, lean, fall = misfit(problem, mean)
-    return Found(
-        used, likeliest, points[:used], weights[:used], mean, matrix, evidence, equal, top,
-        surprise, alike, lean, fall,
-    )  # fmt: skip
 
 
 @compiled_as_is

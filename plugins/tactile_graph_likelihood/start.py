@@ -13,6 +13,7 @@ from tactile_graph_likelihood.oval import to_oval
 
 STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
 TRIMS = 8
+THINNEST = 0.05  # variance across an outline over the mean one: touched elements may be a line
 LIGHT_EDGE = 0.25  # ln of a full element's load over the mean, whose edge is partly covered
 
 
@@ -69,6 +70,14 @@ def _moments_within(grid: Values, logs: Values, states: States, far: float, out:
 
 @compiled_as_is
 def first_outline(kind: int, corners: int, found: Values, turn: float, p: Values) -> None:
+    """Write what `outline_of_moments` does; thin outlines begin broader."""
+    outline_of_moments(kind, corners, found, turn, THINNEST, p)
+
+
+@compiled_as_is
+def outline_of_moments(
+    kind: int, corners: int, found: Values, turn: float, thinnest: float, p: Values
+) -> None:
     """Write an outline with given moments, and the load's logarithm, into ``p``.
 
     Parameters
@@ -79,13 +88,15 @@ def first_outline(kind: int, corners: int, found: Values, turn: float, p: Values
         As `moments` gives it.
     turn : float
         Angle in radians by which the outline is turned from where the moments have it.
+    thinnest : float
+        Least variance across, over the mean of the two.
     p : ndarray, shape (K,)
         Written, up to the load.
     """
     xx, xy, yy = found[3], found[4], found[5]
     p[0], p[1] = found[1], found[2]
     middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
-    major, minor = middle + off, max(middle - off, 0.05 * middle)
+    major, minor = middle + off, max(middle - off, thinnest * middle)
     angle = 0.5 * math.atan2(-2.0 * xy, xx - yy) + turn
     last = 3
     if kind == DISC:

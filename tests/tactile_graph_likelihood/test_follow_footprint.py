@@ -131,3 +131,4 @@ def test_a_long_gap_makes_a_move_likelier():
     step(image, gap_s=0.1)
     assert not step(image, gap_s=0.5 * -odds).moved
     assert step(image, gap_s=3.0 * -odds).moved
+    assert step(image, gap_s=1e6).moved

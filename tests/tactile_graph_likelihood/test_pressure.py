@@ -11,6 +11,7 @@ from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.any_pressure import (
     ALIKE,
+    FOAM_ODDS,
     LOOK,
     ROUND,
     AnyPressure,
@@ -177,7 +178,7 @@ def test_the_mixture_is_weighed_by_evidence_and_what_was_thought_before():
     _, image = next(frames(1, 5, fall=0.6))
     any_pressure = AnyPressure(model)
     even, fall = model.posterior(image), any_pressure.others["fall"].posterior(image)
-    found = mixed(even, {"fall": fall}, {"fall": 0.2})
+    found = mixed({"even": even, "fall": fall}, {"even": 0.8, "fall": 0.2})
     odds = math.log(0.2 / 0.8)
     odds += fall.log_evidence - even.log_evidence
     share = found.pressures["fall"]
@@ -213,18 +214,19 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     model = Model(DISC, noise=NOISE, whole=True)
     _, image = next(frames(1, 5, fall=0.6))
     any_pressure = AnyPressure(model)
-    even = model.posterior(image)
     others = {part: any_pressure.others[part].posterior(image) for part in ("fall", "foam")}
     foam = []
     for neighbours in (-1.0, 0.0, 2.0, 3.5, 30.0):
         others["fall"] = replace(others["fall"], neighbours=neighbours)
-        found = chances(even, others)
+        found = chances(others)
         assert found["fall"] + found["foam"] == pytest.approx(ROUND)
         foam.append(found["foam"] / ROUND)
     assert foam == sorted(foam)
     assert foam[1] < 0.02
     assert foam[3] > 0.8
-    assert chances(even, {"foam": others["foam"]}) == {"foam": ROUND}
+    assert chances({"foam": others["foam"]}) == {"even": 1.0 - ROUND, "foam": ROUND}
+    unknown = chances({"fall": None, "foam": None})
+    assert unknown["foam"] / unknown["fall"] == pytest.approx(FOAM_ODDS)
 
 
 def test_foam_nobody_told_of_is_found():
