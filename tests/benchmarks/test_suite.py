@@ -146,7 +146,11 @@ def test_a_stream_is_measured_whole_and_in_parts(monkeypatch: pytest.MonkeyPatch
     assert empty.errors == {"false alarms": (0.0,) * 32}
     assert empty.nodes_run == 1
     assert (found["b", "empty"].nodes_run or 0) > 1
-    assert found["b", "clean"].errors == found["a", "clean"].errors
+    # which may be reckoned by a kernel's plain reference and by its compiled twin
+    ours, theirs = (found[name, "clean"].errors for name in "ab")
+    assert set(ours) == set(theirs)
+    for quantity in ours:
+        assert ours[quantity] == pytest.approx(theirs[quantity], rel=1e-9)
 
 
 def test_fits_are_scored_on_known_shapes() -> None:
