@@ -3,7 +3,8 @@
 Run with ``python benchmarks/likelihood_identify.py`` (about two minutes); ``--pads N`` takes other
 than 3 simulated pads. Five objects of table 4.9, 25 readings each to learn, 25 others to test;
 then each of them as a stranger; then objects that weigh and cover the same, of other shapes;
-then the discs among the five pressing unevenly, as in ``likelihood_shapes.py``.
+then the discs among the five pressing unevenly, as in ``likelihood_shapes.py``, and strangers that
+weigh what a known disc does and are smaller.
 """
 
 from __future__ import annotations
@@ -134,49 +135,50 @@ def strangers(pads: int) -> None:
         print(f"  {name:<22} {count / total:7.2%} of {total} called unknown")
 
 
+def image_of(disc: Circle, weight: float, face: Any, rng: np.random.Generator) -> Any:
+    """Return a disc's image in grams on the thesis' pad."""
+    siemens = THESIS.conductance_s(face(disc, weight, rng), THESIS.built(rng))
+    siemens *= np.exp(THESIS.law.repeatability * rng.standard_normal(siemens.shape))
+    counts = THESIS.scan.counts(THESIS.volts_of(siemens), THESIS.converter, rng)
+    volts = THESIS.image(THESIS.converter.volts(counts), "volt")
+    return load("circle-likelihood").runner(only=["grams"])(Frame(volts, 0, 0.0))["grams"]
+
+
+def placed(radius: float, rng: np.random.Generator) -> Circle:
+    return Circle(rng.uniform(radius, WIDTH - radius), rng.uniform(radius, HEIGHT - radius), radius)
+
+
 def pressed(objects: int, seed: int) -> None:
-    """Print how often discs that press unevenly are known, by the setting ``pressure``."""
+    """Print how often discs that press unevenly, or are smaller, are called unknown."""
     known, _ = tested("identify", 0)
-    data = as_database(known)
     things = [g[0] for g in load_scene("identify").in_turn]
     sizes = {it.name: _lengths(it) for it in things}
     discs = [it for it in things if it.shape == "disc"]
-    grams = load("circle-likelihood").runner(only=["grams"])
-    for name, face in FACES.items():
+    steps = {
+        pressure: IdentifyFootprint(
+            database=as_database(known), sizes=sizes, on_pad="whole", pressure=pressure
+        )
+        for pressure in ("even", "any")
+    }  # type: ignore[arg-type]
+    cases = [(name, face, 1.0) for name, face in FACES.items()]
+    cases += [(f"stranger, {s:g} as wide", FACES["even"], s) for s in (0.95, 0.9, 0.85, 0.8)]
+    for name, face, scale in cases:
         rng = np.random.default_rng(seed)
         rows: dict[str, list[tuple[bool, bool, float]]] = defaultdict(list)
         for k in range(objects):
             it = discs[k % len(discs)]
-            r = it.radius_cm
-            disc = Circle(rng.uniform(r, WIDTH - r), rng.uniform(r, HEIGHT - r), r)
-            siemens = THESIS.conductance_s(face(disc, it.weight_g, rng), THESIS.built(rng))
-            siemens *= np.exp(THESIS.law.repeatability * rng.standard_normal(siemens.shape))
-            counts = THESIS.scan.counts(THESIS.volts_of(siemens), THESIS.converter, rng)
-            volts = THESIS.image(THESIS.converter.volts(counts), "volt")
-            image = grams(Frame(volts, k, float(k)))["grams"]
-            for pressure in ("even", "any"):
-                step = _steps(pressure, data, sizes)
+            disc = placed(scale * it.radius_cm, rng)
+            image = image_of(disc, it.weight_g, face, rng)
+            for pressure, step in steps.items():
                 found = step(image)
                 off = np.hypot(found.object.x_cm - disc.x_cm, found.object.y_cm - disc.y_cm)
                 rows[pressure].append((found.name == it.name, found.name == UNKNOWN, off))
-        print(f"  {name}")
         for pressure, its in rows.items():
             right, strange, off = np.mean(its, axis=0)
             print(
-                f"    pressure: {pressure:<5} {right:7.2%} right, {strange:7.2%} called unknown,"
-                f" centre off by {off:.3f} cm"
+                f"  {name:<24} pressure: {pressure:<5} {right:7.2%} its name, {strange:7.2%}"
+                f" unknown, centre off by {off:.3f} cm"
             )
-
-
-_made: dict[str, IdentifyFootprint] = {}
-
-
-def _steps(pressure: Any, data: Any, sizes: Any) -> IdentifyFootprint:
-    if pressure not in _made:
-        _made[pressure] = IdentifyFootprint(
-            database=data, sizes=sizes, on_pad="whole", pressure=pressure
-        )
-    return _made[pressure]
 
 
 def times() -> None:

@@ -6,7 +6,8 @@ than 400. Objects as in ``shape_confidence.py``: discs, ellipses, rectangles and
 to choose from; then all four. `shape_decision` gets the same choice: its confidences in the
 others are left out and the rest normalised. Then the three shapes pressing unevenly: as a ball
 does, (1 - r**2) to the power 1/2 or 1, with the weight a fifth of the way from the middle to the
-rim, and through foam half a cell wide.
+rim, and through foam half a cell wide; and so the discs of table 4.2, as in
+``likelihood_robustness.py``.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
-from likelihood_robustness import GEOMETRY, THESIS, gains
+from likelihood_robustness import GEOMETRY, KINDS, THESIS, gains
+from likelihood_robustness import frames as discs_of
 from rounds import print_table, time_side_by_side
 from shape_confidence import frames
 
@@ -179,6 +181,26 @@ def uneven(some: list[Frame], seed: int) -> None:
         print(f"  {name:<24}", "   ".join(text))
 
 
+def large_discs(scenes: int, seed: int) -> None:
+    """Print how often a disc of table 4.2 stays one, how sure that is, and the centre's error."""
+    print(f"\nDiscs of table 4.2, {scenes} of a kind: named rightly, stated, centre's error in cm")
+    grams = load("circle-likelihood").runner(only=["grams"])
+    steps = {p: ChooseShape(on_pad="whole", pressure=p) for p in ("even", "any")}  # type: ignore[arg-type]
+    for name in ("as designed", *list(FACES)[1:]):
+        found: dict[str, list[tuple[bool, float, float]]] = {p: [] for p in steps}
+        for frame in discs_of(*KINDS[name], scenes, seed):
+            assert frame.truth is not None
+            true: Any = frame.truth[0].shape
+            image = grams(frame)["grams"]
+            for pressure, step in steps.items():
+                its = step(image)
+                off = np.hypot(its.shape.x_cm - true.x_cm, its.shape.y_cm - true.y_cm)
+                found[pressure].append((its.name == "disc", its.disc, off))
+        means = {p: np.mean(its, axis=0) for p, its in found.items()}
+        text = (f"{p}: {m[0]:6.1%}, {m[1]:6.1%}, {m[2]:.3f}" for p, m in means.items())
+        print(f"  {name:<24}", "   ".join(text))
+
+
 def times(some: list[Frame]) -> None:
     run = load("circle-likelihood").runner(only=["grams"])
     images = [image for f in some[:24] if (image := run(f).get("grams")) is not None]
@@ -211,6 +233,7 @@ def main() -> None:
         }  # fmt: skip
         show(title, names, of, contestants)
     uneven(no_polygons, chosen.seed)
+    large_discs(chosen.objects // 3, chosen.seed)
     times(some)
 
 

@@ -6,6 +6,7 @@ import os
 import resource
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -14,20 +15,22 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, is_plain, whole_file, write_whole
 
 
-@pytest.fixture
+@contextmanager
 def full_at_4096() -> Iterator[None]:
-    """No file can be larger than 4096 bytes, as if the disc were full then."""
+    """No file can be larger than 4096 bytes, as if the disc were full then: not even a log."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-@pytest.mark.usefixtures("full_at_4096")
 def test_a_full_disc_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     write_whole(path, "old")
-    with pytest.raises(UsageError, match=r"a\.txt: cannot be written: File too large"):
+    too_large = pytest.raises(UsageError, match=r"a\.txt: cannot be written: File too large")
+    with too_large, full_at_4096():
         write_whole(path, "x" * 5000)
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["a.txt"]

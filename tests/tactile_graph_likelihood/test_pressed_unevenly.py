@@ -43,7 +43,7 @@ def pressed(seed, face, disc=DISC_CM):
 
 @pytest.mark.parametrize("face", ["leans", "ball"])
 def test_a_disc_that_presses_unevenly_is_still_a_disc(face):
-    seen = [pressed(seed, face) for seed in range(24)]
+    seen = [pressed(seed, face) for seed in range(16)]
     right, stated, off = {}, {}, {}
     for pressure in ("any", "even"):
         found = [ChooseShape(on_pad="whole", pressure=pressure)(image) for image in seen]
