@@ -4,7 +4,7 @@
 
 Writes figure-5-8.png (with 5.9), figure-5-10.png (to 5.13) and figure-5-14.png into the folder and
 prints the table. The thesis gives neither the test image of figure 5.8 nor its noise in numbers;
-ours are in `tactile_graph_mrf.experiments`.
+ours are in `tactile_graph_thesis.measure.fields`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from tactile_graph.compiled import warm_up
-from tactile_graph_mrf.experiments import (
+from tactile_graph_thesis.drawing.fields import draw_5_8, draw_5_10_to_5_13, draw_5_14
+from tactile_graph_thesis.measure.fields import (
     NOISE,
     RECTANGLE,
     Restoration,
@@ -24,7 +25,6 @@ from tactile_graph_mrf.experiments import (
     figures_5_10_to_5_13,
     table_5_2,
 )
-from tactile_graph_mrf.pictures import draw_5_8, draw_5_10_to_5_13, draw_5_14
 
 
 def judge(made: Restoration) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.recording import recording
-from tactile_graph_sources.write_npz import write_npz
+from tactile_graph_sources.writers.write_npz import write_npz
 
 ROUNDS = 5
 

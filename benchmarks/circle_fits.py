@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_circle_hyper import fit_circle_hyper
-from tactile_graph_fitters.fit_circle_kasa import fit_circle_kasa
-from tactile_graph_fitters.fit_circle_taubin import fit_circle_taubin
-from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis
+from tactile_graph_fitters.circle.fit_circle import fit_circle
+from tactile_graph_fitters.circle.fit_circle_hyper import fit_circle_hyper
+from tactile_graph_fitters.circle.fit_circle_kasa import fit_circle_kasa
+from tactile_graph_fitters.circle.fit_circle_taubin import fit_circle_taubin
+from tactile_graph_fitters.circle.fit_circle_thesis import fit_circle_thesis
 
 Fit = Callable[[NDArray[np.float64]], tuple[float, float, float]]
 RADIUS = 100.0

@@ -28,9 +28,9 @@ from noise_scenes import LEVELS, SIZE, SMOOTH, TERMS, Array, Prior, drawn, flat,
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import warm_up
-from tactile_graph_mrf.model import Model
-from tactile_graph_mrf.posterior import posterior
-from tactile_graph_mrf.restore import restore
+from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.samplers.posterior import posterior
 
 UNIT = 200.0 / LEVELS
 SCALES = (10.0, 20.0, 40.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_graph_classifiers.experiments import Curve, strangers_rejected, table_4_9
 from tactile_graph_thesis.measure.identification import mean_curves
+from tactile_graph_thesis.measure.identification_tables import Curve, strangers_rejected, table_4_9
 from tactile_graph_thesis.numbers import numbers
 
 SEEDS = range(4)

@@ -11,10 +11,12 @@ import numpy as np
 from tactile_graph import load
 from tactile_graph.compiled import warm_up
 from tactile_graph_classifiers.database.text import FORMAT, VERSION
-from tactile_graph_classifiers.features import FeaturesOf
-from tactile_graph_classifiers.mahalanobis import Mahalanobis
-from tactile_graph_classifiers.minimum_distance import MinimumDistance
-from tactile_graph_classifiers.minimum_distance_normalised import MinimumDistanceNormalised
+from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
+from tactile_graph_classifiers.distances.minimum_distance import MinimumDistance
+from tactile_graph_classifiers.distances.minimum_distance_normalised import (
+    MinimumDistanceNormalised,
+)
+from tactile_graph_classifiers.measuring.features import FeaturesOf
 
 N_OBJECTS = 100
 N_READINGS = 25

@@ -34,12 +34,12 @@ from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Report
 from tactile_graph.wires import Image
-from tactile_graph_filters.contacts import Contact
-from tactile_graph_likelihood.fit_footprint import FitFootprint
-from tactile_graph_likelihood.footprint_by_order import FootprintByOrder
-from tactile_graph_likelihood.learned_noise import learned_noise
-from tactile_graph_likelihood.likely import Likely, likely
-from tactile_graph_likelihood.outlines import unknowns
+from tactile_graph_filters.contacts.contacts import Contact
+from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
+from tactile_graph_likelihood.geometry.outlines import unknowns
+from tactile_graph_likelihood.single.fit_footprint import FitFootprint
+from tactile_graph_likelihood.single.learned_noise import learned_noise
+from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import score_objects
 

@@ -25,12 +25,12 @@ from rounds import print_table, time_side_by_side
 
 from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
-from tactile_graph_classifiers.identity import UNKNOWN
-from tactile_graph_classifiers.known import Known
-from tactile_graph_classifiers.mahalanobis import Mahalanobis
-from tactile_graph_classifiers.simulated import as_database, known_from, simulated
-from tactile_graph_likelihood.identify_footprint import IdentifyFootprint
+from tactile_graph_classifiers.database.known import Known
+from tactile_graph_classifiers.distances.identity import UNKNOWN
+from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
+from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
 from tactile_graph_sources.scene import load_scene
+from tactile_graph_thesis.measure.simulated_readings import as_database, known_from, simulated
 
 N = 25
 SHAPE_FEATURES = ["weight", "area_cm2", "axis_ratio", "compactness", "hu_1"]

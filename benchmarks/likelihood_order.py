@@ -26,7 +26,7 @@ from rounds import print_table, time_side_by_side
 
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
-from tactile_graph_likelihood.noise import level_of
+from tactile_graph_likelihood.single.noise import level_of
 from tactile_graph_pads.pad import load_pad
 
 LEVEL_V = 0.01

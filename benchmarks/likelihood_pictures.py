@@ -21,10 +21,10 @@ from scipy.special import fdtr
 
 from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
-from tactile_graph_likelihood.footprint_of import FootprintDisc
-from tactile_graph_likelihood.likely import LikelyCircle
-from tactile_graph_likelihood.posterior import Posterior
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_likelihood.single.footprint_of import FootprintDisc
+from tactile_graph_likelihood.single.likely import LikelyCircle
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
 
 Values = NDArray[np.float64]

@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import TrueObject
-from tactile_graph_likelihood.likely import LikelyCircle
+from tactile_graph_likelihood.single.likely import LikelyCircle
 from tactile_graph_pads.contact import Grain, spread
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import Pad, load_pad
 
 Values = NDArray[np.float64]

@@ -32,7 +32,7 @@ from shape_confidence import frames
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Rectangle
-from tactile_graph_likelihood.choose_shape import ChooseShape
+from tactile_graph_likelihood.single.choose_shape import ChooseShape
 from tactile_graph_pads.contact import spread
 
 FINE = 24

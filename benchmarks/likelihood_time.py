@@ -24,8 +24,8 @@ import likelihood_robustness
 
 from tactile_graph import Image, Pipeline, load
 from tactile_graph.compiled import warm_up
-from tactile_graph_likelihood.follow_footprint import Followed, FollowFootprint
-from tactile_graph_likelihood.footprint_of import FootprintDisc
+from tactile_graph_likelihood.over_time.follow_footprint import Followed, FollowFootprint
+from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_pads.pad import load_pad
 
 DISC = {"shape": "disc", "name": "DISC I", "weight_g": 1860, "radius_cm": 6.8}

@@ -6,11 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
+from tactile_graph_classifiers.database.known import Known, KnownObject
 from tactile_graph_classifiers.database.opening import SAMPLE
+from tactile_graph_classifiers.database.statistics import Statistics
 from tactile_graph_classifiers.database.text import to_text
-from tactile_graph_classifiers.known import Known, KnownObject
-from tactile_graph_classifiers.simulated import N_READINGS, SCENES_OF_THE_THESIS, learned_from
-from tactile_graph_classifiers.statistics import Statistics
+from tactile_graph_thesis.measure.simulated_readings import (
+    N_READINGS,
+    SCENES_OF_THE_THESIS,
+    learned_from,
+)
 
 SEED = 44
 DIGITS = 6

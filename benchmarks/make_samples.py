@@ -16,7 +16,7 @@ import numpy as np
 from tactile_graph.steps import Report
 from tactile_graph_sources.sample import FOLDER
 from tactile_graph_sources.simulate import simulate
-from tactile_graph_sources.write_npz import write_npz
+from tactile_graph_sources.writers.write_npz import write_npz
 
 
 def make_discs(path: Path, seed: int) -> int:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.gibbs import gibbs
-from tactile_graph_mrf.model import Model
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.samplers.gibbs import gibbs
 
 Array = NDArray[np.float64]
 TERMS = ("gaussian", "laplace", "student_t", "poisson", "outliers")

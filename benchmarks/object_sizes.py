@@ -21,7 +21,7 @@ from tactile_graph import Frame
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
-from tactile_graph_filters.split_contacts import SplitContacts
+from tactile_graph_filters.parting.split_contacts import SplitContacts
 from tactile_graph_sources.simulate import simulate
 
 LEVEL_V = 0.01

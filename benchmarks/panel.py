@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from tactile_graph import load
 from tactile_graph.compiled import warm_up
 from tactile_graph.steps import Report
-from tactile_graph_filters.contacts import Contact
+from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import score_objects
 

@@ -27,14 +27,14 @@ from numpy.typing import NDArray
 from tactile_graph import Frame, load, loads
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle
-from tactile_graph_fitters.experiments import (
+from tactile_graph_fitters.rectangle.rectangle_from_ellipse import BIAS
+from tactile_graph_thesis.measure.rectangles import (
     OBJECTS,
     STATED_CELL_CM,
     THESIS,
     rectangle_frames,
     signed_errors,
 )
-from tactile_graph_fitters.rectangle_from_ellipse import BIAS
 
 Values = NDArray[np.float64]
 STRAYS, TOUCHES_CM, STRAY_V, LEVEL_V = 0.04, 11.0, 0.05, 0.01

@@ -32,7 +32,7 @@ from rounds import print_table, time_side_by_side
 from tactile_graph import Rectangle, load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
-from tactile_graph_fitters.experiments import (
+from tactile_graph_thesis.measure.rectangles import (
     OBJECTS,
     STATED_CELL_CM,
     ErrorTable,
@@ -113,11 +113,11 @@ def orders(found: dict[str, Values]) -> None:
 
 def alternatives(readings: int, seed: int) -> None:
     """What other ways to an angle and to sides make of the same cleaned footprints."""
-    from tactile_graph_fitters.fit_rectangle import fit_rectangle
-    from tactile_graph_fitters.fit_rectangle_load import FitRectangleLoad
-    from tactile_graph_fitters.min_area_rectangle import min_area_rectangle
-    from tactile_graph_fitters.orientation import orientation
-    from tactile_graph_fitters.orientation_robust import orientation_robust
+    from tactile_graph_fitters.orientation.orientation import orientation
+    from tactile_graph_fitters.orientation.orientation_robust import orientation_robust
+    from tactile_graph_fitters.rectangle.fit_rectangle import fit_rectangle
+    from tactile_graph_fitters.rectangle.fit_rectangle_load import FitRectangleLoad
+    from tactile_graph_fitters.rectangle.min_area_rectangle import min_area_rectangle
     from tactile_graph_hull.boundary_scan import boundary_scan
 
     frames = rectangle_frames(readings, seed)

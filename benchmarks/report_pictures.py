@@ -22,11 +22,11 @@ from pathlib import Path
 from PIL import Image
 
 from tactile_graph.cli import cli
-from tactile_graph.compare import Comparison, compare
-from tactile_graph.compare.report.markup import Html, tag
-from tactile_graph.compare.report.parts import plots
-from tactile_graph.compare.report.scatter import scatter
-from tactile_graph.compare.report.style import STYLE
+from tactile_graph_compare import Comparison, compare
+from tactile_graph_compare.report.markup import Html, tag
+from tactile_graph_compare.report.parts import plots
+from tactile_graph_compare.report.scatter import scatter
+from tactile_graph_compare.report.style import STYLE
 
 SCENE = "discs"
 LINEAGE = ("circle-1", "circle-2", "circle-3")

@@ -1,9 +1,9 @@
 """Restorers: energy against time, beside peers, all in one run.
 
 Run ``python benchmarks/restorers.py``; some minutes. Every result, ours or a peer's, is scored by
-the one energy of `tactile_graph_mrf.model`: a truncated parabola, lambda 4, truncation 30, 200
-levels. Up to `PROVED` cells the least energy is bounded by tree-reweighted messages. The images:
-synthetic ones of 16 to 256 cells a side, the simulated pad, and frames of the bed mat and of the
+the one energy of `tactile_graph_mrf.energy.model`: a truncated parabola, lambda 4, truncation 30,
+200 levels. Up to `PROVED` cells the least energy is bounded by tree-reweighted messages. The
+images: synthetic ones of 16 to 256 cells a side, the simulated pad, and frames of the bed mat and of the
 capacitive panel, whole and 16 by 16 cells of them. gco-wrapper (``pip install gco-wrapper``;
 ``--gco`` names its folder, if not beside us) runs apart, for some costs abort the process; it is
 left out where it is missing. scikit-image's filters minimise something else and are a reference
@@ -28,14 +28,14 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import warm_up
 from tactile_graph.steps import Report
 from tactile_graph.wires import Image
-from tactile_graph_mrf.gibbs import gibbs
-from tactile_graph_mrf.gnc import gnc
-from tactile_graph_mrf.graph_cuts import graph_cuts
-from tactile_graph_mrf.icm import icm
-from tactile_graph_mrf.mean_field import mean_field
-from tactile_graph_mrf.model import Model, Problem, energy
-from tactile_graph_mrf.restore import restore
-from tactile_graph_mrf.trw import trw
+from tactile_graph_mrf.descent.gnc import gnc
+from tactile_graph_mrf.descent.graph_cuts import graph_cuts
+from tactile_graph_mrf.descent.icm import icm
+from tactile_graph_mrf.descent.mean_field import mean_field
+from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.descent.trw import trw
+from tactile_graph_mrf.energy.model import Model, Problem, energy
+from tactile_graph_mrf.samplers.gibbs import gibbs
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.simulate import simulate
 

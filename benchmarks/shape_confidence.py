@@ -3,7 +3,7 @@
 Run with ``python benchmarks/shape_confidence.py`` (about a minute); ``--objects N`` takes N
 objects, ``--seed`` other ones. ``--fit`` (some ten minutes) draws `FITTED_OBJECTS` others from
 `FITTED_SEED` on and prints the weights that stand in
-``plugins/tactile_graph_fitters/shape_confidence.py``.
+``plugins/tactile_graph_fitters/shape/shape_confidence.py``.
 
 Single objects lie at random on the pad ``thesis``: discs, ellipses, rectangles and regular
 polygons of 3, 5 and 6 corners in turn, of 12 to 140 cm2, spread evenly over its logarithm, under 20
@@ -27,9 +27,9 @@ from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate, UsageError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Points
-from tactile_graph_fitters.shape_confidence import KINDS, MOST_CORNERS, features
-from tactile_graph_fitters.shape_decision import PER_CELL, shape_decision
-from tactile_graph_fitters.shape_misfits import shape_misfits
+from tactile_graph_fitters.shape.shape_confidence import KINDS, MOST_CORNERS, features
+from tactile_graph_fitters.shape.shape_decision import PER_CELL, shape_decision
+from tactile_graph_fitters.shape.shape_misfits import shape_misfits
 from tactile_graph_hull.hull import hull
 from tactile_graph_sources.simulate import simulate
 

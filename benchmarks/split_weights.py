@@ -29,8 +29,8 @@ from tactile_graph import Frame
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
-from tactile_graph_filters.hull_terms import CELLS, FLOOR, hull_terms
-from tactile_graph_filters.straight_cuts import (
+from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, hull_terms
+from tactile_graph_filters.parting.straight_cuts import (
     COSINES,
     LEAST_CELLS,
     REACH_CELLS,
@@ -39,8 +39,8 @@ from tactile_graph_filters.straight_cuts import (
     moved_over,
     reach,
 )
-from tactile_graph_filters.two_or_one import NAMES, WEIGHTS, cut_terms
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 from tactile_graph_sources.simulate import simulate
 

@@ -99,8 +99,8 @@ def show(file: Path, plots: Path | None, case: str | None) -> None:
 @click.option("--seed", default=0, show_default=True)
 def audit(frames: int, seed: int) -> None:
     """Tell what each guard of the pipeline ``adaptive`` saves on the stream, and what it costs."""
-    from tactile_graph.cli.audit import error_table, worth_table
-    from tactile_graph.compare.shown import rich_table
+    from tactile_graph_compare.commands.audit import error_table, worth_table
+    from tactile_graph_compare.output.shown import rich_table
 
     warm_up()
     found = stream.audited(frames, seed)

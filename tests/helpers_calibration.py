@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame, Rectangle, TrueObject
 from tactile_graph_pads.pad import Pad, load_pad
-from tactile_graph_sources.write_npz import write_npz
+from tactile_graph_sources.writers.write_npz import write_npz
 
 GRAMS = (60.0, 120.0, 200.0, 320.0, 480.0, 700.0, 1000.0, 1500.0)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_graph.wires import Circle, Points
-from tactile_graph_fitters.fit_circle import fit_circle
-from tactile_graph_fitters.fit_circle_hyper import fit_circle_hyper
-from tactile_graph_fitters.fit_circle_kasa import fit_circle_kasa
-from tactile_graph_fitters.fit_circle_taubin import fit_circle_taubin
-from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis
+from tactile_graph_fitters.circle.fit_circle import fit_circle
+from tactile_graph_fitters.circle.fit_circle_hyper import fit_circle_hyper
+from tactile_graph_fitters.circle.fit_circle_kasa import fit_circle_kasa
+from tactile_graph_fitters.circle.fit_circle_taubin import fit_circle_taubin
+from tactile_graph_fitters.circle.fit_circle_thesis import fit_circle_thesis
 
 ALL_FITS = [fit_circle, fit_circle_hyper, fit_circle_kasa, fit_circle_taubin, fit_circle_thesis]
 CLOSED_FITS = [fit_circle_hyper, fit_circle_kasa, fit_circle_taubin]

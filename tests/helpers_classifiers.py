@@ -9,7 +9,7 @@ import numpy as np
 from tactile_graph import Image, Mask
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.text import FORMAT, VERSION
-from tactile_graph_classifiers.measurements import Measurements
+from tactile_graph_classifiers.measuring.measurements import Measurements
 
 PAIR = ("weight", "area_cm2")
 SETTING = Setting(PAIR, "gram", "features")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.covered import covered
-from tactile_graph_likelihood.noise import Noise
-from tactile_graph_likelihood.outlines import packed
-from tactile_graph_likelihood.problem import problem_of
-from tactile_graph_likelihood.readings import readings_of
+from tactile_graph_likelihood.geometry.covered import covered
+from tactile_graph_likelihood.geometry.outlines import packed
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.problem import problem_of
+from tactile_graph_likelihood.single.readings import readings_of
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
 NOISE = Noise(0.48, 0.16, 1e-3, 5.0)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from tactile_graph.wires import Image
-from tactile_graph_mrf.model import Model, Problem
+from tactile_graph_mrf.energy.model import Model, Problem
 
 RHO = {
     "quadratic": lambda d, t: d * d,

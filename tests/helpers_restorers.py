@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from tactile_graph.wires import Image
-from tactile_graph_mrf.model import Model, energy
+from tactile_graph_mrf.energy.model import Model, energy
 
 
 def square(sigma: float = 15.0, size: int = 16, seed: int = 1) -> Image:

@@ -5,12 +5,14 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
-    "features": "features:FeaturesOf",
-    "fitted_area": "fitted_area:fitted_area",
-    "mahalanobis": "mahalanobis:Mahalanobis",
-    "mean_reading": "mean_reading:MeanReading",
-    "minimum_distance": "minimum_distance:MinimumDistance",
-    "minimum_distance_normalised": "minimum_distance_normalised:MinimumDistanceNormalised",
+    "features": "measuring.features:FeaturesOf",
+    "fitted_area": "measuring.fitted_area:fitted_area",
+    "mahalanobis": "distances.mahalanobis:Mahalanobis",
+    "mean_reading": "measuring.mean_reading:MeanReading",
+    "minimum_distance": "distances.minimum_distance:MinimumDistance",
+    "minimum_distance_normalised": (
+        "distances.minimum_distance_normalised:MinimumDistanceNormalised"
+    ),
 }
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
-from tactile_graph_hull.orientation import LARGEST, SMALLEST
+from tactile_graph_hull.turn_of_points import LARGEST, SMALLEST
 
 Corners: TypeAlias = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
-from tactile_graph_hull.orientation import turn
+from tactile_graph_hull.turn_of_points import turn
 
 
 def hull(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Polygon:

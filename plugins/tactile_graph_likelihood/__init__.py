@@ -5,15 +5,15 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
-    "choose_shape": "choose_shape:ChooseShape",
-    "fit_footprint": "fit_footprint:FitFootprint",
-    "follow_footprint": "follow_footprint:FollowFootprint",
-    "footprint_by_order": "footprint_by_order:FootprintByOrder",
-    "fit_footprints": "fit_footprints:FitFootprints",
-    "footprint_disc": "footprint_of:FootprintDisc",
-    "footprint_ellipse": "footprint_of:FootprintEllipse",
-    "footprint_rectangle": "footprint_of:FootprintRectangle",
-    "identify_footprint": "identify_footprint:IdentifyFootprint",
+    "choose_shape": "single.choose_shape:ChooseShape",
+    "fit_footprint": "single.fit_footprint:FitFootprint",
+    "follow_footprint": "over_time.follow_footprint:FollowFootprint",
+    "footprint_by_order": "by_order.footprint_by_order:FootprintByOrder",
+    "fit_footprints": "several.fit_footprints:FitFootprints",
+    "footprint_disc": "single.footprint_of:FootprintDisc",
+    "footprint_ellipse": "single.footprint_of:FootprintEllipse",
+    "footprint_rectangle": "single.footprint_of:FootprintRectangle",
+    "identify_footprint": "known.identify_footprint:IdentifyFootprint",
 }
 
 

@@ -21,8 +21,5 @@ def tactile_graph_pads() -> Mapping[str, Path]:
 
 @hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the commands that calibrate a pad and that study the thesis' one."""
-    return {
-        "calibrate": "tactile_graph_pads.commands.calibrate:calibrate",
-        "study": "tactile_graph_pads.commands.study:study",
-    }
+    """Offer the command that calibrates a pad."""
+    return {"calibrate": "tactile_graph_pads.commands.calibrate:calibrate"}

@@ -10,7 +10,7 @@ from annotated_types import Ge, Gt, Le
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Shape
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
 Array = NDArray[np.float64]

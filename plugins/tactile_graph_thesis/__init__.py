@@ -15,5 +15,5 @@ def tactile_graph_steps() -> Mapping[str, str]:
 
 @hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the command that makes the tables and figures."""
-    return {"reproduce": f"{__name__}.commands.reproduce:reproduce"}
+    """Offer the commands that make the tables and figures, and the studies of chapter 2."""
+    return {name: f"{__name__}.commands.{name}:{name}" for name in ("reproduce", "study")}

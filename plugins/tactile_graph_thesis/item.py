@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from tactile_graph_pads.studies import Finding, Table
+from tactile_graph_thesis.chapter_2 import Finding, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -18,8 +18,6 @@ Exit codes:
 COMMANDS = {
     "run": "Run a pipeline over recordings or another source.",
     "check": "Report all that is wrong with pipeline files.",
-    "compare": "Compare variants of pipelines: errors, times, lineage.",
-    "audit": "Tell what each guard of a pipeline saves, and what it costs in error.",
     "explain": "Say for one frame what each node did, and why.",
     "graph": "Draw a pipeline's graph: SVG, mermaid or dot.",
     "pipelines": "List the pipelines, and which evolved from which.",

@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from tactile_graph import Image, Mask, Points
-from tactile_graph_classifiers.measurements import Measurements
-from tactile_graph_classifiers.minimum_distance import MinimumDistance
-from tactile_graph_filters.dilate import Dilate
-from tactile_graph_filters.erode import Erode
-from tactile_graph_filters.open import Open
-from tactile_graph_fitters.fit_circle_thesis import fit_circle_thesis
-from tactile_graph_fitters.fit_ellipse_origin import fit_ellipse_origin
-from tactile_graph_fitters.nearest_on_ellipse import nearest
-from tactile_graph_fitters.orientation import Orientation
-from tactile_graph_fitters.rotate_points import rotate_points
-from tactile_graph_mrf.model import Model, energy
+from tactile_graph_classifiers.distances.minimum_distance import MinimumDistance
+from tactile_graph_classifiers.measuring.measurements import Measurements
+from tactile_graph_filters.morphology.dilate import Dilate
+from tactile_graph_filters.morphology.erode import Erode
+from tactile_graph_filters.morphology.open import Open
+from tactile_graph_fitters.circle.fit_circle_thesis import fit_circle_thesis
+from tactile_graph_fitters.ellipse.fit_ellipse_origin import fit_ellipse_origin
+from tactile_graph_fitters.ellipse.nearest_on_ellipse import nearest
+from tactile_graph_fitters.orientation.orientation import Orientation
+from tactile_graph_fitters.orientation.rotate_points import rotate_points
+from tactile_graph_mrf.energy.model import Model, energy
 from tactile_graph_pads.pad import load_pad
 
 PAGE = Path(__file__).parents[2] / "docs" / "errata.md"

@@ -20,11 +20,11 @@ from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind, read_signature
 from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_pads.studies import study_names
 from tactile_graph_sources.devices.preset_file import load_preset
 from tactile_graph_thesis.catalogue import items
+from tactile_graph_thesis.chapter_2 import study_names
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

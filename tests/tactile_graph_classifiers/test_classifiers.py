@@ -9,11 +9,13 @@ import pytest
 
 from helpers_classifiers import export_of, normal_rows, reading, three_objects
 from tactile_graph.errors import DataError
-from tactile_graph_classifiers.left_out import largest_accepted
-from tactile_graph_classifiers.mahalanobis import Mahalanobis
-from tactile_graph_classifiers.measurements import Measurements
-from tactile_graph_classifiers.minimum_distance import MinimumDistance
-from tactile_graph_classifiers.minimum_distance_normalised import MinimumDistanceNormalised
+from tactile_graph_classifiers.distances.left_out import largest_accepted
+from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
+from tactile_graph_classifiers.distances.minimum_distance import MinimumDistance
+from tactile_graph_classifiers.distances.minimum_distance_normalised import (
+    MinimumDistanceNormalised,
+)
+from tactile_graph_classifiers.measuring.measurements import Measurements
 
 EACH = pytest.mark.parametrize("kind", [MinimumDistance, MinimumDistanceNormalised, Mahalanobis])
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tactile_graph_filters.decouple import Decouple
-from tactile_graph_filters.force import Force
-from tactile_graph_filters.volts import Volts
+from tactile_graph_filters.readings.decouple import Decouple
+from tactile_graph_filters.readings.force import Force
+from tactile_graph_filters.readings.volts import Volts
 from tactile_graph_pads.pad import load_pad
 
 CIRCUITS = {

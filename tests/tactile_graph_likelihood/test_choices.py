@@ -8,10 +8,10 @@ from tactile_graph import load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.choose_shape import ChooseShape
-from tactile_graph_likelihood.learned_noise import learned_noise
-from tactile_graph_likelihood.model import Model
-from tactile_graph_likelihood.outlines import DISC
+from tactile_graph_likelihood.geometry.outlines import DISC
+from tactile_graph_likelihood.single.choose_shape import ChooseShape
+from tactile_graph_likelihood.single.learned_noise import learned_noise
+from tactile_graph_likelihood.single.model import Model
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -9,12 +9,12 @@ from helpers_likelihood import NOISE, drawn
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
-from tactile_graph_likelihood.fit_footprint import FitFootprint
-from tactile_graph_likelihood.footprint_of import FootprintDisc, FootprintRectangle
-from tactile_graph_likelihood.likely import LikelyCircle, LikelyPolygon, likely
-from tactile_graph_likelihood.model import Model
-from tactile_graph_likelihood.outlines import DISC, RECTANGLE, packed, unpacked
-from tactile_graph_likelihood.search import searched
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, packed, unpacked
+from tactile_graph_likelihood.single.fit_footprint import FitFootprint
+from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
+from tactile_graph_likelihood.single.likely import LikelyCircle, LikelyPolygon, likely
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.search import searched
 
 DISCS = Model(DISC, noise=NOISE, whole=True)
 SLABS = Model(RECTANGLE, noise=NOISE, whole=True)

@@ -12,10 +12,10 @@ from tactile_graph import load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Mask, Rectangle
-from tactile_graph_likelihood.footprint_by_order import FootprintByOrder
-from tactile_graph_likelihood.order_hazards import hazard, hazards
-from tactile_graph_likelihood.order_likelihood import log_order, ranked
-from tactile_graph_likelihood.order_misfit import order_moments, touch_moments
+from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
+from tactile_graph_likelihood.by_order.hazards import hazard, hazards
+from tactile_graph_likelihood.by_order.likelihood import log_order, ranked
+from tactile_graph_likelihood.by_order.misfit import order_moments, touch_moments
 
 SHARES = np.array([0.1, 0.4, 0.7, 1.0])
 SIGMA, T = 0.5, 2.5

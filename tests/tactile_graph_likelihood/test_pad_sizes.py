@@ -5,10 +5,10 @@ import pytest
 
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.follow_footprint import FollowFootprint
-from tactile_graph_likelihood.footprint_by_order import FootprintByOrder
-from tactile_graph_likelihood.identify_footprint import IdentifyFootprint
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
+from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
+from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
 SIGMA, VOIDS = 0.3, 0.05

@@ -8,14 +8,14 @@ import pytest
 from helpers_likelihood import NOISE, drawn
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.any_pressure import EVEN, AnyPressure, asked_by, chances, mixed
-from tactile_graph_likelihood.choose_shape import ChooseShape
-from tactile_graph_likelihood.follow_footprint import FollowFootprint
-from tactile_graph_likelihood.frame_fits import FrameFits
-from tactile_graph_likelihood.identify_footprint import IdentifyFootprint
-from tactile_graph_likelihood.model import Model
-from tactile_graph_likelihood.outlines import DISC, ELLIPSE, RECTANGLE
-from tactile_graph_likelihood.readings import readings_of
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
+from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
+from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
+from tactile_graph_likelihood.several.frame_fits import FrameFits
+from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, chances, mixed
+from tactile_graph_likelihood.single.choose_shape import ChooseShape
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.readings import readings_of
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -9,12 +9,12 @@ import pytest
 from helpers_likelihood import GRID, NOISE, drawn
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image
-from tactile_graph_likelihood.covered import covered
-from tactile_graph_likelihood.misfit import leaning_of
-from tactile_graph_likelihood.model import Model
-from tactile_graph_likelihood.outlines import DISC, packed
-from tactile_graph_likelihood.patterns import dome, neighbours_alike, trend
-from tactile_graph_likelihood.readings import readings_of
+from tactile_graph_likelihood.geometry.covered import covered
+from tactile_graph_likelihood.geometry.outlines import DISC, packed
+from tactile_graph_likelihood.single.misfit import leaning_of
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
+from tactile_graph_likelihood.single.readings import readings_of
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 

@@ -9,10 +9,10 @@ from helpers_likelihood import NOISE
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.covered import covered
-from tactile_graph_likelihood.fit_footprints import FitFootprints
-from tactile_graph_likelihood.likely import LikelyCircle, LikelyRectangle
-from tactile_graph_likelihood.outlines import packed
+from tactile_graph_likelihood.geometry.covered import covered
+from tactile_graph_likelihood.geometry.outlines import packed
+from tactile_graph_likelihood.several.fit_footprints import FitFootprints
+from tactile_graph_likelihood.single.likely import LikelyCircle, LikelyRectangle
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
 FIT = FitFootprints()

@@ -15,12 +15,12 @@ from helpers_restorers import (
 )
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.gnc import gnc
-from tactile_graph_mrf.graph_cuts import graph_cuts
-from tactile_graph_mrf.mean_field import mean_field
-from tactile_graph_mrf.model import Model, energy
-from tactile_graph_mrf.restore import restore
-from tactile_graph_mrf.trw import trw
+from tactile_graph_mrf.descent.gnc import gnc
+from tactile_graph_mrf.descent.graph_cuts import graph_cuts
+from tactile_graph_mrf.descent.mean_field import mean_field
+from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.descent.trw import trw
+from tactile_graph_mrf.energy.model import Model, energy
 
 pytest.importorskip("maxflow", reason="graph_cuts needs PyMaxflow")
 

@@ -23,9 +23,9 @@ from helpers_mrf import (
     patterns,
     tiny,
 )
-from tactile_graph_mrf.annealing import observed_state, random_state, run
-from tactile_graph_mrf.model import energy
-from tactile_graph_mrf.schedules import temperatures
+from tactile_graph_mrf.energy.model import energy
+from tactile_graph_mrf.samplers.annealing import observed_state, random_state, run
+from tactile_graph_mrf.samplers.schedules import temperatures
 
 BETA = 0.5
 

@@ -8,9 +8,9 @@ import pytest
 from tactile_graph import loads
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
+from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.expect import expect
-from tactile_graph_mrf.model import Model
-from tactile_graph_mrf.restore import restore
 
 
 def test_the_load_of_a_rectangle_is_spread_over_the_cells_it_covers():

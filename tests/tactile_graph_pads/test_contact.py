@@ -5,7 +5,7 @@ import pytest
 
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_pads.contact import Contact, Grain, spread
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
 PAD = Geometry()

@@ -15,8 +15,8 @@ from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.engine.outcome import NO_VALUE, Skipped
 from tactile_graph.engine.result import Result
 from tactile_graph.pipeline.node import NodeKind
-from tactile_graph_fitters.fit_circle_load import EvenCircle
-from tactile_graph_likelihood.likely import LikelyCircle
+from tactile_graph_fitters.circle.fit_circle_load import EvenCircle
+from tactile_graph_likelihood.single.likely import LikelyCircle
 
 DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
 SATURATED = 10e3  # g/cm^2, where an element's law ends at 10 kg

@@ -7,7 +7,7 @@ import pytest
 
 from tactile_graph import Circle, Frame, load
 from tactile_graph.engine.outcome import Skipped
-from tactile_graph_classifiers.shapes import true_name
+from tactile_graph_classifiers.measuring.shapes import true_name
 
 
 def test_only_the_localiser_of_the_identified_class_runs_and_explain_says_why():

@@ -5,7 +5,7 @@ import pytest
 
 from tactile_graph import Frame, load
 from tactile_graph.engine.outcome import Skipped
-from tactile_graph_classifiers.shapes import true_name
+from tactile_graph_classifiers.measuring.shapes import true_name
 
 
 def test_objects_are_identified_and_located_at_once():

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from tactile_graph import Frame, Rectangle, load
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.wires import Mask
-from tactile_graph_filters.close import Close
-from tactile_graph_filters.subdivide import subdivide
-from tactile_graph_fitters.experiments import (
+from tactile_graph_filters.morphology.close import Close
+from tactile_graph_filters.morphology.subdivide import subdivide
+from tactile_graph_fitters.orientation.orientation import Orientation
+from tactile_graph_fitters.orientation.rotate_mask import rotate_mask
+from tactile_graph_thesis.measure.rectangles import (
     OBJECTS,
     STATED_CELL_CM,
     rectangle_frames,
     signed_errors,
 )
-from tactile_graph_fitters.orientation import Orientation
-from tactile_graph_fitters.rotate_mask import rotate_mask
 
 ORIGIN_CM = (-0.15, -0.15)
 EVERY = ("rectangle-1", "rectangle-2", "rectangle-3", "ellipse-direct")

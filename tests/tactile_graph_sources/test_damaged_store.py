@@ -12,7 +12,7 @@ from tactile_graph import Frame
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph_sources.store import read_store
-from tactile_graph_sources.write_store import StoreWriter
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 

@@ -13,7 +13,7 @@ pytest.importorskip("zarr", reason="the zarr extra is not installed")
 
 
 def test_a_store_runs_through_a_pipeline_and_is_numbered_on(tmp_path: Path) -> None:
-    from tactile_graph_sources.write_store import StoreWriter
+    from tactile_graph_sources.writers.write_store import StoreWriter
 
     frames = list(load("circle-3").frames())
     store = tmp_path / "discs.zarr"

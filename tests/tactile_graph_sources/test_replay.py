@@ -13,8 +13,8 @@ from tactile_graph import Frame
 from tactile_graph.errors import DataError
 from tactile_graph.steps.injected import Report
 from tactile_graph_sources.replay import replay
-from tactile_graph_sources.write_npz import write_npz
-from tactile_graph_sources.write_store import StoreWriter
+from tactile_graph_sources.writers.write_npz import write_npz
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 

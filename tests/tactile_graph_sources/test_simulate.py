@@ -7,7 +7,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
 from tactile_graph.steps.signature import Kind, read_signature
 from tactile_graph.wires import Circle, Frame, Rectangle
-from tactile_graph_pads.coverage import coverage_cm2
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.simulate import simulate
 

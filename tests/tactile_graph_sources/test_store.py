@@ -16,7 +16,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import TrueObject
 from tactile_graph_sources.store import is_store, read_store
-from tactile_graph_sources.write_store import StoreWriter
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 
@@ -113,7 +113,7 @@ WRITER = """
 import sys
 import numpy as np
 from tactile_graph import Frame
-from tactile_graph_sources.write_store import StoreWriter
+from tactile_graph_sources.writers.write_store import StoreWriter
 store = StoreWriter(sys.argv[1], chunk=16)
 for i in range(10**6):
     store.write(Frame.of(np.full((4, 4), i), quantity="counts", index=i, time_s=float(i)))

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.book.files import compared_csv, csv_text, files_of
 from tactile_graph_thesis.book.page import page
 from tactile_graph_thesis.book.summary import conclusions, table_lines

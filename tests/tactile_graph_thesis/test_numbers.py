@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph_fitters.experiments import THESIS as RECTANGLES
-from tactile_graph_mrf.experiments import THESIS as RADII
+from tactile_graph_thesis.measure.fields import THESIS as RADII
+from tactile_graph_thesis.measure.rectangles import THESIS as RECTANGLES
 from tactile_graph_thesis.numbers import error_table, numbers
 
 TABLES = ("table-4.3", "table-4.4", "table-4.5", "table-4.7", "table-4.8", "table-5.2")

@@ -10,7 +10,7 @@ from helpers_objects import Spot
 from tactile_graph import loads
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame, Image, Mask
-from tactile_graph_filters.contacts import contacts
+from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_tracking.track import Track
 from tactile_graph_tracking.tracked_object import TrackedObject
 

@@ -73,7 +73,7 @@ def _identifying(pipeline: Pipeline, only: tuple[str, ...]) -> str:
     UsageError
         If there is none, or more than one to choose from.
     """
-    from tactile_graph_classifiers.identity import Identity
+    from tactile_graph_classifiers.distances.identity import Identity
 
     found = [
         name
@@ -120,7 +120,7 @@ class _Lines:
         click.echo(_line(str(result.frame.index), outcome.name, number, second, margin, note))
 
     def _judged(self, result: Result, identity: Any) -> str:
-        from tactile_graph_classifiers.shapes import true_name
+        from tactile_graph_classifiers.measuring.shapes import true_name
 
         name = true_name(result.frame)
         if not name:

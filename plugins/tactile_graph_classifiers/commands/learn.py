@@ -12,11 +12,11 @@ from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option
-from tactile_graph_classifiers.shapes import SHAPES
+from tactile_graph_classifiers.measuring.shapes import SHAPES
 
 if TYPE_CHECKING:
     from tactile_graph.pipeline.pipeline import Pipeline
-    from tactile_graph_classifiers.measurements import Measurements
+    from tactile_graph_classifiers.measuring.measurements import Measurements
 
 
 @click.command()
@@ -79,7 +79,7 @@ class _Read:
     def __init__(self, pipeline: Pipeline, only: tuple[str, ...], seed: int, span: Span) -> None:
         from tactile_graph.engine.outcome import Failed, Skipped
         from tactile_graph.steps.injected import Report
-        from tactile_graph_classifiers.shapes import true_shape
+        from tactile_graph_classifiers.measuring.shapes import true_shape
 
         self.rows: list[Measurements] = []
         self.sources: list[str] = []
@@ -133,7 +133,7 @@ def measuring_output(pipeline: Pipeline, only: tuple[str, ...]) -> str:
         If none does.
     """
     from tactile_graph.pipeline.wiring import fit
-    from tactile_graph_classifiers.measurements import Measurements
+    from tactile_graph_classifiers.measuring.measurements import Measurements
 
     asked = only or tuple(pipeline.outputs)
     for name in asked:

@@ -12,7 +12,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table
 
 if TYPE_CHECKING:
-    from tactile_graph_classifiers.known import Known, KnownObject
+    from tactile_graph_classifiers.database.known import Known, KnownObject
 
 LISTED = ("weight", "area_cm2")
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from tactile_graph_classifiers.known import Known, KnownObject
-from tactile_graph_classifiers.statistics import Statistics
+from tactile_graph_classifiers.database.known import Known, KnownObject
+from tactile_graph_classifiers.database.statistics import Statistics
 
 SAMPLE = Path(__file__).parents[1] / "samples" / "thesis-objects.yaml"
 """Readings of the objects of thesis tables 4.6 and 4.9 on the simulated pad."""

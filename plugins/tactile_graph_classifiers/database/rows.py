@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_classifiers.known import KnownObject
-from tactile_graph_classifiers.statistics import Statistics
+from tactile_graph_classifiers.database.known import KnownObject
+from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
 from tactile_graph_classifiers.database.connection import reading, writing
+from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson, Setting, add, objects_of, setting_of
-from tactile_graph_classifiers.identity import UNKNOWN
-from tactile_graph_classifiers.known import Known
+from tactile_graph_classifiers.distances.identity import UNKNOWN
 
 DEFAULT_PATH = "tactile-objects.sqlite"
 

@@ -10,8 +10,8 @@ import numpy as np
 import yaml
 
 from tactile_graph.errors import DataError, did_you_mean, shown
+from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson, Setting
-from tactile_graph_classifiers.known import Known
 
 FORMAT = "tactile-graph objects"
 VERSION = 1

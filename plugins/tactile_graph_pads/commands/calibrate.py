@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from tactile_graph_pads.calibration import Calibration, Origin
-    from tactile_graph_pads.calibration_groups import GroupReader
-    from tactile_graph_pads.calibration_lists import Loaded
-    from tactile_graph_pads.calibration_points import Observation
+    from tactile_graph_pads.calibration.calibration import Calibration, Origin
+    from tactile_graph_pads.calibration.groups import GroupReader
+    from tactile_graph_pads.calibration.lists import Loaded
+    from tactile_graph_pads.calibration.points import Observation
 
 FITS = ("polynomial", "isotonic", "sums", "power")
 
@@ -77,11 +77,11 @@ def calibrate(
     """
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
-    from tactile_graph_pads.calibration import Provenance, write_calibration
-    from tactile_graph_pads.calibration_fit import calibrated, fitted_g
-    from tactile_graph_pads.calibration_lists import parse_loaded, read_loads
-    from tactile_graph_pads.calibration_plot import check_picture, save_calibration_plot
-    from tactile_graph_pads.calibration_points import points_of
+    from tactile_graph_pads.calibration.calibration import Provenance, write_calibration
+    from tactile_graph_pads.calibration.fit import calibrated, fitted_g
+    from tactile_graph_pads.calibration.lists import parse_loaded, read_loads
+    from tactile_graph_pads.calibration.plot import check_picture, save_calibration_plot
+    from tactile_graph_pads.calibration.points import points_of
 
     if plot is not None:
         check_picture(plot)
@@ -127,7 +127,7 @@ def _reader(
     full_scale: float | None,
 ) -> GroupReader:
     from tactile_graph.errors import UsageError
-    from tactile_graph_pads.calibration_groups import GroupReader
+    from tactile_graph_pads.calibration.groups import GroupReader
     from tactile_graph_pads.pad import load_pad
 
     if decouple and pad_name is None:
@@ -148,7 +148,7 @@ def _median(empty: Path | None) -> Any:
 def _frames(path: Path) -> tuple[list[Any], Origin]:
     from tactile_graph.errors import UsageError
     from tactile_graph.steps.injected import Report
-    from tactile_graph_pads.calibration import Origin
+    from tactile_graph_pads.calibration.calibration import Origin
 
     try:
         from tactile_graph_sources.frames_of import frames_of

@@ -59,9 +59,9 @@ def convert(
 
 
 def _write(target: Path, frames: Iterator[Frame], source: Path) -> int:
-    from tactile_graph_sources.write_csv import write_csv
-    from tactile_graph_sources.write_npz import write_npz
-    from tactile_graph_sources.write_store import StoreWriter
+    from tactile_graph_sources.writers.write_csv import write_csv
+    from tactile_graph_sources.writers.write_npz import write_npz
+    from tactile_graph_sources.writers.write_store import StoreWriter
 
     if target.suffix == ".npz":
         return write_npz(target, frames)

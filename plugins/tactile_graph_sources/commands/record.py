@@ -16,7 +16,7 @@ import click
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
-    from tactile_graph_sources.write_store import StoreWriter
+    from tactile_graph_sources.writers.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
@@ -63,7 +63,7 @@ def record(
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.serial_port import serial
-    from tactile_graph_sources.write_store import StoreWriter
+    from tactile_graph_sources.writers.write_store import StoreWriter
 
     _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))

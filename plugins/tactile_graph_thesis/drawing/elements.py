@@ -20,8 +20,8 @@ def elements_figure(specs: dict[str, Any]) -> Figure:
     """
     from matplotlib.colors import ListedColormap
 
-    from tactile_graph_filters.elements import parse_element
-    from tactile_graph_pads.calibration_plot import new_figure
+    from tactile_graph_filters.morphology.elements import parse_element
+    from tactile_graph_pads.calibration.plot import new_figure
 
     figure = new_figure(3.2 * len(specs) + 0.6, 3.6)
     parts = figure.subplots(1, len(specs), squeeze=False).flat

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactile_graph.wires import Image, Mask, Points
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

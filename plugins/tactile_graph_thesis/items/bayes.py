@@ -14,7 +14,7 @@ from tactile_graph_thesis.numbers import error_table
 from tactile_graph_thesis.work import Work
 
 if TYPE_CHECKING:
-    from tactile_graph_mrf.experiments import RadiusRow, Restoration
+    from tactile_graph_thesis.measure.fields import RadiusRow, Restoration
 
 READINGS, QUICK_READINGS = 100, 15
 """Of each disc for table 5.2."""
@@ -30,13 +30,13 @@ def _rms(values: NDArray[np.float64]) -> float:
 
 
 def _simulated(work: Work) -> Restoration:
-    from tactile_graph_mrf.experiments import figure_5_8
+    from tactile_graph_thesis.measure.fields import figure_5_8
 
     return work.once("figure 5.8", lambda: figure_5_8(work.seed))
 
 
 def _figure_5_8(work: Work) -> Made:
-    from tactile_graph_mrf.pictures import draw_5_8
+    from tactile_graph_thesis.drawing.fields import draw_5_8
 
     made = _simulated(work)
     assert made.truth is not None
@@ -100,7 +100,7 @@ def _draw_lines(axes: Any, made: Restoration) -> None:
 
 
 def _restored(work: Work) -> tuple[Restoration, ...]:
-    from tactile_graph_mrf.experiments import figures_5_10_to_5_13
+    from tactile_graph_thesis.measure.fields import figures_5_10_to_5_13
 
     return work.once("figures 5.10 to 5.13", lambda: figures_5_10_to_5_13(work.seed))
 
@@ -109,7 +109,7 @@ def _figure_of(index: int) -> Any:
     """Return a function that draws one object's restorations."""
 
     def make(work: Work) -> Made:
-        from tactile_graph_mrf.pictures import draw_5_10_to_5_13
+        from tactile_graph_thesis.drawing.fields import draw_5_10_to_5_13
 
         made = _restored(work)[index]
         read, smooth, lined = (im.values for im in (made.observed, made.smooth, made.lined))
@@ -146,8 +146,8 @@ def _figure_5_13(work: Work) -> Made:
 
 
 def _figure_5_14(work: Work) -> Made:
-    from tactile_graph_mrf.experiments import figure_5_14
-    from tactile_graph_mrf.pictures import draw_5_14
+    from tactile_graph_thesis.drawing.fields import draw_5_14
+    from tactile_graph_thesis.measure.fields import figure_5_14
 
     hulls = figure_5_14(work.seed)
     ratios = [h.bayesian.area_cm2 / h.heuristic.area_cm2 for h in hulls]
@@ -167,7 +167,7 @@ def _figure_5_14(work: Work) -> Made:
 
 
 def _table_5_2(work: Work) -> Made:
-    from tactile_graph_mrf.experiments import table_5_2
+    from tactile_graph_thesis.measure.fields import table_5_2
 
     thesis = error_table("table-5.2")
     n = min(QUICK_READINGS if work.quick else READINGS, work.readings)

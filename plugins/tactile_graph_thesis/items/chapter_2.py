@@ -24,7 +24,7 @@ def study_done(work: Work, name: str) -> tuple[Any, Any]:
     import numpy as np
 
     from tactile_graph_pads.pad import load_pad
-    from tactile_graph_pads.studies import load_study
+    from tactile_graph_thesis.chapter_2 import load_study
 
     study = load_study(name)
     rng = np.random.default_rng(work.seed)
@@ -35,7 +35,7 @@ def _whole(name: str) -> Any:
     """Return a function that makes a study's own figure, table and findings."""
 
     def make(work: Work) -> Made:
-        from tactile_graph_pads.calibration_plot import new_figure
+        from tactile_graph_pads.calibration.plot import new_figure
 
         study, found = study_done(work, name)
         figure = new_figure(*((12.0, 5.0) if name in WIDE else (7.5, 5.0)))
@@ -46,7 +46,7 @@ def _whole(name: str) -> Any:
 
 
 def _figure_2_12(work: Work) -> Made:
-    from tactile_graph_pads.calibration_plot import new_figure
+    from tactile_graph_pads.calibration.plot import new_figure
 
     found = study_done(work, "foam")[1]
     figure = new_figure(6.0, 5.0)
@@ -60,7 +60,7 @@ def _figure_2_12(work: Work) -> Made:
 
 
 def _figure_2_16(work: Work) -> Made:
-    from tactile_graph_pads.calibration_plot import new_figure
+    from tactile_graph_pads.calibration.plot import new_figure
 
     study, found = study_done(work, "characteristic")
     figure = new_figure()

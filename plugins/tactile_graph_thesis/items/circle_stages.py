@@ -141,7 +141,7 @@ def _figure_4_12(work: Work) -> Made:
 
 
 def _figure_4_13(work: Work) -> Made:
-    from tactile_graph_filters.subdivide import subdivide
+    from tactile_graph_filters.morphology.subdivide import subdivide
 
     mask = Mask(np.array([[False, True], [True, True]]), (1.3, 1.3))
     figure, axes = panels(2)

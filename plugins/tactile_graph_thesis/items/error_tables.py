@@ -30,8 +30,8 @@ def table_errors(work: Work, name: str) -> dict[str, Array]:
 
 def _measured(work: Work, name: str) -> dict[str, Array]:
     from tactile_graph import load
-    from tactile_graph_fitters.experiments import signed_errors
     from tactile_graph_thesis.measure import circles
+    from tactile_graph_thesis.measure.rectangles import signed_errors
 
     objects = error_table(name).objects
     n = len(objects) * work.readings

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
 from tactile_graph_thesis.measure.identification import mean_curves
 from tactile_graph_thesis.numbers import numbers
 from tactile_graph_thesis.work import Work
 
 if TYPE_CHECKING:
-    from tactile_graph_classifiers.experiments import Confusion, Curve
+    from tactile_graph_thesis.measure.identification_tables import Confusion, Curve
 
 PADS = 3
 """Simulated pads over which the curves are averaged."""
@@ -25,7 +25,7 @@ THESIS_CLASSIFIER = "minimum_distance_normalised"
 
 
 def _table_4_9(work: Work) -> Made:
-    from tactile_graph_classifiers.experiments import table_4_9
+    from tactile_graph_thesis.measure.identification_tables import table_4_9
 
     said = numbers("table-4.9")
     found = table_4_9(int(said["readings"]), work.seed)

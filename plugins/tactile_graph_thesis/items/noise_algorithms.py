@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Item, Made, Table
 from tactile_graph_thesis.items.noise_blocks import (
     CELLS,

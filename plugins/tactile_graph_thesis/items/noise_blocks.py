@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Item, Made, Table
 from tactile_graph_thesis.measure.noise import (
     CONTACTS,

@@ -68,7 +68,7 @@ def lone_cells(mask: Mask) -> int:
 
 
 def _figure_4_22(work: Work) -> Made:
-    from tactile_graph_fitters.fit_rectangle import fit_rectangle
+    from tactile_graph_fitters.rectangle.fit_rectangle import fit_rectangle
 
     frame = rectangle_frame(work)
     result = stages("rectangle-1", frame, work.seed)
@@ -94,7 +94,7 @@ def _figure_4_22(work: Work) -> Made:
 
 def _length_errors(work: Work) -> dict[str, list[float]]:
     """Return length errors of an ellipse and of a rectangle fitted to the same boundaries."""
-    from tactile_graph_fitters.fit_rectangle import fit_rectangle
+    from tactile_graph_fitters.rectangle.fit_rectangle import fit_rectangle
 
     errors: dict[str, list[float]] = {"ellipse": [], "rectangle": []}
     for frame in of_object(work, "rectangles", NAME, 2):

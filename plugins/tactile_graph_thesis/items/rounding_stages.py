@@ -13,11 +13,11 @@ from tactile_graph_thesis.measure.stages import setting
 from tactile_graph_thesis.work import Work
 
 if TYPE_CHECKING:
-    from tactile_graph_fitters.rectangle_stages import Stage
+    from tactile_graph_thesis.measure.rectangle_stages import Stage
 
 
 def _figures(work: Work) -> dict[str, tuple[Stage, ...]]:
-    from tactile_graph_fitters.rectangle_stages import rectangle_stages
+    from tactile_graph_thesis.measure.rectangle_stages import rectangle_stages
 
     return work.once("rectangle stages", lambda: rectangle_stages(rectangle_frame(work)))
 

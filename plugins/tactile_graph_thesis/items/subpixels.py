@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Finding, Item, Made, Table
 from tactile_graph_thesis.measure.subpixel import KINDS, SubpixelErrors, subpixel_errors
 from tactile_graph_thesis.work import Work

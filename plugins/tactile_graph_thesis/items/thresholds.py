@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.drawing.panels import draw_mask, draw_true, finish, panels
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
 from tactile_graph_thesis.measure.thresholds import (

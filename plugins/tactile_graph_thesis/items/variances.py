@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_pads.calibration_plot import new_figure
+from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
 from tactile_graph_thesis.measure.thresholds import running_variances, threshold_errors
 from tactile_graph_thesis.numbers import numbers

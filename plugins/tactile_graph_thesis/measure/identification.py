@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph_classifiers.experiments import Curve, error_curves
+from tactile_graph_thesis.measure.identification_tables import Curve, error_curves
 
 
 def mean_curves(seeds: range, kind: str = "curve", **settings: Any) -> list[Curve]:

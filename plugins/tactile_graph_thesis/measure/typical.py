@@ -70,7 +70,7 @@ def typical_rectangle(work: Work, name: str) -> Frame:
     name : str
     """
     from tactile_graph import load
-    from tactile_graph_fitters.experiments import signed_errors
+    from tactile_graph_thesis.measure.rectangles import signed_errors
 
     frames = of_object(work, "rectangles", name, 2)
     runner = load("rectangle-1").runner(seed=work.seed)

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Degenerate, Ellipse, Frame, Image, Mask, hookimpl, loads
-from tactile_graph.compare import compare
 from tactile_graph.errors import PluginError
 from tactile_graph.pipeline.promises import misfit
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps import Grid, Quantity
+from tactile_graph_compare import compare
 
 CIRCLE = Circle(1.0, 2.0, 3.0)
 MASK = Mask(np.ones((2, 3), dtype=bool))

@@ -16,8 +16,8 @@ import pytest
 from helpers_classifiers import SETTING, lesson
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.rows import Lesson
+from tactile_graph_classifiers.database.statistics import Statistics
 from tactile_graph_classifiers.database.store import ObjectDatabase
-from tactile_graph_classifiers.statistics import Statistics
 
 LESSON = 40
 

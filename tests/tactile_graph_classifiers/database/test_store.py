@@ -9,8 +9,8 @@ import pytest
 from helpers_classifiers import PAIR, SETTING, lesson, three_objects
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph_classifiers.database.rows import Lesson, Setting
+from tactile_graph_classifiers.database.statistics import Statistics
 from tactile_graph_classifiers.database.store import ObjectDatabase
-from tactile_graph_classifiers.statistics import Statistics
 
 
 @pytest.fixture

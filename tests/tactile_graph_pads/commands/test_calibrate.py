@@ -11,10 +11,10 @@ from click.testing import CliRunner
 from helpers_calibration import GRAMS, counting_pad, frame, many_files, on_four, one_file
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.wires import Frame
-from tactile_graph_pads.calibration import load_calibration
+from tactile_graph_pads.calibration.calibration import load_calibration
 from tactile_graph_pads.commands.calibrate import calibrate
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_sources.write_npz import write_npz
+from tactile_graph_sources.writers.write_npz import write_npz
 
 PAD = load_pad("plain")
 

@@ -13,7 +13,7 @@ from tactile_graph.cli import cli
 from tactile_graph.steps.injected import Report
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.frames_of import frames_of
-from tactile_graph_sources.write_npz import write_npz
+from tactile_graph_sources.writers.write_npz import write_npz
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 

@@ -18,7 +18,7 @@ from tactile_graph.cli import cli
 from tactile_graph_sources.devices.port import Port
 from tactile_graph_sources.devices.reader import Reader
 from tactile_graph_sources.store import read_store
-from tactile_graph_sources.write_store import StoreWriter
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 KIT = next(k for k in KITS if k.preset == "fsr-8x8")

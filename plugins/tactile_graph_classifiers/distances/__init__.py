@@ -1,0 +1,1 @@
+"""Which known object is nearest, by several distances."""

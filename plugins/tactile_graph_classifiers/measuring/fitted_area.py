@@ -1,0 +1,20 @@
+"""Step ``fitted_area``: the area of a fitted shape in place of the footprint's."""
+
+from __future__ import annotations
+
+from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
+from tactile_graph_classifiers.measuring.measurements import Measurements
+
+
+def fitted_area(
+    features: Measurements, shape: Circle | Ellipse | Rectangle | Polygon
+) -> Measurements:
+    """Return the features with the area of a shape that was fitted to the object.
+
+    Parameters
+    ----------
+    features : Measurements
+    shape : Circle, Ellipse, Rectangle or Polygon
+        As a localiser found it; thesis section 4.4.3 takes the circle's radius for the area.
+    """
+    return features.replaced("area_cm2", shape.area_cm2)

@@ -1,0 +1,30 @@
+"""Variants of pipelines side by side: `compare`, and the commands ``compare`` and ``audit``."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from tactile_graph import hookimpl
+
+if TYPE_CHECKING:
+    from tactile_graph_compare.records.comparison import Comparison as Comparison
+    from tactile_graph_compare.run.side_by_side import compare as compare
+    from tactile_graph_compare.variants.request import Wanted as Wanted
+
+# Name -> module, loaded on first use: listing the plugins must stay quick.
+_HOMES = {"Comparison": "records.comparison", "Wanted": "variants.request",
+          "compare": "run.side_by_side"}  # fmt: skip
+__all__ = ["Comparison", "Wanted", "compare"]
+
+
+@hookimpl
+def tactile_graph_commands() -> Mapping[str, str]:
+    """Offer the commands that compare variants, and that tell what each guard is worth."""
+    return {name: f"{__name__}.commands.{name}:{name}" for name in ("audit", "compare")}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -1,0 +1,191 @@
+"""``tactile-graph audit``: what each guard of a pipeline saves, and what error it brings in."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tactile_graph.cli.arguments import (
+    Span,
+    open_pipeline,
+    parse_span,
+    pipeline_argument,
+    source_options,
+)
+from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target
+
+if TYPE_CHECKING:
+    from tactile_graph_compare.output.tables import Table
+    from tactile_graph_compare.records.audit import Audit, GuardAudit
+    from tactile_graph_compare.run.audit import Auditor
+
+EPILOG = """\b
+Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C; what was done is shown.
+"""
+
+
+@click.command(epilog=EPILOG)
+@pipeline_argument
+@source_options
+@click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
+              help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--sample", type=click.FloatRange(0.0, 1.0, min_open=True), default=1.0,
+              show_default=True, metavar="SHARE",
+              help="Take this share of the frames, drawn at random; all where a step keeps "
+              "state.")  # fmt: skip
+@click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+def audit(
+    pipeline: str | None,
+    recordings: tuple[str, ...],
+    source: str | None,
+    source_settings: tuple[str, ...],
+    settings: tuple[str, ...],
+    seed: int,
+    only: tuple[str, ...],
+    span: Span,
+    sample: float,
+    json_path: str | None,
+) -> None:
+    """Tell what each guard of PIPELINE saves in time, and what error it brings in.
+
+    On a sample of the frames all that a guard keeps from running is run besides, one guard at a
+    time; so is every later choice of a first_of.
+    """
+    from tactile_graph.cli.terminal import console
+    from tactile_graph_compare.run.audit import Auditor
+
+    if json_path is not None:
+        check_target("--json", json_path)
+    opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
+    auditor = Auditor(opened, tuple(only), sample, seed)
+    if not auditor.shadows:
+        raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
+    interrupted = _frames(auditor, span, seed)
+    found = auditor.close(interrupted)
+    if not found.n_frames:
+        raise UsageError(
+            f"none of {found.n_seen} frames is in the sample of {sample:g}: give a larger --sample"
+        )
+    out = console()
+    _show(found, out)
+    if json_path is not None:
+        _write(found, json_path)
+        out.print(f"wrote {json_path}", style="dim", soft_wrap=True)
+    if interrupted:
+        out.print("interrupted", style="bold red")
+        click.get_current_context().exit(INTERRUPTED)
+
+
+def _frames(auditor: Auditor, span: Span, seed: int) -> bool:
+    """Take the frames; return whether Ctrl-C came."""
+    from tactile_graph.cli.interrupt import Interrupts
+    from tactile_graph.cli.progress import Bar
+    from tactile_graph.cli.terminal import console
+    from tactile_graph.steps.injected import Report
+
+    report = Report()
+    bar = Bar(console(stderr=True), "audit")
+    with Interrupts() as interrupts:
+        try:
+            for frame in span.of(auditor.pipeline.frames(seed, report)):
+                with interrupts.held:
+                    auditor.add(frame)
+                bar.at(auditor.n_seen, span.expected(report.n_expected))
+        except KeyboardInterrupt:
+            return True
+        finally:
+            bar.stop()
+    return False
+
+
+def _show(found: Audit, out: Any) -> None:
+    from rich.text import Text
+
+    from tactile_graph_compare.output.shown import fitted, rich_table
+
+    n, pipeline = found.n_frames, found.pipeline
+    heading = f"{pipeline.name}, {n} of {found.n_seen} frames"
+    heading += ": all, since a step keeps state" if found.whole else ""
+    out.print(Text(f"{heading}; it takes {found.median_us:.1f} µs a frame (median)", style="bold"))
+    gone: list[str] = []
+    for table in (worth_table(found), error_table(found)):
+        if table.rows:
+            narrow, hidden = fitted(table, out.width)
+            out.print(rich_table(narrow))
+            gone += hidden
+    if gone:
+        text = f"not shown, for want of width: {', '.join(gone)}; --json gives all"
+        out.print(text, style="dim", soft_wrap=True)
+
+
+def worth_table(found: Audit) -> Table:
+    """Return what each guard and hand-over saves and prevents."""
+    from tactile_graph_compare.output.tables import Table
+
+    columns = ("guard", "stopped", "saved", "share", "when it stops", "false", "failed", "changed")
+    note = (
+        "stopped: frames in which it kept something from running; saved: µs a frame, and as a "
+        "share of the time without it; when it stops: µs in such a frame; false, failed: frames "
+        "in which it prevents an answer where nothing lies, and a failure; changed: frames with "
+        "another output"
+    )
+    rows = tuple(_row(g) for g in found.guards)
+    return Table("What guards save", columns, rows, note, ("when it stops", "failed"))
+
+
+def _row(guard: GuardAudit) -> tuple[str, ...]:
+    from tactile_graph_compare.output.tables import signed_us, us
+
+    return (
+        _named(guard),
+        str(guard.n_stopped),
+        signed_us(guard.saved_us) if guard.saved_us < 0.0 else us(guard.saved_us),
+        f"{100 * guard.saved_share:.0f} %",
+        us(guard.saved_when_us) if guard.n_stopped else "",
+        str(guard.n_false_prevented),
+        str(guard.n_failed_prevented),
+        str(guard.n_changed),
+    )
+
+
+def _named(guard: GuardAudit) -> str:
+    return f"{guard.node} {guard.kind} {guard.text}"
+
+
+def error_table(found: Audit) -> Table:
+    """Return the error that guards bring in, those that change anything."""
+    from tactile_graph_compare.output.tables import Table, named, signed
+
+    rows = []
+    for guard in found.guards:
+        for d in guard.differences:
+            if d.mean or d.n_only_variant or d.n_only_reference:
+                bounds = (signed(x, d.unit) for x in (d.mean, d.low, d.high))
+                counts = (d.n_both, d.n_only_reference, d.n_only_variant)
+                name = _named(guard)
+                rows.append((name, named(d.quantity, d.unit), *bounds, *map(str, counts)))
+    columns = ("guard", "quantity", "mean", "95 % from", "to", "both", "lost", "won")
+    note = (
+        "mean absolute error it brings in where both answer; negative is better; lost, won: "
+        "answers given only without it, only with it"
+    )
+    return Table("What guards cost in error", columns, tuple(rows), note, ("95 % from", "to"))
+
+
+def _write(found: Audit, path: str) -> None:
+    from tactile_graph.files import write_whole
+
+    data = {
+        "pipeline": found.pipeline.name,
+        "frames": found.n_frames,
+        "frames_seen": found.n_seen,
+        "median_us": found.median_us,
+        "guards": [asdict(g) for g in found.guards],
+        "provenance": found.everything.provenance,
+    }
+    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")

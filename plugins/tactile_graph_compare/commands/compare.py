@@ -1,0 +1,293 @@
+"""``tactile-graph compare``: variants side by side, on the same frames, against the same truth."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
+from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target
+from tactile_graph.plugins import registry
+
+if TYPE_CHECKING:
+    from tactile_graph.steps.injected import Report
+    from tactile_graph.wires.frame import Frame
+    from tactile_graph_compare.records.comparison import Comparison
+    from tactile_graph_compare.run.session import Session
+    from tactile_graph_compare.variants.request import Wanted
+    from tactile_graph_compare.variants.variants import Prepared
+
+EPILOG = """\b
+A variant is a pipeline's name or file, or one with settings, as one quoted word:
+  tactile-graph compare circle-3 "circle-3 --set footprint.level_v=0.02"
+A sweep makes a variant of each value:
+  tactile-graph compare circle-3 --sweep footprint.level_v=0.005:0.03:0.0025
+
+\b
+Exit codes:
+  0    done
+  2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
+  130  interrupted by Ctrl-C; what was done is shown
+"""
+
+
+@click.command(epilog=EPILOG)
+@click.argument("variants", nargs=-1, metavar="VARIANT... [RECORDING]...",
+                shell_complete=complete_pipeline)  # fmt: skip
+@click.option("--source", metavar="STEP", help="Take frames from this source step.")
+@click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+              help="A setting of the source; can be repeated.")  # fmt: skip
+@click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
+              help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+              help="A setting of every pipeline that has it; can be repeated.")  # fmt: skip
+@click.option("--sweep", "sweeps", metavar="NODE.SETTING=VALUES", multiple=True,
+              help="Values of a setting in turn, START:STOP:STEP (stop included) or A,B,C, for "
+              "every pipeline that has it; several go side by side.")  # fmt: skip
+@click.option("--product", is_flag=True, help="Cross every value of a sweep with every other's.")
+@click.option("--lineage", is_flag=True,
+              help="Compare the pipelines that those named evolved from, too.")  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
+              help="Seed of everything random.")  # fmt: skip
+@click.option("--only", metavar="NODE", multiple=True,
+              help="Ask every variant for this node or node.field instead of its outputs; can be "
+              "repeated.")  # fmt: skip
+@click.option("--csv", "csv_path", metavar="FILE|FOLDER",
+              help="Write errors frame by frame to FILE.csv; or these, times, scores and "
+              "differences to a folder.")  # fmt: skip
+@click.option("--markdown", metavar="FILE", help="Write the tables as Markdown; - for stdout.")
+@click.option("--json", "json_path", metavar="FILE",
+              help="Write all figures and how they were made; - for stdout.")  # fmt: skip
+@click.option("--report", metavar="FILE.html", help="Write a report to look at in a browser.")
+def compare(variants: tuple[str, ...], span: Span, **options: Any) -> None:
+    """Compare VARIANTs, two or more, on the same frames: errors, times, lineage.
+
+    Nodes that variants have in common run once. Without recordings and --source all take the
+    frames of the first one's own source.
+    """
+    from tactile_graph.cli.interrupt import Interrupts
+
+    asked = _Options(**options)
+    _check_files(asked)
+    prepared, notes = _prepared(variants, span, asked)
+    with Interrupts() as interrupts:
+        code = _Run(prepared, notes, span, asked).go(interrupts.held)
+    click.get_current_context().exit(code)
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What the command line says beside variants and frames."""
+
+    source: str | None
+    source_settings: tuple[str, ...]
+    settings: tuple[str, ...]
+    sweeps: tuple[str, ...]
+    product: bool
+    lineage: bool
+    seed: int
+    only: tuple[str, ...]
+    csv_path: str | None
+    markdown: str | None
+    json_path: str | None
+    report: str | None
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Option -> file, of those given."""
+        named = {"--csv": self.csv_path, "--markdown": self.markdown, "--json": self.json_path,
+                 "--report": self.report}  # fmt: skip
+        return {k: v for k, v in named.items() if v is not None}
+
+
+def _check_files(options: _Options) -> None:
+    """Refuse what could not be written in the end, before the work."""
+    files = options.files
+    if list(files.values()).count("-") > 1:
+        raise UsageError("only one of --markdown and --json can go to stdout")
+    for option, name in files.items():
+        if name == "-":
+            if option in ("--csv", "--report"):
+                raise UsageError(f"{option} -: name a file; stdout is for --markdown and --json")
+            continue
+        path = Path(name)
+        folder = option == "--csv" and path.suffix.lower() != ".csv"
+        check_target(option, path / "errors.csv" if folder and path.is_dir() else path)
+        if folder and path.exists() and not path.is_dir():
+            raise UsageError(f"{option} {name}: is a file; its name must end in .csv")
+
+
+# -- what to compare -------------------------------------------------------------------------
+
+
+def _prepared(
+    words: Sequence[str], span: Span, options: _Options
+) -> tuple[list[Prepared], list[str]]:
+    from tactile_graph.cli.arguments import assignment, offered, sourced
+    from tactile_graph_compare.variants.one_source import first_source, given_of, on_source
+    from tactile_graph_compare.variants.sweeps import parse_sweep
+    from tactile_graph_compare.variants.variants import prepare
+
+    wanted, recordings = _told_apart(words)
+    if not wanted:
+        raise UsageError(f"name the pipelines to compare, or files of them\n{offered()}")
+    if options.only:
+        wanted = [w if w.only else replace(w, only=options.only) for w in wanted]
+    prepared = prepare(
+        wanted,
+        registry.installed(),
+        dict(assignment("--set", s) for s in options.settings),
+        [parse_sweep(s) for s in options.sweeps],
+        options.product,
+        options.lineage,
+    )
+    base, notes = prepared[0], list[str]()
+    if not recordings and options.source is None:
+        base, notes = first_source(prepared)
+    placed = sourced(base.pipeline, recordings, options.source, options.source_settings, span)
+    assert placed.source is not None
+    step, settings = given_of(placed.source)
+    return on_source(prepared, step, settings), notes
+
+
+def _told_apart(words: Sequence[str]) -> tuple[list[Wanted], list[str]]:
+    """Return the variants and the recordings among the words of a command line."""
+    from tactile_graph_compare.variants.request import parse_wanted
+
+    found = registry.installed()
+    wanted: list[Wanted] = []
+    recordings: list[str] = []
+    for word in words:
+        name = _first(word)
+        if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
+            wanted.append(parse_wanted(word, found))
+        elif Path(word).exists():
+            recordings.append(word)
+        else:
+            raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
+    return wanted, recordings
+
+
+def _first(word: str) -> str:
+    try:
+        return (shlex.split(word) or [""])[0]
+    except ValueError:
+        return word
+
+
+# -- the frames ------------------------------------------------------------------------------
+
+
+class _Run:
+    """One comparison from its first frame to its files."""
+
+    def __init__(
+        self, prepared: list[Prepared], notes: list[str], span: Span, options: _Options
+    ) -> None:
+        from tactile_graph.cli.terminal import console
+        from tactile_graph.steps.injected import Report
+        from tactile_graph_compare.run.session import Session
+
+        self.options = options
+        self.span = span
+        self.notes = notes
+        self.report: Report = Report()
+        self.session: Session = Session(prepared, options.seed)
+        # What is written to stdout for programs owns it; people are then told on stderr.
+        self.people = console(stderr="-" in options.files.values())
+        self.stderr = console(stderr=True)
+
+    def go(self, held: Any) -> int:
+        from tactile_graph.cli.terminal import stdout_for_programs
+
+        with stdout_for_programs("-" in self.options.files.values()):
+            interrupted, error = self._frames(held)
+        with held:
+            if self.session.n:
+                self._close(interrupted)
+            elif error is None and not interrupted:
+                got = self.report.counts["frames"]
+                error = UsageError(f"there is nothing to compare: the source gave {got} frames")
+        if error is not None:
+            raise error
+        return INTERRUPTED if interrupted else 0
+
+    def _frames(self, held: Any) -> tuple[bool, Exception | None]:
+        from tactile_graph.cli.progress import Bar
+        from tactile_graph_compare.run.side_by_side import warmed
+
+        bar = Bar(self.stderr, "compare")
+        source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)
+        frames: Iterator[Frame] = self.span.of(source)
+        try:
+            bar.now(self.span.expected(None))
+            for frame in warmed(self.session, frames):
+                with held:
+                    self.session.add(frame)
+                bar.at(self.session.n, self.span.expected(self.report.n_expected))
+        except KeyboardInterrupt:
+            return True, None
+        except Exception as error:  # a source may raise anything; what was done is shown
+            return False, error
+        finally:
+            bar.stop()
+        return False, None
+
+    # -- the end -----------------------------------------------------------------------------
+
+    def _close(self, interrupted: bool) -> None:
+        from tactile_graph_compare.output.shown import show
+        from tactile_graph_compare.run.summarise import close
+
+        comparison = close(self.session, self.report, interrupted, self.notes, self.span.start)
+        if interrupted:
+            self.people.print("interrupted", style="bold red")
+        try:
+            show(comparison, self.people)
+            for where, what in self.report.troubles[:10]:
+                self.people.print(f"source   {where}: {what}", style="cyan", soft_wrap=True)
+        finally:  # whoever reads along may go away (| head); the files are wanted all the same
+            written = list(self._written(comparison))
+        for name in written:
+            self.people.print(f"wrote {name}", style="dim", soft_wrap=True)
+
+    def _written(self, comparison: Comparison) -> Iterator[str]:
+        """Write the files asked for, and yield their names."""
+        from tactile_graph_compare.output.export import as_json, write_csv
+        from tactile_graph_compare.output.tables import markdown
+
+        options = self.options
+        if options.csv_path is not None:
+            yield from write_csv(comparison, options.csv_path)
+        for name, text in ((options.markdown, markdown), (options.json_path, as_json)):
+            yield from _put(name, text(comparison)) if name is not None else ()
+        if options.report is not None:
+            _report_writer()(comparison, options.report)
+            yield options.report
+
+
+def _put(name: str, text: str) -> Iterator[str]:
+    from tactile_graph.files import write_whole
+
+    if name == "-":
+        sys.stdout.write(text)
+        return
+    write_whole(name, text)
+    yield name
+
+
+def _report_writer() -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module("tactile_graph_compare.report").write_report
+    except ImportError as error:
+        raise UsageError(f"--report: this installation cannot write reports ({error})") from None

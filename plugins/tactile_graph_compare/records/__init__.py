@@ -1,0 +1,1 @@
+"""What a comparison found out, as plain records."""

@@ -1,0 +1,156 @@
+"""``Comparison``: everything a comparison found out, as plain records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph_compare.records.frames import ChosenFrame
+from tactile_graph_compare.records.graph import MergedGraph, Saving, Timeline
+from tactile_graph_compare.records.lineage import Evolution
+from tactile_graph_compare.records.scores import Difference, Score, TimeDifference, Times
+
+
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """One of the pipelines that were compared.
+
+    Parameters
+    ----------
+    label : str
+        What it is called everywhere: its pipeline's name and what was set.
+    number : int
+        From 1, in the order they were named.
+    pipeline : Pipeline
+        As it ran.
+    given : str
+        As it can be given again on a command line.
+    asked : tuple of str
+        The outputs that were asked for.
+    parent : str
+        Label of the variant it evolves from, over any number of steps; empty if none is here.
+    times : Times
+    timeline : Timeline
+    n_ok, n_skipped, n_failed : int
+        Frames in which all outputs came out, some were skipped, some failed.
+    reasons : tuple
+        (``skipped`` or ``failed``, output, origin, reason of the first, number of frames), most
+        frequent first.
+    """
+
+    label: str
+    number: int
+    pipeline: Pipeline
+    given: str
+    asked: tuple[str, ...]
+    parent: str
+    times: Times
+    timeline: Timeline
+    n_ok: int
+    n_skipped: int
+    n_failed: int
+    reasons: tuple[tuple[str, str, str, str, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FrameTable:
+    """The frames everything was run on; a row of every array over frames is one of them."""
+
+    indices: NDArray[np.int64]
+    """Number of each in its source, shape (n_frames,)."""
+    times_s: NDArray[np.float64]
+    """When each was taken; NaN where the source keeps no time, shape (n_frames,)."""
+    labels: tuple[str, ...]
+    n_true: NDArray[np.int64]
+    """True objects in each; -1 where nobody knows, shape (n_frames,)."""
+    reused: NDArray[np.bool_]
+    """Whether it was equal to the one before, so that nothing had to run, shape (n_frames,)."""
+
+    @property
+    def n(self) -> int:
+        """Number of frames."""
+        return len(self.indices)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What a comparison found out.
+
+    Parameters
+    ----------
+    variants : tuple of Variant
+        In the order they were named.
+    frames : FrameTable
+    source : str
+        The source step and what was set of it; ``frames handed in`` where there was none.
+    graph : MergedGraph
+    saving : Saving
+    fixed_us : float
+        Median time per frame outside the nodes, for all variants together.
+    scores : tuple of Score
+        One for each variant and quantity that it gives and the truth knows.
+    differences : tuple of Difference
+        Of every variant but the first, against its parent or else the first, or the first that
+        has the quantity at all.
+    time_differences : tuple of TimeDifference
+        The same for times.
+    lineage : tuple of Evolution
+    chosen : tuple of ChosenFrame
+        In the order of the frames.
+    provenance : mapping
+        How to make it again, as plain data.
+    seconds : float
+        The whole took so long.
+    interrupted : bool
+        Whether it was stopped before the source ended.
+    notes : tuple of str
+        What people should know: assumptions made, sources ignored.
+    """
+
+    variants: tuple[Variant, ...]
+    frames: FrameTable
+    source: str
+    graph: MergedGraph
+    saving: Saving
+    fixed_us: float
+    scores: tuple[Score, ...]
+    differences: tuple[Difference, ...]
+    time_differences: tuple[TimeDifference, ...]
+    lineage: tuple[Evolution, ...]
+    chosen: tuple[ChosenFrame, ...]
+    provenance: Mapping[str, Any]
+    seconds: float
+    interrupted: bool = False
+    notes: tuple[str, ...] = ()
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Labels of the variants, in order."""
+        return tuple(v.label for v in self.variants)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The quantities that at least one variant was scored on, in a fixed order."""
+        from tactile_graph_compare.score.quantities import QUANTITIES
+
+        found = {s.quantity for s in self.scores}
+        return tuple(q for q in QUANTITIES if q in found)
+
+    def variant(self, label: str) -> Variant:
+        """Return the variant of that label."""
+        return next(v for v in self.variants if v.label == label)
+
+    def score(self, variant: str, quantity: str) -> Score | None:
+        """Return a variant's score of a quantity; None if it was not scored on it."""
+        found = (s for s in self.scores if s.variant == variant and s.quantity == quantity)
+        return next(found, None)
+
+    def difference(self, variant: str, quantity: str) -> Difference | None:
+        """Return a variant's difference from its reference; None if there is none."""
+        found = (d for d in self.differences if d.variant == variant and d.quantity == quantity)
+        return next(found, None)

@@ -1,0 +1,83 @@
+"""How the comparison was made, and how to make it again."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from tactile_graph_compare.records.comparison import Comparison
+from tactile_graph_compare.report.markup import Html, join, tag
+from tactile_graph_compare.report.parts import details
+from tactile_graph_compare.variants.request import as_yaml
+
+
+def making(comparison: Comparison) -> Html:
+    """Return the command, versions and source, and the pipelines folded away."""
+    told = comparison.provenance
+    rows = [
+        *(told.get("versions") or {}).items(),
+        *((f"plugins {k}", _plain(v)) for k, v in (told.get("plugins") or {}).items()),
+        ("source", comparison.source),
+        ("frames", comparison.frames.n),
+        ("seed", told.get("seed", "")),
+        ("took", f"{comparison.seconds:.3g} s"),
+    ]
+    body = tag("tbody", (_row(k, v) for k, v in rows))
+    caption = tag("caption", tag("b", "Versions and source"))
+    again = "To make it again:"
+    if not _step(told):
+        again = "The frames were handed in by a program. With a recording of them it is made by:"
+    return join(
+        tag("p", again),
+        tag("pre", tag("code", command(comparison)), class_="command"),
+        details("Versions and source", tag("table", caption, body, class_="data words")),
+        [_variant(label, v) for label, v in (told.get("variants") or {}).items()],
+        details("All of it, as data", tag("pre", _plain(told))),
+    )
+
+
+def _row(name: str, value: object) -> Html:
+    return tag("tr", tag("th", name, scope="row", class_="words"), tag("td", str(value)))
+
+
+def _variant(label: str, told: Mapping[str, Any]) -> Html:
+    return details(f"Pipeline of {label}", tag("pre", _plain(told.get("pipeline", told))))
+
+
+def _plain(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value, indent=2, default=str,
+                                                           ensure_ascii=False)  # fmt: skip
+
+
+def command(comparison: Comparison) -> str:
+    """Return what to type: what was typed, or where nothing was, what amounts to it."""
+    told = comparison.provenance
+    typed = [str(w) for w in told.get("command") or ()]
+    if typed and Path(typed[0]).stem in ("tactile-graph", "__main__") and "compare" in typed:
+        return shlex.join(["tactile-graph", *typed[1:]])
+    words = ["tactile-graph", "compare", *(v.given for v in comparison.variants)]
+    if _step(told):
+        words += ["--source", shlex.quote(_step(told))]
+        for key, value in (told["source"].get("with") or {}).items():
+            if value is not None:
+                words += ["--with", shlex.quote(f"{key}={as_yaml(value)}")]
+        words += ["--frames", _span(told, comparison.frames.n)]
+    else:
+        words.append("RECORDING")
+    words += ["--seed", str(told.get("seed", 0))]
+    return " ".join([*words, "--report", "report.html"])
+
+
+def _step(told: Mapping[str, Any]) -> str:
+    """Return the source step; empty where frames were handed in."""
+    source = told.get("source")
+    return str(source.get("step") or "") if isinstance(source, Mapping) else ""
+
+
+def _span(told: Mapping[str, Any], n: int) -> str:
+    """Return which frames of the source there were, as on a command line."""
+    start = (told.get("frames") or {}).get("from", 0)
+    return f"{start}:{start + n}" if start else str(n)

@@ -1,0 +1,1 @@
+"""The frames through the merged graph, and what each variant alone would have given."""

@@ -1,0 +1,86 @@
+"""Keep some frames whole: a few regular ones, and where each variant is worst; no more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from tactile_graph.engine.result import Result
+from tactile_graph_compare.records.frames import Choice
+
+
+@dataclass
+class _Worst:
+    position: int
+    result: Result
+    error: float
+
+
+@dataclass
+class Keeper:
+    """Chooses frames while they go by; holds a bounded number of results at any time.
+
+    Parameters
+    ----------
+    n_regular : int
+        Frames at even distances. While nobody knows how many there will be, twice as many are
+        held, and every other one dropped when they are too many.
+    most : int
+        Frames kept in all.
+    """
+
+    n_regular: int = 4
+    most: int = 40
+    _regular: dict[int, Result] = field(default_factory=dict, init=False)
+    _stride: int = field(default=1, init=False)
+    _worst: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
+    _silent: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
+
+    def add(self, position: int, result: Result, worst: Mapping[str, Mapping[str, float]]) -> None:
+        """Look at a frame: ``worst`` holds, by variant and quantity, its worst error or NaN."""
+        if self.n_regular and position % self._stride == 0:
+            self._regular[position] = result
+            if len(self._regular) > 2 * self.n_regular:
+                self._stride *= 2
+                self._regular = {p: r for p, r in self._regular.items() if p % self._stride == 0}
+        for variant, errors in worst.items():
+            for quantity, error in errors.items():
+                self._look(position, result, (variant, quantity), error)
+
+    def _look(self, position: int, result: Result, key: tuple[str, str], error: float) -> None:
+        if math.isnan(error):
+            if key not in self._silent:
+                self._silent[key] = _Worst(position, result, error)
+            return
+        known = self._worst.get(key)
+        if error and (known is None or abs(error) > abs(known.error)):
+            self._worst[key] = _Worst(position, result, error)
+
+    def chosen(self) -> list[tuple[int, Result, tuple[Choice, ...]]]:
+        """Return the frames kept, in order, each with why."""
+        choices: dict[int, list[Choice]] = {}
+        results: dict[int, Result] = {}
+
+        def choose(position: int, result: Result, choice: Choice) -> None:
+            if position in choices or len(choices) < self.most:
+                choices.setdefault(position, []).append(choice)
+                results[position] = result
+
+        for position in _spread(sorted(self._regular), self.n_regular):
+            choose(position, self._regular[position], Choice("regular"))
+        for (variant, quantity), at in self._worst.items():
+            choose(at.position, at.result, Choice("worst", variant, quantity, at.error))
+        for (variant, quantity), at in self._silent.items():
+            choose(at.position, at.result, Choice("no answer", variant, quantity))
+        return [(p, results[p], tuple(choices[p])) for p in sorted(choices)]
+
+
+def _spread(positions: list[int], most: int) -> list[int]:
+    """Return at most so many of the positions, the first and the last among them."""
+    if len(positions) <= most:
+        return positions
+    if most == 1:
+        return positions[:1]
+    step = (len(positions) - 1) / (most - 1)
+    return [positions[round(i * step)] for i in range(most)]

@@ -1,0 +1,208 @@
+"""Hold one variant's answers against the truth, frame by frame."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from tactile_graph.engine.outcome import NO_VALUE, Skipped
+from tactile_graph.engine.truth import shape_kind
+from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.wires.frame import Frame, TrueObject
+from tactile_graph.wires.shapes import Ellipse, Rectangle, printed_angle_deg
+from tactile_graph_compare.score.answers import OF_SHAPES, Answers, Places
+from tactile_graph_compare.score.pairing import paired
+
+GATE_CM = 2.0
+"""What lies farther from any true object is no answer for one, where several are looked for."""
+NOBODY = -1
+"""The object of a target that is the whole frame, or of which nobody can say which was meant."""
+
+Outcomes = Callable[[Ref], Any]
+
+
+@dataclass
+class Targets:
+    """The targets of one quantity so far: what there was to answer, and how far the answer is off.
+
+    ``offsets`` are (x, y) of centres, in cm.
+    """
+
+    positions: list[int] = field(default_factory=list)
+    objects: list[int] = field(default_factory=list)
+    errors: list[float] = field(default_factory=list)
+    offsets: list[tuple[float, float]] = field(default_factory=list)
+    n_extra: int = 0
+
+    def add(self, position: int, number: int, error: float = math.nan) -> None:
+        """Enter a target; without an error it has no answer."""
+        self.positions.append(position)
+        self.objects.append(number)
+        self.errors.append(error)
+
+
+class Scorer:
+    """Scores one variant.
+
+    Parameters
+    ----------
+    answers : Answers
+    gate_cm : float
+        For outputs that are lists.
+    """
+
+    def __init__(self, answers: Answers, gate_cm: float = GATE_CM) -> None:
+        self.answers = answers
+        self.gate_cm = gate_cm
+        self.targets: dict[str, Targets] = defaultdict(Targets)
+
+    def add(self, position: int, frame: Frame, outcomes: Outcomes) -> dict[str, float]:
+        """Enter a frame; return its worst error of each quantity, NaN where something is missing.
+
+        Parameters
+        ----------
+        position : int
+            Row of the frame.
+        frame : Frame
+        outcomes : callable
+            Gives the outcome at a reference of the variant.
+        """
+        if frame.truth is None:
+            return {}
+        before = {name: len(t.errors) for name, t in self.targets.items()}
+        self._places(position, frame.truth, outcomes)
+        self._count(position, frame.truth, outcomes)
+        self._identity(position, frame.truth, outcomes)
+        return {
+            name: _worst(new)
+            for name, t in self.targets.items()
+            if (new := t.errors[before.get(name, 0) :])
+        }
+
+    # -- where things are ----------------------------------------------------------------------
+
+    def _places(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
+        if not self.answers.places:
+            return
+        place, value = self._answering(outcomes)
+        if value.__class__ in NO_VALUE:
+            meant = range(len(truth)) if place.many or len(truth) == 1 else [NOBODY] * bool(truth)
+            for number in meant:
+                kinds = truth if number == NOBODY else truth[number : number + 1]
+                self._missing(position, number, {q for t in kinds for q in self._of(t)})
+            return
+        things = [place.thing(item) for item in place.items(value)]
+        pairs = self._many(truth, things) if place.many else self._single(truth, things)
+        for number, thing in pairs:
+            self._compare(position, number, truth[number], thing)
+        if place.many:
+            for number in sorted(set(range(len(truth))) - {n for n, _ in pairs}):
+                self._missing(position, number, set(self._of(truth[number])))
+        self.targets["centre"].n_extra += len(things) - len(pairs)
+
+    def _answering(self, outcomes: Outcomes) -> tuple[Places, Any]:
+        """Return the first output that was not skipped; a failed one has no other stand in."""
+        for place in self.answers.places:
+            value = outcomes(place.ref)
+            if value.__class__ is not Skipped:
+                return place, value
+        place = self.answers.places[0]
+        return place, outcomes(place.ref)
+
+    def _single(self, truth: tuple[TrueObject, ...], things: list[Any]) -> list[tuple[int, Any]]:
+        """Return the true object an only answer is nearest to, one of its kind before others."""
+        if not truth:
+            return []
+        (thing,) = things
+        kind = shape_kind(type(thing))
+        alike = [i for i, t in enumerate(truth) if kind and isinstance(t.shape, kind)]
+        near = min(alike or range(len(truth)), key=lambda i: _off_cm(thing, truth[i].shape))
+        return [(near, thing)]
+
+    def _many(self, truth: tuple[TrueObject, ...], things: list[Any]) -> list[tuple[int, Any]]:
+        off = np.array([[_off_cm(g, t.shape) for g in things] for t in truth])
+        pairs = paired(off.reshape(len(truth), len(things)), self.gate_cm)
+        return [(i, things[j]) for i, j in pairs]
+
+    def _of(self, true: TrueObject) -> list[str]:
+        """Return the quantities of a true object that the variant can answer."""
+        kind = shape_kind(type(true.shape))
+        mine = {q for p in self.answers.places for q in p.quantities}
+        kinds = {k for p in self.answers.places for k in p.kinds}
+        of_kind = OF_SHAPES.get(kind, ("centre",)) if kind else ("centre",)
+        return [q for q in of_kind if q in mine and (q in ("centre", "angle") or kind in kinds)]
+
+    def _missing(self, position: int, number: int, quantities: set[str]) -> None:
+        for name in sorted(quantities):
+            self.targets[name].add(position, number)
+
+    def _compare(self, position: int, number: int, true: TrueObject, thing: Any) -> None:
+        errors = _errors(thing, true.shape)
+        for name in self._of(true):
+            self.targets[name].add(position, number, errors.get(name, math.nan))
+        offset = (thing.x_cm - true.shape.x_cm, thing.y_cm - true.shape.y_cm)
+        self.targets["centre"].offsets.append(offset)
+
+    # -- how many, and which --------------------------------------------------------------------
+
+    def _count(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
+        if not self.answers.counts:
+            return
+        for ref, count in self.answers.counts:
+            value = outcomes(ref)
+            if value.__class__ not in NO_VALUE:
+                off = float(count(value) - len(truth))
+                self.targets["count"].add(position, NOBODY, off)
+                return
+        if truth:
+            self.targets["count"].add(position, NOBODY)
+
+    def _identity(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
+        names = {t.name for t in truth} - {""}
+        if not self.answers.identities:
+            return
+        values = [outcomes(ref) for ref in self.answers.identities]
+        value = next((v for v in values if v.__class__ is not Skipped), values[0])
+        said = "" if value.__class__ in NO_VALUE or not value.known else value.name
+        if names:
+            error = float(said not in names) if said else math.nan
+            self.targets["identity"].add(position, NOBODY, error)
+        elif said and not truth:
+            self.targets["identity"].n_extra += 1
+
+
+def _worst(errors: list[float]) -> float:
+    return max(errors, key=lambda e: math.inf if math.isnan(e) else abs(e))
+
+
+def _off_cm(a: Any, b: Any) -> float:
+    return math.hypot(a.x_cm - b.x_cm, a.y_cm - b.y_cm)
+
+
+def _errors(found: Any, true: Any) -> dict[str, float]:
+    """Return how far each quantity is off, found less true, of those that both have."""
+    errors = {"centre": _off_cm(found, true)}
+    if isinstance(true, Rectangle | Ellipse) and hasattr(found, "angle_deg"):
+        # An axis has no head: 179 degrees off is 1 degree off.
+        errors["angle"] = printed_angle_deg(math.radians(found.angle_deg - true.angle_deg))
+    kind = shape_kind(type(found))
+    if kind is None or not isinstance(true, kind):
+        return errors
+    for quantity, name, by in _MEASURES.get(kind.__name__, ()):
+        errors[quantity] = by * (float(getattr(found, name)) - float(getattr(true, name)))
+    return errors
+
+
+_MEASURES: dict[str, tuple[tuple[str, str, float], ...]] = {
+    "Circle": (("radius", "radius_cm", 1.0),),
+    "Rectangle": (("length", "length_cm", 1.0), ("breadth", "breadth_cm", 1.0)),
+    "Ellipse": (("length", "semi_major_cm", 2.0), ("breadth", "semi_minor_cm", 2.0)),
+    "Polygon": (("area", "area_cm2", 1.0),),
+}
+"""Kind of shape -> quantity, its field, and by what that is multiplied: an ellipse's length is its
+whole major axis."""

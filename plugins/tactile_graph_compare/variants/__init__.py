@@ -1,0 +1,1 @@
+"""What is compared: pipelines, settings, sweeps, lineages, merged into one graph."""

@@ -1,0 +1,221 @@
+"""From what is wanted to pipelines with labels: settings, sweeps, parents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.errors import PipelineError, UsageError, did_you_mean
+from tactile_graph.pipeline.load import load
+from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.plugins.registry import Registry
+from tactile_graph_compare.variants.request import Wanted, as_yaml, spelled
+from tactile_graph_compare.variants.sweeps import Sweep, combinations
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A variant ready to run: its pipeline, its label, and how to ask for it again."""
+
+    label: str
+    pipeline: Pipeline
+    asked: tuple[str, ...]
+    given: str
+    parent: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class _Loaded:
+    wanted: Wanted
+    pipeline: Pipeline
+    settings: Mapping[str, Any]
+    """All that was set of it: its own, the common ones, those of sweeps."""
+
+
+def prepare(
+    wanted: Sequence[Wanted],
+    registry: Registry,
+    settings: Mapping[str, Any] | None = None,
+    sweeps: Sequence[Sweep] = (),
+    crossed: bool = False,
+    lineage: bool = False,
+) -> list[Prepared]:
+    """Return the variants, each with its label.
+
+    Parameters
+    ----------
+    wanted : sequence of Wanted
+    registry : Registry
+    settings : mapping, optional
+        For every pipeline that has the node and the setting.
+    sweeps : sequence of Sweep
+        Likewise; each pipeline that has one becomes as many variants.
+    crossed : bool
+        Whether several sweeps are crossed with one another instead of going side by side.
+    lineage : bool
+        Whether the pipelines that those wanted evolved from are compared too, before them.
+
+    Raises
+    ------
+    UsageError, PipelineError
+        If something does not exist, is not allowed, or is named twice.
+    """
+    if not wanted:
+        raise UsageError("name the pipelines to compare")
+    loaded = [_load(w, registry) for w in wanted]
+    if lineage:
+        loaded = list(_with_parents(loaded, registry))
+    common = settings or {}
+    _check_names([*common], [x.pipeline for x in loaded], "--set")
+    swept = [x.pipeline for x in loaded if x.wanted.swept]
+    _check_names([s.name for s in sweeps], swept, "--sweep")
+    loaded = [_set(x, {k: v for k, v in common.items() if has_setting(x.pipeline, k)})
+              for x in loaded]  # fmt: skip
+    everything = [y for x in loaded for y in _swept(x, sweeps, crossed)]
+    return _with_parent_labels([_prepared(x, everything) for x in everything], everything)
+
+
+def _load(wanted: Wanted, registry: Registry) -> _Loaded:
+    name = wanted.name
+    pipeline = name if isinstance(name, Pipeline) else load(name, registry)
+    return _set(_Loaded(wanted, pipeline, {}), wanted.settings)
+
+
+def _set(loaded: _Loaded, settings: Mapping[str, Any]) -> _Loaded:
+    if not settings:
+        return loaded
+    changed = loaded.pipeline.with_settings(settings)
+    return replace(loaded, pipeline=changed, settings={**loaded.settings, **settings})
+
+
+def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Loaded]:
+    """Yield the variants, each behind those it evolved from that nobody named."""
+    names = {x.pipeline.name for x in loaded}
+    for one in loaded:
+        line: list[_Loaded] = []
+        child = one.pipeline
+        while child.evolves:
+            beside = Path(child.file).parent / child.evolves
+            is_file = child.evolves.endswith((".yaml", ".yml"))
+            parent = _load(Wanted(beside if is_file else child.evolves, swept=False), registry)
+            if parent.pipeline.name in names:
+                break
+            names.add(parent.pipeline.name)
+            line.insert(0, parent)
+            child = parent.pipeline
+        yield from line
+        yield one
+
+
+def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[_Loaded]:
+    own = [s for s in sweeps if loaded.wanted.swept and has_setting(loaded.pipeline, s.name)]
+    if not own:
+        yield loaded
+        return
+    for settings in combinations(own, crossed):
+        yield _set(loaded, settings)
+
+
+# -- settings by name ------------------------------------------------------------------------
+
+
+def setting_names(pipeline: Pipeline) -> Iterator[str]:
+    """Yield every ``node.setting`` of a pipeline, those of embedded ones included."""
+    for name, node in pipeline.nodes.items():
+        if node.signature is not None:
+            yield from (f"{name}.{s.name}" for s in node.signature.settings)
+        if node.inner is not None:
+            yield from (f"{name}/{inner}" for inner in setting_names(node.inner))
+
+
+def has_setting(pipeline: Pipeline, name: str) -> bool:
+    """Return whether a pipeline has the node and the setting of ``node.setting``."""
+    return name in set(setting_names(pipeline))
+
+
+def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: str) -> None:
+    """Check that each setting is one of some pipeline's."""
+    known = {n for p in pipelines for n in setting_names(p)}
+    for name in names:
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise UsageError(f"{option} {name}: none of the pipelines has it{hint}")
+
+
+# -- labels ----------------------------------------------------------------------------------
+
+
+def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> Prepared:
+    pipeline, only = one.pipeline, one.wanted.only
+    for name in only:
+        pipeline.ref(name)  # says what is wrong with it
+    named = one.wanted.name
+    given = spelled(pipeline.name if isinstance(named, Pipeline) else str(named),
+                    one.settings, only)  # fmt: skip
+    label = _label(one)
+    if sum(_label(other) == label for other in everything) > 1:
+        label = given.strip("'")
+    asked = only or tuple(pipeline.outputs)
+    return Prepared(label, pipeline, asked, given)
+
+
+def _label(one: _Loaded) -> str:
+    """Return the pipeline's name and what was set, settings by their bare names if that will do."""
+    bare = [k.rpartition(".")[2] for k in one.settings]
+    words = [one.pipeline.name]
+    for key, short in zip(one.settings, bare, strict=True):
+        words.append(f"{short if bare.count(short) == 1 else key}={_short(one.settings[key])}")
+    if one.wanted.only:
+        words.append("only " + ", ".join(one.wanted.only))
+    return " ".join(words)
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else as_yaml(value)
+
+
+def _with_parent_labels(prepared: Sequence[Prepared], loaded: Sequence[_Loaded]) -> list[Prepared]:
+    seen: set[str] = set()
+    found = []
+    for one, its in zip(prepared, loaded, strict=True):
+        if one.label in seen:
+            raise UsageError(f"the same variant is named twice: {one.label}")
+        seen.add(one.label)
+        parent = _parent(its, loaded)
+        label = "" if parent is None else prepared[parent].label
+        found.append(replace(one, parent=label))
+    return found
+
+
+def _parent(one: _Loaded, everything: Sequence[_Loaded]) -> int | None:
+    """Return which variant it evolves from; of several, one with as many equal settings as can be.
+
+    Where the parent itself is not compared, its own parent is taken, and so on.
+    """
+    ancestor = _bare(one.pipeline.evolves)
+    met = {one.pipeline.name}
+    while ancestor and ancestor not in met:
+        met.add(ancestor)
+        candidates = [i for i, x in enumerate(everything) if x.pipeline.name == ancestor]
+        if candidates:
+            return max(candidates, key=lambda i: (_alike(everything[i], one), -i))
+        ancestor = _evolves_of(ancestor, one.pipeline)
+    return None
+
+
+def _alike(a: _Loaded, b: _Loaded) -> int:
+    return sum(k in b.settings and plain(b.settings[k]) == plain(v) for k, v in a.settings.items())
+
+
+def _bare(name: str) -> str:
+    return Path(name).stem if name.endswith((".yaml", ".yml")) else name
+
+
+def _evolves_of(name: str, child: Pipeline) -> str:
+    """Return what a pipeline that is not compared evolved from."""
+    try:
+        return _bare(load(name, child.registry).evolves)
+    except (UsageError, PipelineError):
+        return ""

@@ -1,0 +1,1 @@
+"""The separate contacts of a footprint, and what is done to them."""

@@ -1,0 +1,1 @@
+"""Images cut down, smoothed and cut into finer cells."""

@@ -1,0 +1,1 @@
+"""Masks changed cell by cell: erosion, dilation and what is made of them."""

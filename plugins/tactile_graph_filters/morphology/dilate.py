@@ -1,0 +1,41 @@
+"""Step ``dilate``: turn on the cells around which the structuring element hits the mask."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from tactile_graph.steps.rules import Grid
+from tactile_graph.wires import Mask
+from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
+from tactile_graph_filters.morphology.planes import make_plan, sweep
+
+
+class Dilate:
+    """Turn on the cells around which the structuring element hits the mask.
+
+    Parameters
+    ----------
+    element : str or list of list of int
+        The structuring element, as `erode` takes it.
+    border : bool
+        Whether cells outside the mask count as on; in the thesis they do not.
+
+    Notes
+    -----
+    Thesis section 3.1.3, equation 3.4 (Jain 1989): the cells x for which the element, put with
+    its centre on x, has a cell in common with the mask. The element is not turned round, which
+    only matters for one that is not symmetric; `open` and `close` turn it for theirs.
+    """
+
+    stateless = True
+
+    def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
+        self._plan = make_plan(parse_element(element), dilate=True, border=border)
+
+    def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
+        """Return the dilated mask."""
+        out = np.empty(mask.values.shape, np.bool_)
+        count = sweep.call(mask.values, self._plan, out)
+        return Mask(out, mask.pitch_cm, mask.origin_cm, count)

@@ -1,0 +1,42 @@
+"""Step ``erode``: keep the cells around which the whole structuring element is on."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from tactile_graph.steps.rules import Grid
+from tactile_graph.wires import Mask
+from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
+from tactile_graph_filters.morphology.planes import make_plan, sweep
+
+
+class Erode:
+    """Keep the cells around which the whole structuring element is on.
+
+    Parameters
+    ----------
+    element : str or list of list of int
+        The structuring element: ``cross3`` (the thesis' #1), ``disc5``, ``disc7``, ``square3``,
+        ``square21``, any odd ``cross:N``, ``disc:N``, ``square:N``, or rows of 0 and 1.
+    border : bool
+        Whether cells outside the mask count as on. As in the thesis they do not, so that what
+        reaches the edge of the pad is eroded from there too.
+
+    Notes
+    -----
+    Thesis section 3.1.3, equation 3.3 (Jain 1989): the cells x for which the element, put with
+    its centre on x, lies in the mask.
+    """
+
+    stateless = True
+
+    def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
+        self._plan = make_plan(parse_element(element), border=border)
+
+    def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
+        """Return the eroded mask."""
+        out = np.empty(mask.values.shape, np.bool_)
+        count = sweep.call(mask.values, self._plan, out)
+        return Mask(out, mask.pitch_cm, mask.origin_cm, count)

@@ -1,0 +1,1 @@
+"""One contact for each object, touching or torn apart by voids."""

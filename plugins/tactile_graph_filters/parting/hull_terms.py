@@ -1,0 +1,112 @@
+"""What a set of cells and its hull come to, for the choice between one object and two."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_filters.parting.filled_hull import RIM_CELLS
+
+Reals: TypeAlias = NDArray[np.float64]
+Owners: TypeAlias = NDArray[np.int32]
+Flags: TypeAlias = NDArray[np.bool_]
+
+CELLS, LOGS, AREA, NOTCHES, WEAK, LONG = 0, 1, 2, 3, 4, 5
+"""Places in the terms; see `hull_terms`."""
+TERMS = 6
+FLOOR = 2e-3
+"""Readings below this share of the weak one count as it, where logarithms are taken."""
+
+
+@compiled_as_is
+def hull_terms(
+    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, floor: float
+) -> Reals:
+    """Return the terms of the cells that ``one`` or ``two`` owns, taken together, shape (6,).
+
+    They are: number of cells; sum of the logarithms of their readings; area of their hull in
+    cells, from centre to centre; cells that are off on the hull's rim; what cells deep inside
+    lack; half the logarithm of the ratio of the axes of their second moments. The last four are
+    0 for fewer than three cells.
+
+    ``owner`` holds each cell's group, 0 where it is off; ``one`` and ``two`` may be the same;
+    ``values`` and ``known`` are those of `misfit`. Below the share ``weak`` of the mean reading
+    a cell deep inside counts as partly void; ``floor`` is the least reading whose logarithm is
+    taken, > 0.
+    """
+    rows, columns = owner.shape
+    terms = np.zeros(TERMS)
+    x, y = np.empty(2 * rows), np.empty(2 * rows)
+    ends = 0
+    total = sum_x = sum_y = sum_xx = sum_xy = sum_yy = 0.0
+    for i in range(rows):
+        left, right = columns, -1
+        for j in range(columns):
+            if owner[i, j] == one or owner[i, j] == two:
+                left, right = min(left, j), j
+                terms[CELLS] += 1.0
+                terms[LOGS] += np.log(max(values[i, j], floor))
+                total += values[i, j]
+                sum_x, sum_y = sum_x + j, sum_y + i
+                sum_xx, sum_xy, sum_yy = sum_xx + j * j, sum_xy + i * j, sum_yy + i * i
+        if right >= 0:
+            x[ends], y[ends] = left, i
+            ends += 1
+            if right > left:
+                x[ends], y[ends] = right, i
+                ends += 1
+    n = terms[CELLS]
+    if n < 3:
+        return terms
+    # A cell spreads over its own width: 1/12 each way.
+    xx, yy = sum_xx / n - (sum_x / n) ** 2 + 1 / 12, sum_yy / n - (sum_y / n) ** 2 + 1 / 12
+    xy = sum_xy / n - sum_x * sum_y / n**2
+    half, root = 0.5 * (xx + yy), np.sqrt(0.25 * (xx - yy) ** 2 + xy * xy)
+    terms[LONG] = 0.5 * np.log((half + root) / max(half - root, 1e-6))
+    hull_x, hull_y, m = hull_of(x, y, ends)
+    for k in range(m - 1):
+        terms[AREA] += 0.5 * (hull_x[k] * hull_y[k + 1] - hull_x[k + 1] * hull_y[k])
+    terms[AREA] = abs(terms[AREA])
+    limit = weak * total / n
+    for i in range(rows):
+        for j in range(columns):
+            mine = owner[i, j] == one or owner[i, j] == two
+            if mine:
+                if values[i, j] >= limit:
+                    continue
+            elif owner[i, j] > 0 or not known[i, j]:
+                continue
+            depth = np.inf
+            for k in range(m - 1):
+                x0, y0 = hull_x[k], hull_y[k]
+                dx, dy = hull_x[k + 1] - x0, hull_y[k + 1] - y0
+                depth = min(depth, (dx * (i - y0) - dy * (j - x0)) / np.sqrt(dx * dx + dy * dy))
+            if mine and depth >= RIM_CELLS:
+                terms[WEAK] += 1.0 - values[i, j] / limit
+            elif not mine and -1e-9 <= depth < RIM_CELLS:
+                terms[NOTCHES] += 1.0
+    return terms
+
+
+@compiled_as_is
+def hull_of(x: Reals, y: Reals, ends: int) -> tuple[Reals, Reals, int]:
+    """Return the closed hull of the first and last cell of each row, and its number of points.
+
+    ``x`` and ``y`` hold columns and rows of the ``ends``, row by row, from left to right.
+    """
+    hull_x, hull_y = np.empty(2 * ends + 2), np.empty(2 * ends + 2)
+    m, floor = 0, 2
+    for step in range(2 * ends - 1):
+        k = step if step < ends else 2 * ends - 2 - step
+        if step == ends:
+            floor = m + 1
+        while m >= floor and (hull_x[m - 1] - hull_x[m - 2]) * (y[k] - hull_y[m - 2]) <= (
+            hull_y[m - 1] - hull_y[m - 2]
+        ) * (x[k] - hull_x[m - 2]):
+            m -= 1
+        hull_x[m], hull_y[m] = x[k], y[k]
+        m += 1
+    return hull_x, hull_y, m

@@ -1,0 +1,106 @@
+"""How much more likely two sets of cells are two objects than one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_filters.parting.basin_groups import DIAGONAL
+from tactile_graph_filters.parting.hull_terms import (
+    AREA,
+    CELLS,
+    LOGS,
+    LONG,
+    NOTCHES,
+    WEAK,
+    Flags,
+    Owners,
+    Reals,
+    hull_terms,
+)
+
+NAMES = (
+    "constant", "hull gap", "notches", "weak cells", "seam", "seam's readings", "length",
+    "inverse of fewer cells", "log of fewer cells", "log of all cells",
+)  # fmt: skip
+"""Of the terms in `cut_terms`."""
+WEIGHTS = np.array([3.68, 3.08, 2.44, 9.55, -1.42, -0.659, -3.24, -22.6, -1.84, -0.211])
+"""What each one weighs: fitted by logistic regression to the best cuts of single objects and of
+touching pairs, simulated on the thesis' pad; ``benchmarks/split_weights.py --fit`` does it anew."""
+NO_SEAM = -1.0
+"""Taken for the seam's logarithm where the two do not touch."""
+
+
+@compiled_as_is
+def log_odds(
+    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
+    floor: float, both: Reals,
+) -> float:  # fmt: skip
+    """Return the log odds that the cells of ``one`` and of ``two`` are two objects.
+
+    What speaks for two: the hull of both is larger than their own hulls, off cells on its rim
+    and weak ones within it vanish with a cut, the seam between them is short and its readings
+    are low, neither is long or small.
+
+    ``both`` are the terms of the two together; from the reading ``full`` on a pair of cells in
+    contact counts fully; for the others see `hull_terms`. Nobody else's cells matter. Of the
+    best cut there is, the result is a log odds; of any cut, a score.
+    """
+    terms = cut_terms(owner, one, two, values, known, weak, full, floor, both)
+    odds = 0.0
+    for k in range(len(terms)):
+        odds += WEIGHTS[k] * terms[k]
+    return odds
+
+
+@compiled_as_is
+def cut_terms(
+    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
+    floor: float, both: Reals,
+) -> Reals:  # fmt: skip
+    """Return what `log_odds` weighs, shape (10,), in the order of `NAMES`."""
+    a = hull_terms(owner, one, one, values, known, weak, floor)
+    b = hull_terms(owner, two, two, values, known, weak, floor)
+    length, on_seam, logs = seam(owner, one, two, values, full, floor)
+    n = both[CELLS]
+    fewer, root = min(a[CELLS], b[CELLS]), np.sqrt(n)
+    terms = np.ones(10)
+    terms[1] = (both[AREA] - a[AREA] - b[AREA]) / root
+    terms[2] = (both[NOTCHES] - a[NOTCHES] - b[NOTCHES]) / root
+    terms[3] = (both[WEAK] - a[WEAK] - b[WEAK]) / root
+    terms[4] = length / root
+    terms[5] = logs / on_seam - both[LOGS] / n if on_seam > 0 else NO_SEAM
+    terms[6] = max(a[LONG], b[LONG])
+    terms[7] = 1.0 / fewer
+    terms[8] = np.log(fewer)
+    terms[9] = np.log(n)
+    return terms
+
+
+@compiled_as_is
+def seam(
+    owner: Owners, one: int, two: int, values: Reals, full: float, floor: float
+) -> tuple[float, float, float]:
+    """Return length, number of cells, and sum of their readings' logarithms along the seam."""
+    rows, columns = owner.shape
+    length = cells = logs = 0.0
+    for i in range(rows):
+        for j in range(columns):
+            mine = owner[i, j]
+            if mine != one and mine != two:
+                continue
+            other = two if mine == one else one
+            on_seam = False
+            for k in range(max(0, i - 1), min(rows, i + 2)):
+                for m in range(max(0, j - 1), min(columns, j + 2)):
+                    if owner[k, m] != other:
+                        continue
+                    on_seam = True
+                    if mine == one:
+                        lower = min(values[i, j], values[k, m])
+                        weight = 1.0 if k == i or m == j else DIAGONAL
+                        length += weight * (min(1.0, lower / full) if full > 0 else 1.0)
+            if on_seam:
+                cells += 1.0
+                logs += np.log(max(values[i, j], floor))
+    return length, cells, logs

@@ -1,0 +1,98 @@
+"""Step ``tare``: readings above what the empty pad reads, followed as that drifts."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+from annotated_types import Ge, Gt, Le
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph.steps.injected import TimeGap
+from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.wires import Image
+from tactile_graph_filters.morphology.elements import parse_element
+from tactile_graph_filters.morphology.planes import make_plan, sweep
+from tactile_graph_filters.nan import all_finite, refuse_nan
+
+
+class Tare:
+    """Return the readings above the baseline that the empty pad showed.
+
+    Parameters
+    ----------
+    n_frames : int
+        From how many frames at the start, taken of the empty pad, the baseline is made: the
+        median of each cell. While they come in, it is that of the frames so far.
+    drift_s : float, optional
+        Time in which the baseline of an untouched cell comes to 63 % of the way to its reading;
+        without it the baseline stays.
+    touched : float
+        From which reading above the baseline on, in the image's unit, a cell is touched. The
+        baseline of touched cells and of their eight neighbours is frozen, so that a resting
+        object is not eaten by it.
+    frame_s : float
+        What a frame lasts where the source keeps no time.
+    clip : bool
+        Whether readings below the baseline are returned as 0.
+
+    Notes
+    -----
+    State: the baseline. A skipped step keeps it, and drifts by the true time when it next runs.
+    """
+
+    def __init__(
+        self,
+        *,
+        n_frames: Annotated[int, Ge(1), Le(1000)] = 30,
+        drift_s: Annotated[float, Gt(0)] | None = None,
+        touched: Annotated[float, Gt(0)] = 25.0,
+        frame_s: Annotated[float, Gt(0)] = 0.05,
+        clip: bool = False,
+    ) -> None:
+        self._n_frames, self._drift_s, self._frame_s = n_frames, drift_s, frame_s
+        self._touched, self._clip = touched, clip
+        self._empty: list[NDArray[Any]] = []
+        self._baseline: NDArray[np.float64] = np.zeros((0, 0))
+        self._around = make_plan(parse_element("square3"), dilate=True)
+
+    def __call__(
+        self, image: Image, *, gap: TimeGap = None
+    ) -> Annotated[Image, Quantity.like("image"), Grid.like("image")]:
+        """Return the image less the baseline.
+
+        Raises
+        ------
+        DataError
+            If a valid cell holds NaN or infinity, or the shape changed since the first frame.
+        """
+        if not all_finite(image.values):
+            refuse_nan(image, infinite=True)
+        if self._baseline.size and self._baseline.shape != image.shape:
+            raise DataError(
+                "image",
+                f"must keep its shape while it is tared, got {image.shape}"
+                f" after {self._baseline.shape}",
+            )
+        readings = image.filled(0.0)
+        if len(self._empty) < self._n_frames:
+            self._empty.append(readings)
+            self._baseline = np.median(np.stack(self._empty), axis=0)
+        elif self._drift_s is not None:
+            self._drift(readings, gap)
+        above = readings - self._baseline
+        if self._clip:
+            np.maximum(above, 0.0, out=above)
+        if image.valid is not None:
+            above[~image.valid] = 0.0
+        return image.with_values(above)
+
+    def _drift(self, readings: NDArray[np.float64], gap: float | None) -> None:
+        assert self._drift_s is not None
+        above = readings - self._baseline
+        frozen = np.empty(above.shape, np.bool_)
+        sweep(above >= self._touched, self._around, frozen)
+        share = -math.expm1(-max(self._frame_s if gap is None else gap, 0.0) / self._drift_s)
+        self._baseline = self._baseline + np.where(frozen, 0.0, share * above)

@@ -1,0 +1,1 @@
+"""The cells that are touched: levels, told or found."""

@@ -1,0 +1,1 @@
+"""Circles fitted to points and loads."""

@@ -1,0 +1,43 @@
+"""``fit_circle``: the circle nearest to points, by geometric least squares."""
+
+from __future__ import annotations
+
+from tactile_graph.wires import Points
+from tactile_graph_fitters.circle.circle_outcome import circle_from
+from tactile_graph_fitters.circle.fitted_circle import FittedCircle
+from tactile_graph_fitters.circle.geometric import geometric_fit
+
+
+def fit_circle(points: Points) -> FittedCircle:
+    """Return the circle with the least sum of squared distances from the points.
+
+    Parameters
+    ----------
+    points : Points
+        At least 3 that are not on one line.
+
+    Returns
+    -------
+    FittedCircle
+
+    Raises
+    ------
+    Degenerate
+        If there are fewer than 3 distinct points, if all are on one line (to within rounding, or
+        because a line fits noisy points as well as any circle does), if some are not finite, or
+        if no minimum is found.
+
+    Notes
+    -----
+    Minimises sum (d - R)**2 over centre and radius, d being the distances of the points from the
+    centre (thesis equations 4.3 and B.3). With noise of standard deviation s the radius comes
+    out too large by about s**2 / (2 R) on a full circle and by more on a short arc; the centre
+    has no bias on a full circle. Best radius for a given centre is the mean of d, so two unknowns
+    are left; Levenberg and Marquardt's iteration with the exact second derivatives starts from
+    the hyper fit. Source: N. Chernov 2010, Circular and Linear Regression, chapter 4; G. Taubin
+    1991, 10.1109/34.103273, and the sources of `fit_circle_hyper` for the start.
+
+    Points that are centres of boundary cells lie half a cell inside the outline: so does the
+    circle.
+    """
+    return circle_from(points.xy_cm, geometric_fit.call)

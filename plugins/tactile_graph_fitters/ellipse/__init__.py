@@ -1,0 +1,1 @@
+"""Ellipses fitted to points."""

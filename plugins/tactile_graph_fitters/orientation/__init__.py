@@ -1,0 +1,1 @@
+"""The main axis of a footprint, and what is turned about it."""

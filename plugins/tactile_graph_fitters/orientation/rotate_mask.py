@@ -1,0 +1,120 @@
+"""``rotate_mask``: a mask turned about a footprint's centre, cell by cell and rounded."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Mask
+from tactile_graph_fitters.orientation.orientation import Orientation
+
+
+def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
+    """Return the mask turned about the axis' centre so that the axis lies along x.
+
+    Parameters
+    ----------
+    mask : Mask
+        The finer the better: each cell may move by half a cell both ways.
+    axis : Orientation
+        Its centre stays where it is; as seen, everything turns clockwise by its angle.
+
+    Returns
+    -------
+    Mask
+        Of the same pitch, just large enough for the cells that are on, one of its cells centred
+        on the axis' centre. It is in pad coordinates but for the turn; what is found in it is
+        turned back with the same ``axis``, as `fit_ellipse_origin` does.
+
+    Raises
+    ------
+    Degenerate
+        If no cell is on.
+
+    Notes
+    -----
+    Thesis 4.3.8, figures 4.30 and 4.31: positions less the centroid are turned and rounded to
+    whole cells. Some cells are hit by two, so that up to about a sixth inside stay void; `close`
+    with ``cross3`` fills them.
+    """
+    (x, y), (px, py) = mask.origin_cm, mask.pitch_cm
+    values, left, top = rotated(
+        np.ascontiguousarray(mask.values),
+        (axis.x_cm - x) / px - 0.5,
+        (axis.y_cm - y) / py - 0.5,
+        math.cos(axis.angle_rad),
+        math.sin(axis.angle_rad),
+        px / py,
+    )
+    if values.size == 0:
+        raise Degenerate("no cell is on: nothing to turn")
+    return Mask(
+        values, mask.pitch_cm, (axis.x_cm + (left - 0.5) * px, axis.y_cm + (top - 0.5) * py)
+    )
+
+
+Rotated = tuple[NDArray[np.bool_], int, int]
+
+
+def _rotated(
+    values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
+) -> Rotated:
+    """Return the turned cells and the place of the first, in cells right and down of the centre.
+
+    ``column`` and ``row`` are those of the centre, ``aspect`` the pitch along x over that along y.
+    """
+    rows, columns = np.nonzero(values)
+    if len(rows) == 0:
+        return np.zeros((0, 0), np.bool_), 0, 0
+    dx, dy = columns - column, rows - row
+    u = np.floor((dx * cos - dy * sin / aspect) + 0.5).astype(np.int64)
+    v = np.floor((dx * sin * aspect + dy * cos) + 0.5).astype(np.int64)
+    left, top = u.min(), v.min()
+    out = np.zeros((v.max() - top + 1, u.max() - left + 1), np.bool_)
+    out[v - top, u - left] = True
+    return out, int(left), int(top)
+
+
+@compiled_twin_of(_rotated)
+def rotated(
+    values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
+) -> Rotated:
+    """Do the same in loops."""
+    rows, columns = values.shape
+    first, last = rows, -1
+    left, right, top, bottom = 1 << 60, -(1 << 60), 1 << 60, -(1 << 60)
+    ends = np.empty((rows, 2), np.int64)
+    for i in range(rows):
+        low, high = columns, -1
+        for j in range(columns):
+            if values[i, j]:
+                low = min(low, j)
+                high = j
+        ends[i, 0], ends[i, 1] = low, high
+        if high < 0:
+            continue
+        first, last = min(first, i), i
+        dy = i - row
+        # A row's turned cells lie between those of its ends.
+        for j in (low, high):
+            dx = j - column
+            u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
+            v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
+            left, right = min(left, u), max(right, u)
+            top, bottom = min(top, v), max(bottom, v)
+    if last < 0:
+        return np.zeros((0, 0), np.bool_), 0, 0
+    out = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
+    for i in range(first, last + 1):
+        dy = i - row
+        for j in range(ends[i, 0], ends[i, 1] + 1):
+            if values[i, j]:
+                dx = j - column
+                u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
+                v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
+                out[v - top, u - left] = True
+    return out, left, top

@@ -1,0 +1,1 @@
+"""Rectangles fitted to outlines and loads."""

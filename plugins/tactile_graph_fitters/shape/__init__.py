@@ -1,0 +1,1 @@
+"""What kind of shape an outline is."""

@@ -1,0 +1,1 @@
+"""Outlines from touch and the order of readings: no law is used."""

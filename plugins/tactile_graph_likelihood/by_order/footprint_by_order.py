@@ -1,0 +1,159 @@
+"""``footprint_by_order``: an outline from touch and the order of readings, of any pad."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from annotated_types import Ge, Gt, Le, Lt
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.steps.rules import Grid, require_same_shape
+from tactile_graph.wires import Circle, Ellipse, Image, Mask, Polygon, Rectangle
+from tactile_graph_filters.readings.decouple import Decouple
+from tactile_graph_likelihood.by_order.posterior import order_posterior
+from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.fit_footprint import KINDS
+from tactile_graph_likelihood.single.footprint_of import Positive, Share, model_of
+from tactile_graph_likelihood.single.likely import Likely, likely
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.readings import Readings, readings_of
+
+TOUCH_SIGMAS, TOUCH_LEAST = (0.7, 0.5, 1.5), 0.1
+"""Of ln gain, and the least load, in the rough fit that takes all touched elements for equally
+loaded; the next one where there is no answer."""
+
+
+class FootprintByOrder:
+    """Return the posterior of an outline from what is touched and the order of the readings.
+
+    Parameters
+    ----------
+    shape, corners, strays, gap_cm, on_pad, smallest_cm, largest_cm, precision
+        As in `fit_footprint`.
+    pad : str or mapping
+        Gap, unevenness and voids come from it, unless given here, and the circuit that volts are
+        freed of; its law is not used.
+    sigma : float, optional
+        Standard deviation of the logarithm of an element's gain, in load.
+    voids : float, optional
+        Share of covered elements that read nothing.
+    foam_cm : float, optional
+        Width over which foam spreads the load.
+    touched_from : float
+        Readings below it count as untouched, in the image's unit; 0 for all above 0.
+    sliver : float
+        Share of an element that must be covered for it to read anything, about.
+
+    Notes
+    -----
+    Any strictly monotone change of the readings leaves the answer as it is. Volts of a circuit
+    whose elements shadow each other are no such change of the load: an image in volts is decoupled
+    first; another quantity is taken as it is. The likelihood is in `order_likelihood`; ``sliver``
+    is the middle of a guess, a factor of 7 wide, and is estimated with the outline.
+
+    ``fits`` is False where touch and order are less likely than the model's own by more than
+    three standard deviations, or where they leave a pattern over, as with `fit_footprint`. The
+    load that an element's place in the order stands for takes the place of its own.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        shape: Literal["disc", "ellipse", "rectangle", "regular", "polygon"] = "disc",
+        corners: Annotated[int, Ge(3), Le(12)] = 4,
+        pad: str | dict[str, Any] = "thesis",
+        sigma: Positive | None = None,
+        voids: Annotated[float, Ge(0), Lt(1)] | None = None,
+        strays: Share = 1e-3,
+        foam_cm: Annotated[float, Ge(0)] | None = None,
+        gap_cm: Annotated[float, Ge(0)] | None = None,
+        touched_from: Annotated[float, Ge(0)] = 0.0,
+        sliver: Share = 0.1,
+        on_pad: Literal["whole", "partly"] = "partly",
+        smallest_cm: Positive | None = None,
+        largest_cm: Positive | None = None,
+        precision: Annotated[float, Gt(0), Le(1)] = 0.15,
+    ) -> None:
+        kind = KINDS[shape]
+        self.model = model_of(
+            kind, corners if kind in (REGULAR, FREE) else 0, pad, sigma, voids, strays, foam_cm,
+            gap_cm, sliver, [], on_pad, smallest_cm, largest_cm, precision, 1024, 0,
+        )  # fmt: skip
+        noise = replace(self.model.noise, least=TOUCH_LEAST)
+        self._touch = [
+            replace(self.model, noise=replace(noise, sigma=s), precision=0.3) for s in TOUCH_SIGMAS
+        ]
+        self._touched_from, self._decouple = touched_from, Decouple(pad=pad)
+
+    def __call__(
+        self,
+        image: Image,
+        touched: Annotated[Mask, Grid.like("image")] | None = None,
+        start: Circle | Ellipse | Rectangle | Polygon | None = None,
+    ) -> Likely:
+        """Return the outline.
+
+        Parameters
+        ----------
+        image : Image
+            Readings that rise with load, in any quantity; invalid cells say nothing.
+        touched : Mask, optional
+            What counts as touched, instead of ``touched_from``.
+        start : Circle, Ellipse, Rectangle or Polygon, optional
+            Where to begin, of the same shape.
+
+        Raises
+        ------
+        ValueError
+            If ``start`` is of another shape, or the image's cells are not square.
+        Degenerate
+            If nothing is touched, or no such outline on the pad explains what is; if volts are
+            not the circuit's.
+        """
+        return likely(self.posterior(self._readings(image, touched), start))
+
+    def posterior(self, readings: Readings, start: Any = None) -> Posterior:
+        """Return the posterior by the touch and order of some readings."""
+        touch = readings._replace(logs=np.zeros(readings.logs.shape))
+        for model in self._touch:
+            try:
+                rough = model.posterior_of(touch, start)
+            except Degenerate as why:
+                reason = why
+                continue
+            return order_posterior(self.model, readings, rough)
+        raise reason
+
+    def _readings(self, image: Image, touched: Mask | None) -> Readings:
+        found = self._touched_of(image, touched)
+        if image.quantity != "volt":
+            return found
+        siemens = self._decouple(image)
+        states = found.states
+        if siemens.valid is not None:
+            states = np.where(siemens.valid, states, UNKNOWN).astype(np.uint8)
+        return _touching(found._replace(logs=siemens.filled(0.0), states=states))
+
+    def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
+        gap = self.model.gap_cm
+        if touched is None:
+            return readings_of(image, gap, self._touched_from, 0.0)
+        require_same_shape(image=image, touched=touched)
+        values = image.filled(0.0)
+        lift = min(float(values.min()), 0.0)  # a raw reading may lie below zero
+        found = readings_of(image.with_values(values - lift + 1.0), gap, 0.0, 0.0)
+        on = touched.values & (found.states == ON)
+        states = np.where(on, ON, np.where(found.states == ON, OFF, found.states)).astype(np.uint8)
+        return _touching(found._replace(states=states))
+
+
+def _touching(found: Readings) -> Readings:
+    count = int((found.states == ON).sum())
+    if count == 0:
+        raise Degenerate("no element is touched: no outline fits")
+    return found._replace(touched=count)

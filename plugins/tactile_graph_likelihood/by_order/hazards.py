@@ -1,0 +1,54 @@
+"""At what rate elements reach their load, as loads rise: lognormal gains, and a few strays."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SIGMA, SPAN, STRAYS, VOIDS
+
+LOWEST, HIGHEST, STEP = -8.0, 16.0, 1.0 / 32.0
+"""Of the table, in standard deviations; beyond, the rate is as at its ends."""
+
+
+def hazards(noise: Values) -> Values:
+    """Return the rate at each place of the table, per standard deviation of ln load.
+
+    Parameters
+    ----------
+    noise : ndarray, shape (8,)
+        As in `element_terms`.
+
+    Notes
+    -----
+    Of an element that shows: ``f / (1 - F)`` of ln gain over its standard deviation, where F is
+    normal but for the chance of a stray, whose load may be any. Without strays one element that
+    reads nonsense would rule an outline out.
+    """
+    return _hazards(float(noise[STRAYS]), float(noise[VOIDS]), float(noise[SIGMA]))
+
+
+@lru_cache(maxsize=32)
+def _hazards(strays: float, voids: float, sigma: float) -> Values:
+    from scipy.special import ndtr
+
+    x = LOWEST + STEP * np.arange(round((HIGHEST - LOWEST) / STEP) + 2)
+    own = (1.0 - strays) * (1.0 - voids)
+    arrive = own * np.exp(-0.5 * x * x) / ROOT_TWO_PI + strays * sigma / SPAN
+    left = own * ndtr(-x) + 0.5 * strays
+    table = np.asarray(arrive / left)
+    table.setflags(write=False)
+    return table
+
+
+@compiled_as_is
+def hazard(table: Values, x: float) -> float:
+    """Return the rate at a place, by its neighbours in the table."""
+    at = min(max((x - LOWEST) / STEP, 0.0), table.shape[0] - 1.5)
+    k = math.floor(at)
+    rate: float = table[k] + (at - k) * (table[k + 1] - table[k])
+    return rate

@@ -1,0 +1,1 @@
+"""Outlines as numbers, and how much of each element they cover."""

@@ -1,0 +1,1 @@
+"""Outlines of known objects: which of them it is."""

@@ -1,0 +1,111 @@
+"""A large image in blocks of elements: where a search begins that would be lost in the fine one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.large_pads.largest_piece import largest_piece
+from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, solid, typical_load
+from tactile_graph_likelihood.single.element_terms import (
+    LEAST,
+    OFF,
+    ON,
+    SIGMA,
+    STRAYS,
+    UNKNOWN,
+    VOIDS,
+    States,
+)
+from tactile_graph_likelihood.single.problem import Places, Problem
+from tactile_graph_likelihood.single.start import moments
+
+ACROSS, NARROW = 13.0, 5.0  # blocks that the touched region is long, and broad, at least
+WIDE = 3.6  # standard deviations in a width: rectangles have 3.5, discs 4
+SHOWS = 0.15  # share of touched elements from which on a block is
+APART = 3  # rows or columns that neighbours of a piece are apart: voids break what is thin
+UNEVEN, VOID, STRAY = 0.3, 0.03, 0.01  # of blocks: sigma, share of voids, and of strays
+
+
+@compiled_as_is
+def block_of(grid: Values, logs: Values, states: States) -> int:
+    """Return how many elements wide blocks may be that still show what is touched."""
+    found = moments(grid, logs, states)
+    middle, off = 0.5 * (found[3] + found[5]), math.hypot(0.5 * (found[3] - found[5]), found[4])
+    long = WIDE * math.sqrt(middle + off) / grid[2]
+    broad = WIDE * math.sqrt(max(middle - off, 0.0)) / grid[2]
+    return max(1, int(min(long / ACROSS, broad / NARROW)))
+
+
+@compiled_as_is
+def coarsened(problem: Problem) -> tuple[Problem, int, float]:
+    """Return an image's blocks, how many elements wide they are, and the typical log load.
+
+    A block reads which share of its elements is touched by something solid: whatever their gains
+    are, and however far off strays are. Of a small object the block is 1, and of a small pad the
+    problem the given one; the load is NaN if not known.
+    """
+    grid, logs, states = problem.grid, problem.logs, problem.states
+    if states.size <= LARGE_PAD:
+        return problem, 1, math.nan
+    typical = typical_load(logs, states)
+    if math.isnan(typical):
+        return problem, 1, typical
+    body = solid(logs, states, typical, problem.noise[SIGMA])
+    block = block_of(grid, logs, body)
+    if block == 1:
+        return _read(problem, grid, logs, body, problem.noise, problem.estimated), 1, typical
+    blocks, shares = _blocks(body, block)
+    noise = np.zeros(problem.noise.shape)
+    noise[SIGMA], noise[VOIDS], noise[STRAYS] = UNEVEN, VOID, STRAY
+    noise[LEAST] = math.log(SHOWS)
+    wide = grid.copy()
+    wide[2], wide[3] = block * grid[2], block * grid[2] - (grid[2] - grid[3])
+    return _read(problem, wide, shares, blocks, noise, problem.estimated[:0]), block, typical
+
+
+@compiled_as_is
+def in_one_piece(problem: Problem) -> Problem:
+    """Return the same for the largest piece of what is touched."""
+    piece = largest_piece(problem.states, APART)
+    return _read(problem, problem.grid, problem.logs, piece, problem.noise, problem.estimated)
+
+
+@compiled_as_is
+def _read(
+    problem: Problem, grid: Values, logs: Values, states: States, noise: Values, estimated: Places
+) -> Problem:
+    """Return the same question about another image."""
+    return Problem(
+        problem.kind, problem.corners, grid, logs, states, noise, estimated,
+        problem.guess[: estimated.shape[0]], problem.prior, problem.belief, problem.precision,
+    )  # fmt: skip
+
+
+@compiled_as_is
+def _blocks(body: States, block: int) -> tuple[States, Values]:
+    """Return states of blocks, and the logarithm of the touched share of each."""
+    rows, columns = body.shape
+    down, across = (rows + block - 1) // block, (columns + block - 1) // block
+    known, on = np.zeros((down, across)), np.zeros((down, across))
+    for i in range(rows):
+        at = i // block
+        for j in range(across):
+            for column in range(j * block, min((j + 1) * block, columns)):
+                state = body[i, column]
+                known[at, j] += 1.0 if state != UNKNOWN else 0.0
+                on[at, j] += 1.0 if state == ON else 0.0
+    states, logs = np.empty((down, across), body.dtype), np.zeros((down, across))
+    for i in range(down):
+        for j in range(across):
+            if known[i, j] < 0.5 * block * block:
+                states[i, j] = UNKNOWN
+            elif on[i, j] < SHOWS * known[i, j]:
+                states[i, j] = OFF
+            else:
+                states[i, j] = ON
+                logs[i, j] = math.log(on[i, j] / known[i, j])
+    return states, logs

@@ -1,0 +1,1 @@
+"""Several outlines at once, and how many there are."""

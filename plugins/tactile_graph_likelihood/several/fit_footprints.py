@@ -1,0 +1,167 @@
+"""``fit_footprints``: several outlines at once, and how many of them there are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from annotated_types import Ge, Gt, Le, Lt, MinLen
+
+from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
+from tactile_graph_likelihood.several.posteriors import posteriors, started
+from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.single.footprint_of import Load, Positive, Share
+from tactile_graph_likelihood.single.likely import Likely, likely
+from tactile_graph_likelihood.single.noise import noise_of
+from tactile_graph_likelihood.single.posterior import UNLIKELY
+from tactile_graph_likelihood.single.readings import readings_of
+
+KINDS = {
+    "disc": (DISC, 0),
+    "ellipse": (ELLIPSE, 0),
+    "rectangle": (RECTANGLE, 0),
+    "triangle": (REGULAR, 3),
+    "pentagon": (REGULAR, 5),
+    "hexagon": (REGULAR, 6),
+}
+Kind = Literal["disc", "ellipse", "rectangle", "triangle", "pentagon", "hexagon"]
+
+
+class Footprints(NamedTuple):
+    """The outlines on a pad."""
+
+    shapes: tuple[Likely, ...]
+    """Each with its posterior given the others."""
+    count: int  # type: ignore[assignment]  # hides tuple.count, which nobody asks a record for
+    count_probability: float
+    """Probability of this number among all that the search came upon."""
+    log_evidence: float
+    """Of the frame, over that of a bare pad."""
+    surprise: float
+    """Of the whole frame, as in `fit_footprint`."""
+    fits: bool
+    """Whether the frame looks like the model's."""
+
+
+class FitFootprints:
+    """Return the outlines of all objects on the pad, their number and kinds by evidence.
+
+    Loads of all objects add up on each element. The search begins with connected pieces of the
+    footprint, cuts them along straight lines, and then joins, cuts anew, drops and exchanges
+    outlines for those of other kinds while the evidence grows.
+
+    Parameters
+    ----------
+    kinds : list of str
+        What an object may be; each is as likely as any other. Polygons are regular.
+    most : int
+        Objects at most.
+    more : float
+        Log odds of a number of objects over one less, before anything is read.
+    pad : str or mapping
+        Name of a pad, its YAML file, or the pad itself: gap, unevenness, foam and the least load
+        that shows come from it, unless given here.
+    sigma : float, optional
+        Standard deviation of the logarithm of an element's gain.
+    voids : float, optional
+        Share of covered elements that read nothing.
+    strays : float
+        Probability that a reading has nothing to do with any object.
+    foam_cm : float, optional
+        Width over which foam spreads the load.
+    gap_cm : float, optional
+        Distance of neighbouring elements' edges.
+    shows_from : float, optional
+        Readings below it count as nothing, in the image's unit.
+    on_pad : "whole" or "partly"
+        Whether all outlines lie wholly on the pad, or their centres only.
+    smallest_cm, largest_cm : float
+        Range of radii and half sides; of a regular polygon, what its sides keep from its centre
+        is no less.
+
+    Notes
+    -----
+    Outlines do not overlap, but for 0.1 of an element or so. The answer is the same each time.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "rectangle", "ellipse", "triangle"],  # noqa: B006 - settings are never changed
+        most: Annotated[int, Ge(1), Le(12)] = 6,
+        more: float = 3.0,
+        pad: str | dict[str, Any] = "thesis",
+        sigma: Positive | None = None,
+        voids: Annotated[float, Ge(0), Lt(1)] | None = None,
+        strays: Share = 1e-3,
+        foam_cm: Annotated[float, Ge(0)] | None = None,
+        gap_cm: Annotated[float, Ge(0)] | None = None,
+        shows_from: Annotated[float, Ge(0)] | None = None,
+        on_pad: Literal["whole", "partly"] = "whole",
+        smallest_cm: Annotated[float, Gt(0)] = 1.0,
+        largest_cm: Annotated[float, Gt(0)] = 12.0,
+    ) -> None:
+        from tactile_graph_pads.pad import load_pad
+
+        if smallest_cm >= largest_cm:
+            raise ValueError(
+                f"smallest_cm: must be below largest_cm, got {smallest_cm:g} and {largest_cm:g}"
+            )
+        known = load_pad(pad)
+        self.noise = noise_of(
+            known, sigma=sigma, voids=voids, strays=strays, foam_cm=foam_cm, least=shows_from
+        )
+        self.gap_cm = known.geometry.gap_cm if gap_cm is None else gap_cm
+        self.kinds = [KINDS[k] for k in dict.fromkeys(kinds)]
+        self.most, self.more = most, more
+        self.sizes = smallest_cm, largest_cm
+        self.whole = on_pad == "whole"
+
+    def __call__(
+        self, image: Load, starts: Sequence[Circle | Ellipse | Rectangle | Polygon] = ()
+    ) -> Footprints:
+        """Return the outlines.
+
+        Parameters
+        ----------
+        image : Image
+            Loads; invalid cells say nothing.
+        starts : list of Circle, Ellipse, Rectangle or Polygon
+            Where the search may begin too, one for each object; those of kinds that are not
+            looked for become the ellipse of the same place and area.
+
+        Raises
+        ------
+        ValueError
+            If the image's cells are not square.
+        Degenerate
+            If nothing is touched, or no such outlines explain what is.
+        """
+        search = self.search(image)
+        found = search.run(started(starts, search) if len(starts) else None)
+        parts, surprise, alike = posteriors(search, found)
+        odds = [math.exp(f.log_evidence - found.log_evidence) for f in search.allowed()]
+        return Footprints(
+            tuple(likely(p) for p in parts),
+            found.count,
+            1.0 / sum(odds),
+            found.log_evidence,
+            surprise,
+            surprise > UNLIKELY and alike < 4.0,
+        )
+
+    def search(self, image: Load) -> Search:
+        """Return the search of an image, not yet begun."""
+        readings = readings_of(image, self.gap_cm, self.noise.least)
+        prior = np.zeros(9)
+        prior[:2] = readings.grid[:2]
+        prior[2:4] = readings.size_cm
+        prior[4:6] = self.sizes
+        prior[6] = float(self.whole)
+        noise = self.noise.vector(float(readings.grid[2]))
+        return Search(readings, noise, self.kinds, prior, self.most, self.more)

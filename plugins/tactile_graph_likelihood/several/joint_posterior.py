@@ -1,0 +1,296 @@
+"""The likelihood of several outlines at once: their loads add up, then elements read the sum.
+
+Outlines are rows of a table: `kinds` and `corners` as in `outlines`, and `points`, shape (K, 6),
+each row an outline's numbers, the logarithm of its load and zeros. Other outlines that stay as
+they are enter by the load and the coverage that they bring to each element.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.covered import Box, blurred, covered, window
+from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
+from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
+from tactile_graph_likelihood.single.element_terms import (
+    FOAM,
+    LEAST,
+    ON,
+    ROOT_TWO_PI,
+    SIGMA,
+    SQRT_HALF,
+    UNKNOWN,
+    VOIDS,
+    States,
+    on_level,
+    terms,
+)
+from tactile_graph_likelihood.single.information import SLIVER, STEP, steps_of
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
+from tactile_graph_likelihood.single.problem import Places
+from tactile_graph_likelihood.single.shares import foam_margin
+
+WIDTH = 6
+"""Columns of a table of points."""
+
+OVERLAP = 0.1
+"""Standard deviation of the coverage by which outlines, together, may exceed an element."""
+
+MIDDLE, SPREAD = 9, 10
+"""Places in a prior vector of several outlines, after those of `outline_prior`: mean and standard
+deviation of the logarithm of an outline's load."""
+
+DENSITY = 1.0 / ROOT_TWO_PI
+
+
+@compiled_as_is
+def share_of(
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int, cols: int
+) -> Values:
+    """Return the coverage of a window, blurred if there is foam."""
+    shares = covered(kind, corners, p, grid, box)
+    return blurred(shares, noise[FOAM], box, rows, cols) if noise[FOAM] > 0.0 else shares
+
+
+@compiled_as_is
+def add_outline(
+    kind: int,
+    corners: int,
+    p: Values,
+    grid: Values,
+    noise: Values,
+    load: Values,
+    share: Values,
+) -> None:
+    """Add what an outline brings to each element to ``load`` and ``share``, (rows, columns)."""
+    rows, cols = load.shape
+    box = window(kind, corners, p, grid, rows, cols, foam_margin(grid, noise))
+    if box[2] <= 0 or box[3] <= 0:
+        return
+    own = share_of(kind, corners, p, grid, noise, box, rows, cols)
+    scale = math.exp(p[unknowns(kind, corners)])
+    for i in range(box[2]):
+        for j in range(box[3]):
+            load[box[0] + i, box[1] + j] += scale * own[i, j]
+            share[box[0] + i, box[1] + j] += own[i, j]
+
+
+@compiled_as_is
+def overlap(share: Values) -> float:
+    """Return by how much the log density falls where outlines overlap."""
+    total = 0.0
+    for i in range(share.shape[0]):
+        for j in range(share.shape[1]):
+            if share[i, j] > 1.0:
+                total += ((share[i, j] - 1.0) / OVERLAP) ** 2
+    return 0.5 * total
+
+
+@compiled_as_is
+def lightest(noise: Values) -> float:
+    """Return the least logarithm of an outline's load: what shows twice over."""
+    least: float = noise[LEAST] + math.log(2.0)
+    return least
+
+
+@compiled_as_is
+def smallest(kind: int, corners: int, prior: Values) -> float:
+    """Return the least size of an outline; a regular polygon's sides keep it from its centre."""
+    least: float = prior[SMALLEST]
+    return least / math.cos(math.pi / corners) if kind == REGULAR else least
+
+
+@compiled_as_is
+def log_rest_of(
+    kinds: Places, corners: Places, points: Values, noise: Values, prior: Values
+) -> float:
+    """Return the log prior density of all outlines and their loads, -inf where it is zero.
+
+    The angle of each may be any, as that of one of its equal descriptions.
+    """
+    total = 0.0
+    loose = prior.copy()
+    for k in range(kinds.shape[0]):
+        load = points[k, unknowns(kinds[k], corners[k])]
+        if load < lightest(noise) or points[k, 2] < smallest(kinds[k], corners[k], prior):
+            return -math.inf
+        off = (load - prior[MIDDLE]) / prior[SPREAD]
+        total -= 0.5 * (off * off + LN_TWO_PI) + math.log(prior[SPREAD])
+        if period(kinds[k], corners[k]) > 0.0:
+            loose[TURN] = points[k, 2 + sizes(kinds[k])]
+        total += log_prior(kinds[k], corners[k], points[k], loose)
+    return total
+
+
+@compiled_as_is
+def gain(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    load: Values,
+    share: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+) -> float:
+    """Return what outlines add to the log likelihood of an image where others already lie.
+
+    Parameters
+    ----------
+    kinds, corners, points
+        The outlines, as above.
+    load, share : ndarray, shape (rows, columns)
+        Load and coverage that the others bring to each element; zeros for none.
+    grid, logs, states, noise
+        As in `log_posterior.log_likelihood`.
+    """
+    rows, cols = states.shape
+    margin = foam_margin(grid, noise)
+    r0, c0, r1, c1 = rows, cols, 0, 0
+    for k in range(kinds.shape[0]):
+        box = window(kinds[k], corners[k], points[k], grid, rows, cols, margin)
+        if box[2] > 0 and box[3] > 0:
+            r0, c0 = min(r0, box[0]), min(c0, box[1])
+            r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
+    if r1 <= r0 or c1 <= c0:
+        return 0.0
+    expected, total = load[r0:r1, c0:c1].copy(), share[r0:r1, c0:c1].copy()
+    before = terms(expected, r0, c0, logs, states, noise) - overlap(total)
+    for k in range(kinds.shape[0]):
+        kind, n = kinds[k], corners[k]
+        box = window(kind, n, points[k], grid, rows, cols, margin)
+        if box[2] <= 0 or box[3] <= 0:
+            continue
+        own = share_of(kind, n, points[k], grid, noise, box, rows, cols)
+        scale = math.exp(points[k, unknowns(kind, n)])
+        for i in range(box[2]):
+            for j in range(box[3]):
+                expected[box[0] - r0 + i, box[1] - c0 + j] += scale * own[i, j]
+                total[box[0] - r0 + i, box[1] - c0 + j] += own[i, j]
+    return terms(expected, r0, c0, logs, states, noise) - overlap(total) - before
+
+
+@compiled_as_is
+def slopes(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    load: Values,
+    share: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    slope: Values,
+    matrix: Values,
+) -> None:
+    """Write the slope of `gain` and its information, shape (6 K,) and (6 K, 6 K).
+
+    Places of numbers that an outline does not have get a one on the diagonal. As in
+    `climb.information`; an element under several outlines couples them.
+    """
+    rows, cols = states.shape
+    count = kinds.shape[0]
+    expected, total = load.copy(), share.copy()
+    own = np.zeros((count, rows, cols))
+    rise = np.zeros((count * WIDTH, rows, cols))
+    slope[:] = 0.0
+    matrix[:] = 0.0
+    at = np.empty(WIDTH)
+    for k in range(count):
+        kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
+        for m in range(first + 1, WIDTH):
+            matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
+        margin = foam_margin(grid, noise) + grid[2] * STEP
+        box = window(kind, n, points[k], grid, rows, cols, margin)
+        if box[2] <= 0 or box[3] <= 0:
+            continue
+        here = share_of(kind, n, points[k], grid, noise, box, rows, cols)
+        scale = math.exp(points[k, first])
+        r, c = box[0], box[1]
+        for i in range(box[2]):
+            for j in range(box[3]):
+                own[k, r + i, c + j] = here[i, j]
+                expected[r + i, c + j] += scale * here[i, j]
+                total[r + i, c + j] += here[i, j]
+        steps = steps_of(kind, n, points[k], grid)
+        at[:] = points[k]
+        for m in range(first):
+            at[m] += steps[m]
+            moved = share_of(kind, n, at, grid, noise, box, rows, cols)
+            at[m] = points[k, m]
+            for i in range(box[2]):
+                for j in range(box[3]):
+                    rise[k * WIDTH + m, r + i, c + j] = (moved[i, j] - here[i, j]) / steps[m]
+    _sum_up(kinds, corners, points, expected, total, own, rise, logs, states, noise, slope, matrix)
+
+
+@compiled_as_is
+def _sum_up(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    expected: Values,
+    total: Values,
+    own: Values,
+    rise: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    slope: Values,
+    matrix: Values,
+) -> None:
+    """Add each element's part to slope and information."""
+    rows, cols = states.shape
+    sigma, present, level = noise[SIGMA], 1.0 - noise[VOIDS], on_level(noise)
+    size = slope.shape[0]
+    along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
+    for i in range(rows):
+        for j in range(cols):
+            n = 0
+            for k in range(kinds.shape[0]):
+                if own[k, i, j] <= 0.0:
+                    continue
+                first = unknowns(kinds[k], corners[k])
+                scale = math.exp(points[k, first])
+                floor = max(expected[i, j], SLIVER * scale)
+                for m in range(first):
+                    at = k * WIDTH + m
+                    along[n], tight[n] = scale * rise[at, i, j] / floor, rise[at, i, j]
+                    used[n] = at
+                    n += 1
+                along[n], tight[n] = scale * own[k, i, j] / expected[i, j], 0.0
+                used[n] = k * WIDTH + first
+                n += 1
+            if n == 0:
+                continue
+            score, weight = 0.0, 0.0
+            if states[i, j] != UNKNOWN:
+                mu = math.log(expected[i, j])
+                if states[i, j] == ON:
+                    u = (logs[i, j] - mu) / sigma
+                    a = min(max(level - 0.5 * u * u, -700.0), 700.0)
+                    chance = 1.0 / (1.0 + math.exp(-a))
+                    score, weight = chance * u / sigma, chance / (sigma * sigma)
+                else:
+                    z = (mu - noise[LEAST]) / sigma
+                    none = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
+                    score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * none)
+                    weight = score * score
+            excess = (total[i, j] - 1.0) / (OVERLAP * OVERLAP)
+            push = 1.0 / (OVERLAP * OVERLAP) if excess > 0.0 else 0.0
+            for a_ in range(n):
+                x = used[a_]
+                slope[x] += score * along[a_]
+                if push > 0.0:
+                    slope[x] -= excess * tight[a_]
+                for b_ in range(a_ + 1):
+                    y = used[b_]
+                    both = weight * along[a_] * along[b_] + push * tight[a_] * tight[b_]
+                    matrix[x, y] += both
+                    if x != y:
+                        matrix[y, x] += both

@@ -1,0 +1,220 @@
+"""Several outlines brought to their joint top, and how much evidence lies there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.linear import cholesky, solved
+from tactile_graph_likelihood.geometry.outline_prior import pulled_in
+from tactile_graph_likelihood.geometry.outlines import Values, sizes, unknowns
+from tactile_graph_likelihood.several.joint_posterior import (
+    MIDDLE,
+    SPREAD,
+    WIDTH,
+    gain,
+    lightest,
+    log_rest_of,
+    slopes,
+    smallest,
+)
+from tactile_graph_likelihood.single.element_terms import STRAYS, States
+from tactile_graph_likelihood.single.information import STEP, steps_of
+from tactile_graph_likelihood.single.problem import Places
+
+HALVINGS = 6
+LOOSE, GAP = 0.01, 6.0
+"""Information, per squared pitch, that is added to each number's own: for a climb, to keep it
+finite; for the mass, since an edge that lies in a gap may slide, but no farther than the gap."""
+SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft climb
+NO_STRAYS = 1e-12
+HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
+
+
+@compiled_as_is
+def add_rest(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    grid: Values,
+    prior: Values,
+    loose: float,
+    slope: Values,
+    matrix: Values,
+) -> None:
+    """Add what is known beforehand, and a little that keeps the information invertible."""
+    for k in range(kinds.shape[0]):
+        kind, first, at = kinds[k], unknowns(kinds[k], corners[k]), k * WIDTH
+        for m in range(2, 2 + sizes(kind)):
+            slope[at + m] -= 1.0 / points[k, m]
+        steps = steps_of(kind, corners[k], points[k], grid)
+        for m in range(first):
+            matrix[at + m, at + m] += loose / (steps[m] / STEP) ** 2
+        sure = 1.0 / (prior[SPREAD] * prior[SPREAD])
+        slope[at + first] -= sure * (points[k, first] - prior[MIDDLE])
+        matrix[at + first, at + first] += sure
+
+
+@compiled_as_is
+def _pulled_in(kind: int, corners: int, p: Values, noise: Values, prior: Values) -> None:
+    """Bring an outline and its load, in place, to where its prior is not zero."""
+    pulled_in(kind, corners, p, prior)
+    at = unknowns(kind, corners)
+    p[at] = max(p[at], lightest(noise))
+    p[2] = max(p[2], 1.001 * smallest(kind, corners, prior))
+
+
+@compiled_as_is
+def climbed_together(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    load: Values,
+    share: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    prior: Values,
+    most: int,
+    enough: float,
+) -> float:
+    """Bring outlines, in place, to the top of their log posterior given others; return it.
+
+    Parameters
+    ----------
+    kinds, corners, points, load, share, grid, logs, states, noise
+        As in `several_posterior.gain`.
+    prior : ndarray, shape (9,)
+        As in `outline_prior`.
+    most : int
+        Rounds.
+    enough : float
+        Gain in log posterior still promised, below which the search ends.
+    """
+    size = kinds.shape[0] * WIDTH
+    slope, step = np.empty(size), np.empty(size)
+    matrix, root = np.empty((size, size)), np.empty((size, size))
+    for k in range(kinds.shape[0]):
+        _pulled_in(kinds[k], corners[k], points[k], noise, prior)
+    trial = points.copy()
+    now = log_rest_of(kinds, corners, points, noise, prior)
+    now += gain(kinds, corners, points, load, share, grid, logs, states, noise)
+    damping = 0.0
+    for _ in range(most):
+        slopes(kinds, corners, points, load, share, grid, logs, states, noise, slope, matrix)
+        add_rest(kinds, corners, points, grid, prior, LOOSE, slope, matrix)
+        for k in range(size):
+            matrix[k, k] *= 1.0 + damping
+        if not cholesky(matrix, root):
+            return now
+        solved(root, slope, step)
+        promised = 0.0
+        for k in range(size):
+            promised += slope[k] * step[k]
+        if promised < enough:
+            return now
+        part, new = 1.0, -math.inf
+        for _ in range(HALVINGS):
+            for k in range(kinds.shape[0]):
+                for m in range(WIDTH):
+                    trial[k, m] = points[k, m] + part * step[k * WIDTH + m]
+                _pulled_in(kinds[k], corners[k], trial[k], noise, prior)
+            new = log_rest_of(kinds, corners, trial, noise, prior)
+            if new > -math.inf:
+                new += gain(kinds, corners, trial, load, share, grid, logs, states, noise)
+            if new > now:
+                break
+            part *= 0.4
+        if not new > now:
+            if damping > 50.0:
+                return now
+            damping = max(1.0, 10.0 * damping)
+            continue
+        gained, now = new - now, new
+        points[:] = trial
+        damping = 0.0 if part == 1.0 else 0.3
+        if gained < 0.5 * enough:
+            return now
+    return now
+
+
+@compiled_as_is
+def climbed_softly(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    load: Values,
+    share: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    prior: Values,
+    most: int,
+) -> None:
+    """Do the same with elements that feel a little beyond their edge, and with no strays.
+
+    Otherwise a touched element that no outline covers would not pull at all.
+    """
+    soft, strict = grid.copy(), noise.copy()
+    soft[4], soft[5] = SOFT, grid[2]
+    strict[STRAYS] = NO_STRAYS
+    climbed_together(
+        kinds, corners, points, load, share, soft, logs, states, strict, prior, most, 0.5
+    )
+
+
+@compiled_as_is
+def log_mass(
+    kinds: Places,
+    corners: Places,
+    points: Values,
+    load: Values,
+    share: Values,
+    grid: Values,
+    logs: Values,
+    states: States,
+    noise: Values,
+    prior: Values,
+    matrix: Values,
+) -> float:
+    """Return the log evidence around a top by Laplace's method; write the information there."""
+    slope, root = np.empty(matrix.shape[0]), np.empty(matrix.shape)
+    total = log_rest_of(kinds, corners, points, noise, prior)
+    if total == -math.inf:
+        return total
+    total += gain(kinds, corners, points, load, share, grid, logs, states, noise)
+    slopes(kinds, corners, points, load, share, grid, logs, states, noise, slope, matrix)
+    add_rest(kinds, corners, points, grid, prior, GAP, slope, matrix)
+    if not cholesky(matrix, root):
+        return -math.inf
+    for k in range(kinds.shape[0]):
+        total += HALF_LN_TWO_PI * (unknowns(kinds[k], corners[k]) + 1)
+    for k in range(matrix.shape[0]):
+        total -= math.log(root[k, k])
+    for k in range(kinds.shape[0]):
+        for m in range(2, 2 + sizes(kinds[k])):
+            if points[k, m] < 1.002 * smallest(kinds[k], corners[k], prior):
+                at = k * WIDTH + m
+                total += _log_of_part(-slope[at] / math.sqrt(matrix[at, at]))
+        if points[k, unknowns(kinds[k], corners[k])] < lightest(noise) + 1e-3:
+            at = k * WIDTH + unknowns(kinds[k], corners[k])
+            total += _log_of_part(-slope[at] / math.sqrt(matrix[at, at]))
+    return total
+
+
+@compiled_as_is
+def _log_of_part(fall: float) -> float:
+    """Return the log of what a bound leaves of a normal density's mass, its top at the bound.
+
+    ``fall`` is the slope away from the bound in standard deviations: the mass of
+    exp(-fall x - x**2 / 2) over x > 0, over that of the whole normal density.
+    """
+    if fall > 25.0:
+        return -math.log(fall * math.sqrt(2.0 * math.pi))
+    if fall < -5.0:
+        return 0.0
+    return 0.5 * fall * fall + math.log(0.5 * math.erfc(fall * math.sqrt(0.5)))

@@ -1,0 +1,131 @@
+"""How likely what the elements read is, given the load that is expected on each.
+
+An element of expected load m reads nothing with the probability v of a void, else m times a
+lognormal gain; what falls below the least load that shows reads as nothing too. With the
+probability e of a stray an element reads something that has nothing to do with the object, its
+logarithm uniform over `SPAN`. All is relative to a pad on which every reading is a stray.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph_likelihood.geometry.outlines import Values
+
+OFF, ON, UNKNOWN = range(3)
+"""What is known of an element: reads nothing, reads a load, broken or saturated."""
+
+States: TypeAlias = NDArray[np.uint8]
+
+SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y = range(8)
+"""Places in a noise vector: width of ln gain, share of voids, probability of a stray, logarithm
+of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean."""
+
+SPAN = math.log(1e4)
+"""Width of the logarithm of a stray's load, and of the prior of a covered element's load."""
+
+ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
+SQRT_HALF = math.sqrt(0.5)
+
+
+@compiled_as_is
+def on_level(noise: Values) -> float:
+    """Return the log of the densest reading's likelihood over a stray's."""
+    peak = (1.0 - noise[STRAYS]) * (1.0 - noise[VOIDS]) / (noise[SIGMA] * ROOT_TWO_PI)
+    return math.log(peak) - math.log(noise[STRAYS] / SPAN)
+
+
+def _terms(
+    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
+) -> float:
+    """Return the log likelihood of a window's readings over that of a bare pad.
+
+    Parameters
+    ----------
+    expected : ndarray, shape (rows, columns)
+        Load expected on each element of the window, in the image's unit; 0 where bare.
+    row, column : int
+        Where the window begins.
+    logs : ndarray, shape (all rows, all columns)
+        Logarithm of each reading that shows.
+    states : ndarray of uint8, the same shape
+        `OFF`, `ON` or `UNKNOWN`.
+    noise : ndarray, shape (8,)
+        As named by `SIGMA`, `VOIDS`, `STRAYS`, `LEAST`.
+
+    Notes
+    -----
+    With mu = ln m, u = (ln l - mu) / sigma and z = (mu - ln l_least) / sigma, an element adds
+    ``ln(1 + (1 - e) (1 - v) N(u) / sigma / (e / SPAN))`` where it reads l and
+    ``ln(1 - (1 - v) Phi(z))`` where it reads nothing.
+    """
+    rows, columns = expected.shape
+    here = np.s_[row : row + rows, column : column + columns]
+    touched = expected > 0.0
+    mu = np.log(np.where(touched, expected, 1.0))
+    sigma, voids, least = noise[SIGMA], noise[VOIDS], noise[LEAST]
+    u = (logs[here] - mu) / sigma
+    on = np.logaddexp(0.0, on_level.call(noise) - 0.5 * u * u)
+    z = (mu - least) / sigma
+    tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in line] for line in z.tolist()])
+    off = np.log(1.0 - (1.0 - voids) * tail.reshape(z.shape))
+    found = np.where(states[here] == ON, on, np.where(states[here] == OFF, off, 0.0))
+    return float(found[touched].sum())
+
+
+@compiled_twin_of(_terms)
+def terms(
+    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
+) -> float:
+    """Do the same in loops; factors are multiplied up and their logarithm taken now and then."""
+    sigma, present, least = noise[SIGMA], 1.0 - noise[VOIDS], noise[LEAST]
+    level = on_level(noise)
+    total, product = 0.0, 1.0
+    load, mu, off, off_known = -1.0, 0.0, 0.0, False
+    for i in range(expected.shape[0]):
+        for j in range(expected.shape[1]):
+            m = expected[i, j]
+            if m <= 0.0:
+                continue
+            state = states[row + i, column + j]
+            if state == UNKNOWN:
+                continue
+            if m != load:
+                load, mu, off_known = m, math.log(m), False
+            if state == ON:
+                u = (logs[row + i, column + j] - mu) / sigma
+                a = level - 0.5 * u * u
+                if a > 30.0:
+                    total += a
+                elif a > -30.0:
+                    product *= 1.0 + math.exp(a)
+            else:
+                if not off_known:
+                    z = (mu - least) / sigma
+                    off = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
+                    off_known = True
+                product *= off
+            if not 1e-200 < product < 1e200:
+                total += math.log(product)
+                product = 1.0
+    return total + math.log(product)
+
+
+@compiled_as_is
+def bare(states: States, noise: Values) -> float:
+    """Return the log likelihood of a whole image's readings where nothing lies on the pad."""
+    stray = math.log(noise[STRAYS] / SPAN)
+    none = math.log(1.0 - noise[STRAYS])
+    total = 0.0
+    for i in range(states.shape[0]):
+        for j in range(states.shape[1]):
+            if states[i, j] == ON:
+                total += stray
+            elif states[i, j] == OFF:
+                total += none
+    return total

@@ -1,0 +1,280 @@
+"""``Model``: one kind of outline on a pad, and the posterior of it that an image gives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image, Shape
+from tactile_graph_likelihood.geometry.even_points import even_points
+from tactile_graph_likelihood.geometry.outlines import (
+    ELLIPSE,
+    FREE,
+    OVAL,
+    REGULAR,
+    Values,
+    packed,
+    unknowns,
+)
+from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
+from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, least_shown, silenced
+from tactile_graph_likelihood.single.around import Found, log_volume, spread_out
+from tactile_graph_likelihood.single.element_terms import LEAST, States
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.problem import Places, Problem
+from tactile_graph_likelihood.single.readings import Readings, readings_of
+from tactile_graph_likelihood.single.sampling import spread_of
+from tactile_graph_likelihood.single.search import ATTEMPTS, searched, topped
+from tactile_graph_likelihood.single.start import moments
+
+BLOCK = 32
+"""Points between two looks at how sure the answer is."""
+
+SMALLEST_PITCHES = 0.4
+
+Start = Shape | Values | None
+
+NO_START = np.zeros(0)
+
+
+class Top(NamedTuple):
+    """A most likely outline, not yet looked around.
+
+    ``evidence`` is the log evidence if the posterior were normal around it, ``height`` the log
+    posterior there, -inf where no outline is possible; ``root`` the root of the information;
+    ``unsure`` whether another attempt may do better.
+    """
+
+    evidence: float
+    height: float
+    p: Values
+    root: Values
+    unsure: bool
+
+
+@dataclass(frozen=True)
+class Model:
+    """One kind of outline on a pad whose noise is known or guessed.
+
+    Parameters
+    ----------
+    kind, corners : int
+        Kind of outline, as in `outlines`; corners only of polygons.
+    noise : Noise
+    gap_cm : float
+        Distance of neighbouring elements' edges.
+    whole : bool
+        The outline lies fully on the pad; otherwise only its centre does.
+    smallest_cm, largest_cm : float
+        Range of radii, half axes and half sides, over which they are log-uniform; 0 and infinity
+        for 0.4 pitches and the pad's diagonal.
+    precision : float
+        The posterior mean's error, over the posterior's standard deviation, at which sampling
+        ends.
+    most_points : int
+        Where it ends at the latest.
+    seed : int
+        Shifts the points at which the posterior is looked at.
+    """
+
+    kind: int
+    corners: int = 0
+    noise: Noise = field(default_factory=Noise)
+    gap_cm: float = 0.3
+    whole: bool = False
+    smallest_cm: float = 0.5
+    largest_cm: float = 15.0
+    precision: float = 0.15
+    most_points: int = 1024
+    seed: int = 0
+
+    def posterior(
+        self,
+        image: Image,
+        start: Start = None,
+        belief: tuple[Values, Values] | None = None,
+    ) -> Posterior:
+        """Return the posterior of the outline.
+
+        Parameters
+        ----------
+        image : Image
+            Loads.
+        start : Shape or ndarray, optional
+            Where to begin: an outline of this kind, or a whole point.
+        belief : (ndarray, ndarray), optional
+            Mean and precision matrix of a normal belief about the outline's numbers.
+
+        Raises
+        ------
+        ValueError
+            As `readings.readings_of`; if ``start`` is of another kind.
+        Degenerate
+            If nothing is touched, or no outline of this kind is possible.
+        """
+        return self.posterior_of(readings_of(image, self.gap_cm, self.noise.least), start, belief)
+
+    def posterior_of(
+        self,
+        readings: Readings,
+        start: Start = None,
+        belief: tuple[Values, Values] | None = None,
+    ) -> Posterior:
+        """Return the same from readings."""
+        problem = self._problem(readings, belief)
+        begin = self._begin(start, problem)
+        table = self._table(problem)
+        found = searched.call(problem, table, BLOCK, self.precision**-2, begin)
+        return self._answer(readings, problem.kind, found)
+
+    def top_of(self, readings: Readings, before: Top | None = None, start: Start = None) -> Top:
+        """Return the most likely outline, by one attempt, or two more after an earlier one."""
+        problem = self._problem(readings, None)
+        table = self._table(problem)
+        if before is None:
+            n = table.shape[1]
+            before = Top(-math.inf, -math.inf, np.zeros(n), np.zeros((n, n)), True)
+            attempts = 0, 1
+        else:
+            attempts = 1, ATTEMPTS
+        p, root = before.p.copy(), before.root.copy()
+        begin = self._begin(start, problem)
+        height, unsure = topped.call(problem, table, begin, attempts, before.height, p, root)
+        possible = height > -math.inf
+        evidence = height + log_volume.call(problem.kind, p, root) if possible else height
+        return Top(evidence, height, p, root, unsure)
+
+    def around(self, readings: Readings, top: Top) -> Posterior:
+        """Return the posterior around a top that is possible."""
+        problem = self._problem(readings, None)
+        found = spread_out.call(
+            problem, self._table(problem), BLOCK, self.precision**-2, top.p, top.root, top.height
+        )
+        return self._answer(readings, problem.kind, found)
+
+    def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
+        noise, places, guess = self._noise_at(float(readings.grid[2]))
+        kind, n = self.kind, unknowns.call(self.kind, self.corners)
+        if kind == ELLIPSE and belief is None:
+            kind = OVAL
+        mean, precision = (np.zeros(n), np.zeros((n, n))) if belief is None else belief
+        states = readings.states
+        if states.size > LARGE_PAD:
+            noise, states = _quiet(readings, noise)
+        return Problem(
+            kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
+            self._prior(readings), mean, precision,
+        )  # fmt: skip
+
+    def _answer(self, readings: Readings, kind: int, found: Found) -> Posterior:
+        if found.used == 0:
+            raise Degenerate(
+                f"{readings.touched} touched elements: no such outline on the pad explains them"
+            )
+        top, mean, covariance = found.likeliest, found.mean, found.covariance
+        if kind == OVAL:
+            top, mean, covariance = _as_ellipses(top, found.points, found.weights)
+        return Posterior(
+            self.kind, self.corners, mean, covariance, found.points, found.weights, top,
+            found.evidence, found.equal, found.surprise, found.alike, found.lean, found.fall,
+        )  # fmt: skip
+
+    def range_cm(self, readings: Readings) -> tuple[float, float]:
+        """Return the smallest and the largest radius, half axis or half side."""
+        smallest = self.smallest_cm or SMALLEST_PITCHES * float(readings.grid[2])
+        if math.isfinite(self.largest_cm):
+            return smallest, self.largest_cm
+        return smallest, max(math.hypot(*readings.size_cm), 2.0 * smallest)
+
+    def _prior(self, readings: Readings) -> Values:
+        width, height = readings.size_cm
+        return np.array(
+            [
+                readings.grid[0],
+                readings.grid[1],
+                width,
+                height,
+                *self.range_cm(readings),
+                1.0 if self.whole else 0.0,
+                0.0,
+                0.0,
+            ]
+        )
+
+    def _noise_at(self, pitch_cm: float) -> tuple[Values, Places, Values]:
+        kept = self._kept.get(pitch_cm)
+        if kept is None:
+            noise = self.noise
+            kept = noise.vector(pitch_cm), noise.places, noise.guess(pitch_cm)
+            self._kept[pitch_cm] = kept
+        return kept
+
+    @cached_property
+    def _kept(self) -> dict[float, tuple[Values, Places, Values]]:
+        return {}
+
+    def _table(self, problem: Problem) -> Values:
+        n = unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated)
+        return _table(max(1, math.ceil(self.most_points / BLOCK)) * BLOCK, n, self.seed)
+
+    def _begin(self, start: Start, problem: Problem) -> Values:
+        if start is None:
+            return NO_START
+        if not isinstance(start, Shape):
+            begin = start.copy()
+            if problem.kind == OVAL:
+                to_oval.call(begin)
+            return begin
+        kind, corners, p = packed(start)
+        if kind == FREE and self.kind == REGULAR and corners == self.corners:
+            p = _as_regular(start)
+        elif kind != self.kind or (kind == FREE and corners != self.corners):
+            raise ValueError(f"start: a {type(start).__name__} is not of the shape to be fitted")
+        load = moments.call(problem.grid, problem.logs, problem.states)[6]
+        begin = np.concatenate([p, [load], problem.guess[:, 0]])
+        if problem.kind == OVAL:
+            to_oval.call(begin)
+        return begin
+
+
+def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:
+    """Return noise and states of a large pad on which the converter's noise shows as loads."""
+    least = least_shown.call(readings.logs, readings.states, noise)
+    if least <= noise[LEAST]:
+        return noise, readings.states
+    raised = noise.copy()
+    raised[LEAST] = least
+    return raised, silenced.call(readings.logs, readings.states, least)
+
+
+def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, Values, Values]:
+    """Turn weighted ovals into ellipses in place; return the top as one, mean and covariance."""
+    to_ellipses.call(points, weights)
+    mean, covariance = np.empty(points.shape[1]), np.empty((points.shape[1],) * 2)
+    spread_of.call(points, weights, len(points), mean, covariance)
+    top = as_ellipse.call(top)
+    quarters = round((top[4] - mean[4]) / (0.5 * math.pi))
+    top[4] -= quarters * 0.5 * math.pi
+    if quarters % 2:
+        top[[2, 3]] = top[[3, 2]]
+    return top, mean, covariance
+
+
+@cache
+def _table(count: int, n: int, seed: int) -> Values:
+    table = even_points(count, n, seed)
+    table.setflags(write=False)
+    return table
+
+
+def _as_regular(start: Shape) -> Values:
+    x, y = start.x_cm, start.y_cm
+    corners = start.outline_cm() - (x, y)
+    radius = float(np.hypot(*corners.T).mean())
+    return np.array([x, y, radius, math.atan2(-corners[0, 1], corners[0, 0])])

@@ -1,0 +1,144 @@
+"""``Noise``: how unevenly elements read, as the kernels take it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import (
+    FALL,
+    FOAM,
+    LEAN_X,
+    LEAN_Y,
+    SIGMA,
+    VOIDS,
+)
+from tactile_graph_likelihood.single.problem import Places
+from tactile_graph_pads.pad import Pad
+
+ESTIMATED = {
+    "sigma": (SIGMA,),
+    "voids": (VOIDS,),
+    "foam": (FOAM,),
+    "fall": (FALL,),
+    "lean": (LEAN_X, LEAN_Y),
+}
+"""What may be estimated with an object, and its places in a noise vector."""
+
+LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS = 0.05, 1e-3, 0.9
+"""What a model is held to: no pad is more even than this, and each element may fail."""
+
+DEVIATIONS = 5.0  # of the converter's noise that hardly any element of a frame exceeds
+SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7}
+"""Standard deviations of ln sigma, the voids' log odds, ln foam, and of the pressure's fall and
+lean (see `pressure`), before a frame is read."""
+
+FALL_GUESSED = 0.5
+"""The middle of the guess: a ball's (Hertz)."""
+
+GUESSED_FOAM = 0.5
+"""Pitches; the middle of the guess where foam is estimated and none is given."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What the model takes for granted of a pad's unevenness.
+
+    Parameters
+    ----------
+    sigma : float
+        Standard deviation of the logarithm of an element's gain.
+    voids : float
+        Share of covered elements that read nothing.
+    strays : float
+        Probability that an element's reading has nothing to do with the object.
+    least : float
+        Least load that shows, in the image's unit; 0 where any does.
+    foam_cm : float
+        Width (standard deviation) over which foam spreads the load.
+    estimated : tuple of str
+        Which of sigma, voids, foam, fall and lean are estimated with the object; the values here
+        are then the middle of the guess. A pressure whose fall or lean is not estimated has none.
+    """
+
+    sigma: float = 0.5
+    voids: float = 0.1
+    strays: float = 1e-3
+    least: float = 0.0
+    foam_cm: float = 0.0
+    estimated: tuple[str, ...] = ()
+
+    def vector(self, pitch_cm: float) -> Values:
+        """Return the numbers as the kernels take them."""
+        foam = self.foam_cm / pitch_cm
+        if "foam" in self.estimated and foam <= 0.0:
+            foam = GUESSED_FOAM
+        return np.array(
+            [
+                max(self.sigma, LEAST_SIGMA),
+                min(max(self.voids, LEAST_VOIDS), MOST_VOIDS),
+                self.strays,
+                math.log(self.least) if self.least > 0.0 else -700.0,
+                foam,
+                FALL_GUESSED if "fall" in self.estimated else 0.0,
+                0.0,
+                0.0,
+            ]
+        )
+
+    @property
+    def places(self) -> Places:
+        """Which places of the vector are estimated."""
+        found = [place for name in self.estimated for place in ESTIMATED[name]]
+        return np.array(found, dtype=np.int64)
+
+    def guess(self, pitch_cm: float) -> Values:
+        """Return mean and standard deviation of each estimated coordinate, shape (M, 2)."""
+        vector = self.vector(pitch_cm)
+        places = self.places
+        out = np.empty((len(places), 2))
+        for k, place in enumerate(places):
+            middle = vector[place]
+            if place < FALL:
+                middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
+            out[k] = middle, SPREADS[place]
+        return out
+
+
+def noise_of(pad: Pad, **given: object) -> Noise:
+    """Return a pad's own noise, but for what is given and not None.
+
+    Parameters
+    ----------
+    pad : Pad
+        Its unevenness, the scatter of its readings, its foam, and the least load that shows: half
+        its turn-on load, below which the step `force` reads nothing, or what the converter's noise
+        can pass for, if that is more.
+    **given
+        Fields of `Noise` to be used instead.
+    """
+    scatter = pad.law.repeatability / pad.law.power
+    own: dict[str, object] = {
+        "sigma": math.hypot(pad.unevenness.sigma, scatter),
+        "voids": pad.unevenness.voids,
+        "foam_cm": pad.contact.foam_cm,
+        "least": max(0.5 * pad.law.turn_on_g, level_of(pad, DEVIATIONS * _noise_v(pad))),
+    }
+    own.update({name: value for name, value in given.items() if value is not None})
+    return Noise(**own)  # type: ignore[arg-type]
+
+
+def _noise_v(pad: Pad) -> float:
+    """Return the standard deviation of a scanned voltage: noise and rounding, averaged."""
+    step_v = 0.0 if pad.converter.bits is None else pad.converter.step_v
+    return math.hypot(pad.scan.noise_v, step_v / math.sqrt(12.0)) / math.sqrt(pad.scan.samples)
+
+
+def level_of(pad: Pad, level_v: float) -> float:
+    """Return the load, in grams, that one element alone shows as so many volts."""
+    volts = np.zeros(pad.geometry.shape)
+    volts[0, 0] = level_v
+    return max(float(pad.backward(volts).load_g[0, 0]), 1e-6)

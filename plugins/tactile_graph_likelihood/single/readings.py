@@ -1,0 +1,164 @@
+"""``Readings``: an image as the kernels take it."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, typical_load
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
+
+FAINT = 0.015
+"""Share of a loaded element's reading below which another counts as nothing. A column of a divider
+that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
+LARGEST = 1e100
+"""Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
+RANK = 8
+"""Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
+
+
+class Readings(NamedTuple):
+    """What an image says, and where its elements lie.
+
+    ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
+    zeros (a climb's own); ``logs`` and ``states`` are as in `element_terms`.
+    """
+
+    grid: Values
+    logs: Values
+    states: States
+    touched: int
+
+    @property
+    def size_cm(self) -> tuple[float, float]:
+        """Width and height from the first element's edge to the last one's."""
+        rows, columns = self.states.shape
+        gap = self.grid[2] - self.grid[3]
+        return columns * self.grid[2] - gap, rows * self.grid[2] - gap
+
+
+def _split(values: Values, least: float, logs: Values, states: States) -> int:
+    """Write logarithms and states of readings; return how many show, -1 if one is NaN."""
+    if not np.isfinite(values).all():
+        return -1
+    shows = (values > 0.0) & (values >= least)
+    logs[...] = np.log(np.where(shows, values, 1.0))
+    states[...] = np.where(shows, ON, OFF)
+    return int(shows.sum())
+
+
+@compiled_twin_of(_split)
+def split(values: Values, least: float, logs: Values, states: States) -> int:
+    """Do the same in loops."""
+    count = 0
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if value - value != 0.0:
+                return -1
+            if value > 0.0 and value >= least:
+                logs[i, j] = np.log(value)
+                states[i, j] = ON
+                count += 1
+            else:
+                logs[i, j] = 0.0
+                states[i, j] = OFF
+    return count
+
+
+def _ranked(values: Values, rank: int) -> float:
+    """Return the value that so many, less one, are at least as large as."""
+    return float(np.partition(values, -rank, axis=None)[-rank])
+
+
+@compiled_twin_of(_ranked)
+def ranked(values: Values, rank: int) -> float:
+    """Do the same in loops; that most values are equal costs no time."""
+    largest = np.full(rank, -np.inf)
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if value <= largest[0]:
+                continue
+            k = 0
+            while k + 1 < rank and largest[k + 1] < value:
+                largest[k] = largest[k + 1]
+                k += 1
+            largest[k] = value
+    return float(largest[0])
+
+
+def _loaded(values: Values, least: float, logs: Values, states: States) -> float:
+    """Return what a loaded element reads; of the last two only the space is used.
+
+    On a large pad more than eight readings may be strays. There it is twice the median of those
+    among other readings, 0 where there are none.
+    """
+    if values.size <= LARGE_PAD:
+        return ranked.call(values, RANK)
+    split.call(values, least, logs, states)
+    typical = typical_load.call(logs, states)
+    return 0.0 if math.isnan(typical) else 2.0 * math.exp(typical)
+
+
+def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT) -> Readings:
+    """Return an image's readings.
+
+    Parameters
+    ----------
+    image : Image
+        Loads, in any unit; invalid cells say nothing either way.
+    gap_cm : float
+        Distance of neighbouring elements' edges; less than the pitch.
+    least : float
+        Readings below it count as nothing.
+    faint : float
+        So do those below this share of the eighth largest reading, as beside saturated elements;
+        on a large pad, of twice the median.
+
+    Raises
+    ------
+    ValueError
+        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
+        beyond 1e100.
+    Degenerate
+        If nothing is touched.
+    """
+    across, down = image.pitch_cm
+    if abs(across - down) > 1e-9 * across:
+        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if not gap_cm < across:
+        raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
+    logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
+    if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
+        least = max(least, faint * _loaded(values, least, logs, states))
+    touched = split.call(values, least, logs, states)
+    if touched < 0:
+        raise ValueError("a valid cell holds NaN or infinity")
+    if values.size and values.max() > LARGEST:
+        raise ValueError(f"readings must be at most {LARGEST:g}, got {values.max():g}")
+    if image.valid is not None:
+        states[~image.valid] = UNKNOWN
+        touched = int((states == ON).sum())
+    if touched == 0:
+        raise Degenerate(_why(float(values.max(initial=0.0)), least))
+    x, y = image.origin_cm
+    half = 0.5 * gap_cm
+    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
+    return Readings(grid, logs, states, touched)
+
+
+def _why(peak: float, least: float) -> str:
+    if 0.0 < peak < least:
+        return (
+            f"no reading reaches {least:.3g}, the least that shows (see shows_from); the largest "
+            f"is {peak:.3g}: no outline fits"
+        )
+    return "no element bears a load: no outline fits"

@@ -1,0 +1,1 @@
+"""Restorers that lower the energy by rules."""

@@ -1,0 +1,1 @@
+"""What a restored image and its line field cost."""

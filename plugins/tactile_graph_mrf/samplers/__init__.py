@@ -1,0 +1,1 @@
+"""Restorers that draw from the distribution the energy means."""

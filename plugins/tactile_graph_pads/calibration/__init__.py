@@ -1,0 +1,1 @@
+"""From readings of known loads to grams."""

@@ -1,0 +1,1 @@
+"""Recordings written: NumPy files, tables, Zarr stores."""

@@ -1,0 +1,117 @@
+"""Summaries, intervals and fronts against what can be computed by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from tactile_graph_compare.score.scoring import Targets
+from tactile_graph_compare.score.statistics import (
+    difference_of,
+    mean_interval,
+    score_of,
+    time_difference_of,
+    times_of,
+    with_pareto,
+)
+
+NAN = math.nan
+
+
+def targets(errors, objects=None, offsets=None):
+    made = Targets(n_extra=2)
+    for i, error in enumerate(errors):
+        made.add(i, objects[i] if objects else 0, error)
+    made.offsets = offsets or []
+    return made
+
+
+def test_a_score_sums_up_absolute_errors_and_counts_what_is_missing():
+    got = score_of("v", "radius", targets([-1.0, 3.0, NAN, 2.0]))
+    assert (got.mean, got.median, got.largest) == (2.0, 2.0, 3.0)
+    assert got.p95 == pytest.approx(2.9)
+    assert got.bias == pytest.approx(4 / 3)
+    assert (got.n_answered, got.n_missing, got.n_extra, got.unit) == (3, 1, 2, "cm")
+
+
+def test_the_bias_of_centres_is_the_length_of_the_mean_offset():
+    got = score_of("v", "centre", targets([5.0, 5.0], offsets=[(3.0, 4.0), (-3.0, 4.0)]))
+    assert (got.mean, got.bias) == (5.0, 4.0)
+
+
+def test_without_any_answer_there_are_no_figures():
+    got = score_of("v", "angle", targets([NAN]))
+    assert (got.mean, got.p95, got.bias, got.n_missing) == (None, None, None, 1)
+
+
+def test_paired_differences_take_only_what_both_answered():
+    one = score_of("b", "radius", targets([1.0, -2.0, NAN, 4.0, NAN]))
+    other = score_of("a", "radius", targets([0.5, 1.0, 7.0, NAN, NAN]))
+    got = difference_of(one, other, np.random.default_rng(0))
+    assert got.mean == pytest.approx(0.75)
+    assert (got.n_both, got.n_only_variant, got.n_only_reference, got.n_neither) == (2, 1, 1, 1)
+    assert got.method == "bootstrap over frames"
+    assert got.verdict == "worse"
+
+
+def test_objects_of_one_frame_count_as_one_frame():
+    """Two objects in a frame are no more independent than one."""
+
+    def score(label, errors):
+        made = Targets()
+        for number, error in enumerate(errors):
+            made.add(0, number, error)
+        return score_of(label, "radius", made)
+
+    got = difference_of(score("b", [2.0, 4.0]), score("a", [1.0, 1.0]), np.random.default_rng(0))
+    assert (got.mean, got.low, got.high, got.n_both) == (2.0, None, None, 2)
+
+
+def test_an_interval_holds_the_true_mean_about_as_often_as_it_says():
+    rng = np.random.default_rng(4)
+    held = 0
+    for _ in range(200):
+        got = mean_interval(rng.normal(1.0, 2.0, 60), rng)
+        held += got.low <= 1.0 <= got.high
+    assert 180 <= held <= 198
+
+
+def test_many_frames_have_the_normal_interval_of_the_same_width():
+    values = np.random.default_rng(1).normal(0.0, 1.0, 3000)
+    got = mean_interval(values, np.random.default_rng(0))
+    assert got.method == "normal over frames"
+    assert got.high - got.low == pytest.approx(2 * 1.96 / np.sqrt(3000), rel=0.05)
+    few = mean_interval(values[:2000], np.random.default_rng(0))
+    assert few.high - few.low == pytest.approx(2 * 1.96 / np.sqrt(2000), rel=0.1)
+
+
+def test_intervals_are_the_same_under_the_same_seed():
+    values = np.arange(10.0)
+    first, again = (mean_interval(values, np.random.default_rng(3)) for _ in range(2))
+    assert first == again
+
+
+def test_times_leave_out_reused_frames_and_one_stall_moves_no_median():
+    plain = [10.0, NAN, *[10.0] * 20]
+    slow = times_of([12.0, NAN, *[12.0] * 19, 9000.0])
+    assert (slow.median_us, slow.per_frame_us.size) == (12.0, 22)
+    got = time_difference_of("b", "a", slow, times_of(plain))
+    assert (got.median_us, got.low_us, got.high_us, got.ratio) == (2.0, 2.0, 2.0, 1.2)
+
+
+def test_the_front_is_what_nobody_beats_in_both():
+    scores = [score_of(v, "radius", targets([e])) for v, e in
+              (("slow", 1.0), ("fast", 2.0), ("bad", 2.5), ("equal", 1.0))]  # fmt: skip
+    scores.append(score_of("silent", "radius", targets([NAN])))
+    times = {"slow": 9.0, "fast": 3.0, "bad": 3.0, "equal": 9.0, "silent": 0.0}
+    front = [s.variant for s in with_pareto(scores, times) if s.pareto]
+    assert front == ["slow", "fast", "equal"]
+
+
+def test_who_answers_less_beats_nobody():
+    often = score_of("often", "radius", targets([2.0, 2.0]))
+    seldom = score_of("seldom", "radius", targets([1.0, NAN]))
+    front = with_pareto([often, seldom], {"often": 5.0, "seldom": 1.0})
+    assert [s.pareto for s in front] == [True, True]

@@ -1,0 +1,191 @@
+"""Groups of basins looked at again: joined where they are one object, cut where they are two."""
+
+import numpy as np
+import pytest
+
+from helpers_filters import drawn, image_of
+from helpers_objects import footprint, frames
+from tactile_graph_filters.parting.hull_terms import (
+    AREA,
+    CELLS,
+    LOGS,
+    LONG,
+    NOTCHES,
+    WEAK,
+    hull_terms,
+)
+from tactile_graph_filters.parting.split_contacts import SplitContacts
+from tactile_graph_filters.parting.straight_cuts import joined_and_cut
+from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
+
+LOBES = drawn("""
+    .###...###.
+    ####..#####
+    ###########
+    ####..#####
+    .###...###.
+""")
+SLAB = drawn("""
+    ###########
+    ##.########
+    ######.####
+    ###########
+""")
+
+
+def groups_of(mask, *lefts):
+    """Return group 1 up to the first column named, 2 up to the next, and so on."""
+    columns = np.arange(mask.shape[1])
+    number = 1 + np.searchsorted(np.array(lefts), columns, side="right")
+    return np.where(mask.values, number, 0).astype(np.int32)
+
+
+def odds(mask, at, values=None):
+    owner = groups_of(mask, at)
+    load = mask.values.astype(float) if values is None else values
+    known = np.ones(mask.shape, bool)
+    both = hull_terms(owner, 1, 2, load, known, 0.5, 1e-3)
+    return log_odds(owner, 1, 2, load, known, 0.5, 0.5, 1e-3, both)
+
+
+def recut(mask, owner, values=None, **limits):
+    load = mask.values.astype(float) if values is None else values
+    known = np.ones(mask.shape, bool)
+    cut_above, join_below = limits.get("cut_above", 0.0), limits.get("join_below", -1.0)
+    joined_and_cut(owner, load, known, 0.5, 0.5, cut_above, join_below)
+    return [np.count_nonzero(owner == k) for k in np.unique(owner[owner > 0])]
+
+
+@pytest.mark.parametrize("twin", ["loops", "compiled"])
+def test_the_terms_of_a_square_with_a_notch_and_a_weak_cell(twin):
+    if twin == "compiled":
+        pytest.importorskip("numba")
+    owner = np.ones((5, 5), np.int32)
+    owner[0, 2], owner[2, 3], owner[4, 2] = 0, 0, 2
+    values = np.where(owner == 1, np.e, 0.0)
+    values[2, 2] = 0.25
+    known = np.ones((5, 5), bool)
+    terms = getattr(hull_terms, twin)(owner, 1, 1, values, known, 0.5, 1e-3)
+    mean = (21 * np.e + 0.25) / 22
+    assert terms[CELLS] == 22
+    assert terms[LOGS] == pytest.approx(21 + np.log(0.25))
+    assert terms[AREA] == 16.0
+    assert terms[NOTCHES] == 1.0  # the cell held by another is no notch, nor the hole inside
+    assert terms[WEAK] == pytest.approx(1 - 0.25 / (0.5 * mean))
+    known[0, 2] = False
+    assert getattr(hull_terms, twin)(owner, 1, 1, values, known, 0.5, 1e-3)[NOTCHES] == 0.0
+
+
+def test_a_bar_is_as_long_as_its_second_moments_say():
+    owner = np.ones((2, 8), np.int32)
+    terms = hull_terms(owner, 1, 1, owner * 1.0, owner > 0, 0.5, 1e-3)
+    assert terms[LONG] == pytest.approx(np.log(8 / 2))
+
+
+def test_a_seam_is_as_long_as_what_meets_across_it_is_pressed():
+    owner = np.array([[1, 2], [1, 2]], np.int32)
+    values = np.array([[1.0, 1.0], [1.0, 0.25]])
+    length, cells, logs = seam(owner, 1, 2, values, 0.5, 1e-3)
+    assert length == pytest.approx(1.0 + 0.5 + 0.7 * 0.5 + 0.7)
+    assert (cells, logs) == (4, pytest.approx(np.log(0.25)))
+
+
+def test_the_cut_at_the_neck_is_likelier_than_beside_it_and_a_slab_has_none():
+    assert odds(LOBES, 5) > 0
+    assert odds(LOBES, 5) > max(odds(LOBES, 3), odds(LOBES, 8))
+    assert max(odds(SLAB, at) for at in range(2, 10)) < -1
+
+
+def test_the_odds_weigh_what_the_terms_say():
+    """A square of 4 by 4, even and whole, cut in a row of four and three rows of four."""
+    owner = np.ones((4, 4), np.int32)
+    owner[0] = 2
+    load, known = np.ones((4, 4)), np.ones((4, 4), bool)
+    both = hull_terms(owner, 1, 2, load, known, 0.5, 1e-3)
+    settings = (owner, 1, 2, load, known, 0.5, 0.5, 1e-3, both)
+    terms = dict(zip(NAMES, cut_terms(*settings), strict=True))
+    assert terms["constant"] == 1.0
+    assert terms["hull gap"] == pytest.approx((9 - 6 - 0) / 4)
+    assert terms["notches"] == terms["weak cells"] == terms["seam's readings"] == 0.0
+    assert terms["seam"] == pytest.approx((4 + 6 * 0.7) / 4)
+    assert terms["length"] == pytest.approx(np.log(4))
+    assert terms["inverse of fewer cells"] == 0.25
+    assert terms["log of fewer cells"] == pytest.approx(np.log(4))
+    assert terms["log of all cells"] == pytest.approx(np.log(16))
+    assert log_odds(*settings) == pytest.approx(WEIGHTS @ list(terms.values()))
+
+
+def test_low_readings_along_the_cut_make_it_likelier():
+    values = SLAB.values.astype(float)
+    values[:, 4:6] *= 0.8  # neither weak nor less than a full contact
+    assert odds(SLAB, 5, values) > odds(SLAB, 5) + 0.05
+    values[:, 4:6] *= 0.3
+    assert odds(SLAB, 5, values) > odds(SLAB, 5) + 0.5
+
+
+def test_one_group_of_two_objects_is_cut_and_two_groups_of_one_are_joined():
+    assert sorted(recut(LOBES, groups_of(LOBES, 99))) in ([20, 21], [19, 22], [18, 23])
+    assert recut(SLAB, groups_of(SLAB, 5)) == [SLAB.count]
+    assert len(recut(LOBES, groups_of(LOBES, 5))) == 2
+
+
+def test_pieces_are_cut_again():
+    three = drawn("""
+        .###...###...###.
+        ####..#####..####
+        #################
+        ####..#####..####
+        .###...###...###.
+    """)
+    assert len(recut(three, groups_of(three, 99), cut_above=-3.0)) == 3
+    assert len(recut(LOBES, groups_of(LOBES, 99), cut_above=-3.0)) == 2
+
+
+def test_the_two_limits_say_how_willingly():
+    assert recut(LOBES, groups_of(LOBES, 99), cut_above=50.0) == [LOBES.count]
+    assert len(recut(SLAB, groups_of(SLAB, 5), cut_above=50.0, join_below=-50.0)) == 2
+
+
+def test_no_piece_is_smaller_than_three_cells():
+    rng = np.random.default_rng(4)
+    mask = image_of(rng.random((9, 9))).mask(rng.random((9, 9)) < 0.6)
+    sizes = recut(mask, groups_of(mask, 99), cut_above=-50.0, join_below=-99.0)
+    assert len(sizes) > 4
+    assert min(sizes) >= 3
+    assert sum(sizes) == mask.count
+
+
+@pytest.mark.parametrize("scene", ["six", "rectangle-2"])
+def test_compiled_and_plain_agree(scene):
+    pytest.importorskip("numba")
+    for frame in frames(scene, 2, 8):
+        mask, values = footprint(frame.image), np.maximum(frame.image.values, 0.0)
+        known = np.ones(mask.shape, bool)
+        first = SplitContacts(recut=False)(frame.image, mask).contacts[0]._labels
+        owners = [first.copy(), first.copy()]
+        for owner, twin in zip(owners, ("loops", "compiled"), strict=True):
+            getattr(joined_and_cut, twin)(owner, values * mask.values, known, 0.5, 0.3, -0.5, -1.0)
+        assert np.array_equal(*owners)
+
+
+def test_touching_pairs_are_told_apart_more_often_and_single_objects_cut_no_more_often():
+    """Discs of radius 3 to 4.4 cm that touch; long thin rectangles; discs of the thesis."""
+    rng = np.random.default_rng(21)
+    twins = []
+    for _ in range(30):
+        radius, angle = rng.uniform(3.0, 4.4), rng.uniform(0.0, np.pi)
+        way = radius * np.array([np.cos(angle), np.sin(angle)])
+        weight_g = round(60 * np.pi * radius**2)
+        disc = {"shape": "disc", "radius_cm": radius, "weight_g": weight_g}
+        places = [(10.25 + s * way).tolist() for s in (-1.0, 1.0)]
+        twins += frames({"objects": [{**disc, "place": p} for p in places]}, 1, int(1e6 * angle))
+    one_way, other = SplitContacts(), SplitContacts(recut=False)
+    right = {}
+    for name, found in (("pairs", twins), ("thin", list(frames("rectangle-2", 30, 3)))):
+        for kind, step in (("new", one_way), ("old", other)):
+            counts = [step(f.image, footprint(f.image)).count for f in found]
+            right[name, kind] = np.mean([c == len(found[0].truth) for c in counts])
+    assert right["pairs", "new"] >= 0.85
+    assert right["pairs", "new"] > right["pairs", "old"]
+    assert right["thin", "new"] >= 0.85
+    assert right["thin", "new"] > right["thin", "old"]

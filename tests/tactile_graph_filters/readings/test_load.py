@@ -1,0 +1,63 @@
+import math
+
+import numpy as np
+import pytest
+
+from helpers_filters import ORIGIN, PITCH, image_of, random_mask
+from tactile_graph.errors import DataError
+from tactile_graph_filters.readings.load import LoadOf, measure
+
+
+def test_total_area_peak_and_centre_of_pressure():
+    found = LoadOf()(image_of([[0.0, 1.0], [0.0, 3.0]]))
+    assert (found.loaded, found.total, found.peak) == (True, 4.0, 3.0)
+    assert found.contact_area_cm2 == pytest.approx(2 * PITCH[0] * PITCH[1])
+    assert found.x_cm == pytest.approx(ORIGIN[0] + 1.5 * PITCH[0])
+    assert found.y_cm == pytest.approx(ORIGIN[1] + 1.25 * PITCH[1])
+
+
+def test_force_is_given_where_the_unit_has_one():
+    values = [[100.0, 900.0]]
+    assert LoadOf()(image_of(values, "gram")).force_n == pytest.approx(9.80665)
+    assert LoadOf()(image_of(values, "kilopascal")).force_n == pytest.approx(
+        1000e3 * PITCH[0] * PITCH[1] * 1e-4
+    )
+    assert LoadOf()(image_of(values, "counts")).force_n is None
+
+
+def test_an_unloaded_pad_has_no_centre_and_is_no_error():
+    found = LoadOf()(image_of(np.zeros((3, 3)), "gram"))
+    assert found == (False, 0.0, 0.0, 0.0, 0.0, None, None)
+
+
+def test_cells_at_or_below_above_count_for_nothing():
+    found = LoadOf(above=1.0)(image_of([[1.0, 0.5, -4.0, 2.0]]))
+    assert (found.total, found.peak) == (2.0, 2.0)
+    assert found.contact_area_cm2 == pytest.approx(PITCH[0] * PITCH[1])
+
+
+def test_invalid_cells_count_for_nothing():
+    found = LoadOf(above=-1.0)(image_of([[0.0, 2.0]], valid=[[False, True]]))
+    assert found.contact_area_cm2 == pytest.approx(PITCH[0] * PITCH[1])
+    assert found.total == 2.0
+
+
+def test_only_negative_readings_are_no_load():
+    found = LoadOf(above=-10.0)(image_of([[-3.0, -2.0]]))
+    assert (found.loaded, found.peak, found.x_cm) == (False, -2.0, None)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_what_is_no_number_is_refused(bad):
+    with pytest.raises(DataError, match="row 0, column 0: must be a number"):
+        LoadOf()(image_of([[bad, 1.0]]))
+
+
+@pytest.mark.parametrize("above", [0.0, -5.0, 0.7, 9.0])
+def test_the_twins_agree(above):
+    pytest.importorskip("numba")
+    values = np.random.default_rng(0).normal(size=(16, 12))
+    usable = random_mask(0, (16, 12)).values
+    assert measure.reference(values, usable, above) == pytest.approx(
+        measure.compiled(values, usable, above)
+    )

@@ -1,0 +1,90 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from helpers_filters import image_of, same_grid
+from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.wires import Image
+from tactile_graph_filters.thresholds.threshold import Threshold, at_least
+
+VALUES = [[0.0, 0.01, 0.02], [-1.0, 5.0, 0.009]]
+
+
+def test_cells_at_or_above_the_level_are_on():
+    image = image_of(VALUES)
+    mask = Threshold(level_v=0.01)(image)
+    assert mask.values.tolist() == [[False, True, True], [False, True, False]]
+    assert same_grid(image, mask)
+    assert not mask.values.flags.writeable
+
+
+def test_above_asks_to_exceed_the_level():
+    mask = Threshold(level_v=0.01, above=True)(image_of(VALUES))
+    assert mask.values.tolist() == [[False, False, True], [False, True, False]]
+    assert Threshold(level=0.0, above=True)(image_of([[0.0, 5e-324]])).values.tolist() == [
+        [False, True]
+    ]
+
+
+def test_level_is_in_the_images_own_unit():
+    counts = image_of([[24, 25, 26]], "counts")
+    assert Threshold(level=25)(counts).values.tolist() == [[False, True, True]]
+
+
+def test_images_of_whole_numbers_are_taken():
+    image = Image(np.array([[1, 2], [3, 4]], np.int16), quantity="counts")
+    assert Threshold(level=2.5)(image).values.tolist() == [[False, False], [True, True]]
+
+
+def test_invalid_cells_are_never_on():
+    image = image_of([[0.0, 3.0, 3.0]], valid=[[False, False, True]])
+    assert Threshold(level=-1.0)(image).values.tolist() == [[False, False, True]]
+
+
+def test_an_image_without_a_valid_cell_is_degenerate():
+    image = image_of([[0.0, 0.0]], valid=[[False, False]])
+    with pytest.raises(Degenerate, match="no cell of the image is valid, so it has no footprint"):
+        Threshold(level=1.0)(image)
+
+
+def test_nan_in_a_valid_cell_is_never_silently_off():
+    image = image_of([[1.0, 2.0], [math.nan, math.nan]])
+    with pytest.raises(DataError, match=r"row 1, column 0: must be a number, got nan \(and 1 more"):
+        Threshold(level=1.0)(image)
+
+
+def test_nan_in_an_invalid_cell_does_no_harm():
+    image = image_of([[math.nan, 2.0]], valid=[[False, True]])
+    assert Threshold(level=1.0)(image).values.tolist() == [[False, True]]
+
+
+def test_infinity_is_above_every_level():
+    assert Threshold(level=1.0)(image_of([[math.inf, -math.inf]])).values.tolist() == [
+        [True, False]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("given_levels", "got"), [({}, "neither"), ({"level_v": 1.0, "level": 1.0}, "both")]
+)
+def test_exactly_one_level_must_be_given(given_levels, got):
+    with pytest.raises(ValueError, match=f"exactly one of level_v and level .* got {got}"):
+        Threshold(**given_levels)
+
+
+def test_the_level_must_be_finite():
+    with pytest.raises(ValueError, match="the level must be a finite number, got nan"):
+        Threshold(level=math.nan)
+
+
+@given(arrays(np.float64, (5, 7)), st.floats(allow_nan=False))
+def test_the_twins_agree(values, level):
+    pytest.importorskip("numba")
+    outs = np.empty((2, 5, 7), bool)
+    counts = [at_least.reference(values, level, outs[0]), at_least.compiled(values, level, outs[1])]
+    assert counts[0] == counts[1] == (-1 if np.isnan(values).any() else np.sum(values >= level))
+    assert np.array_equal(outs[0], outs[1])

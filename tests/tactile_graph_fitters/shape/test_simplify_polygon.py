@@ -1,0 +1,72 @@
+"""Polygons of few corners from hulls of many."""
+
+import numpy as np
+import pytest
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Polygon
+from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon
+
+
+def regular(n, radius=5.0, turn=0.2):
+    t = turn + 2 * np.pi * np.arange(n) / n
+    return np.column_stack([3 + radius * np.cos(t), 4 - radius * np.sin(t)])
+
+
+def with_points_on_sides(corners, n, rng=None, noise=0.0):
+    parts = np.linspace(0, 1, n, endpoint=False)[:, None]
+    ends = np.roll(corners, -1, axis=0)
+    xy = np.vstack([a * (1 - parts) + b * parts for a, b in zip(corners, ends, strict=True)])
+    return xy if rng is None else xy + rng.normal(0, noise, xy.shape)
+
+
+def worst_corner(found, corners):
+    return max(np.hypot(*(found - c).T).min() for c in corners)
+
+
+@pytest.mark.parametrize("n", [3, 4, 5, 6])
+@pytest.mark.parametrize("refine", [True, False])
+def test_a_polygon_with_more_points_on_its_sides_is_itself_again(n, refine):
+    corners = regular(n)
+    got = SimplifyPolygon(corners=n, refine=refine)(Polygon(with_points_on_sides(corners, 7)))
+    assert got.count == n
+    assert worst_corner(got.xy_cm, corners) < 1e-9
+
+
+def test_refining_brings_the_corners_of_a_noisy_pentagon_nearer():
+    rng = np.random.default_rng(0)
+    corners = regular(5)
+    off = {True: [], False: []}
+    for _ in range(20):
+        noisy = Polygon(with_points_on_sides(corners, 12, rng, 0.15))
+        for refine, found in off.items():
+            found.append(
+                worst_corner(SimplifyPolygon(corners=5, refine=refine)(noisy).xy_cm, corners)
+            )
+    assert np.mean(off[True]) < 0.7 * np.mean(off[False])
+
+
+def test_a_tolerance_decides_how_many_corners_stay():
+    octagon = Polygon(with_points_on_sides(regular(8), 5))
+    assert SimplifyPolygon(tolerance_cm=0.01)(octagon).count == 8
+    assert SimplifyPolygon(tolerance_cm=4.0)(octagon).count < 8
+
+
+def test_the_way_round_is_kept():
+    corners = regular(5)
+    one = SimplifyPolygon(corners=5)(Polygon(with_points_on_sides(corners, 4)))
+    two = SimplifyPolygon(corners=5)(Polygon(with_points_on_sides(corners, 4)[::-1].copy()))
+    assert one._moments()[0] == pytest.approx(-two._moments()[0])
+
+
+def test_few_corners_are_refused_in_words():
+    with pytest.raises(Degenerate, match="the polygon has 3 corners, fewer than the 5"):
+        SimplifyPolygon(corners=5)(Polygon(regular(3)))
+
+
+@pytest.mark.parametrize(
+    ("settings", "got"), [({}, "neither"), ({"corners": 4, "tolerance_cm": 1.0}, "both")]
+)
+def test_exactly_one_of_the_two_settings_is_needed(settings, got):
+    with pytest.raises(ValueError, match=f"exactly one of corners and tolerance_cm .* got {got}"):
+        SimplifyPolygon(**settings)

@@ -1,0 +1,169 @@
+"""The joint likelihood of outlines, its slopes and its evidence."""
+
+import math
+
+import numpy as np
+import pytest
+
+from helpers_likelihood import GRID, NOISE
+from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph_likelihood.geometry.covered import covered
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
+from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
+from tactile_graph_likelihood.several.joint_posterior import (
+    add_outline,
+    gain,
+    log_rest_of,
+    overlap,
+    slopes,
+)
+from tactile_graph_likelihood.several.maximise_jointly import climbed_together
+from tactile_graph_likelihood.several.misfit import misfit_of_load
+from tactile_graph_likelihood.single.element_terms import OFF, ON
+from tactile_graph_likelihood.single.log_posterior import log_likelihood
+from tactile_graph_likelihood.single.misfit import misfit
+from tactile_graph_likelihood.single.problem import problem_of
+
+VECTOR = NOISE.vector(1.3)
+PRIOR = np.array([0.0, 0.0, 20.5, 20.5, 1.0, 12.0, 1.0, 0.0, 0.0, 4.5, 1.5])
+KINDS, CORNERS = np.array([DISC, RECTANGLE]), np.array([0, 0])
+POINTS = np.array([[6.0, 6.0, 2.6, 4.5, 0.0, 0.0], [10.9, 7.2, 3.0, 2.1, 0.4, 5.0]])
+BARE = np.zeros((16, 16))
+
+
+@pytest.fixture(autouse=True, scope="module")
+def compiled():
+    if have_compiler():
+        warm_up()
+
+
+def image(seed):
+    load, share = BARE.copy(), BARE.copy()
+    for kind, p in zip(KINDS, POINTS, strict=True):
+        add_outline.call(int(kind), 0, p, GRID, VECTOR, load, share)
+    rng = np.random.default_rng(seed)
+    load *= np.exp(0.48 * rng.standard_normal(load.shape)) * (rng.random(load.shape) > 0.16)
+    on = load > 5.0
+    return np.log(np.where(on, load, 1.0)), np.where(on, ON, OFF).astype(np.uint8)
+
+
+def both(points, logs, states, load=BARE, share=BARE):
+    return gain.call(KINDS, CORNERS, points, load, share, GRID, logs, states, VECTOR)
+
+
+def test_one_outline_adds_what_the_single_likelihood_says():
+    logs, states = image(1)
+    for k in (0, 1):
+        at = slice(k, k + 1)
+        alone = log_likelihood.call(
+            problem_of(int(KINDS[k]), 0, GRID, logs, states, VECTOR, PRIOR), POINTS[k]
+        )
+        own = gain.call(KINDS[at], CORNERS[at], POINTS[at], BARE, BARE, GRID, logs, states, VECTOR)
+        assert own == pytest.approx(alone, abs=1e-9)
+
+
+def test_two_outlines_add_what_one_and_then_the_other_beside_it_do():
+    logs, states = image(2)
+    load, share = BARE.copy(), BARE.copy()
+    add_outline.call(DISC, 0, POINTS[0], GRID, VECTOR, load, share)
+    assert share == pytest.approx(covered.call(DISC, 0, POINTS[0], GRID, (0, 0, 16, 16)))
+    assert load == pytest.approx(math.exp(4.5) * share)
+    first = gain.call(KINDS[:1], CORNERS[:1], POINTS[:1], BARE, BARE, GRID, logs, states, VECTOR)
+    second = gain.call(KINDS[1:], CORNERS[1:], POINTS[1:], load, share, GRID, logs, states, VECTOR)
+    assert both(POINTS, logs, states) == pytest.approx(first + second, abs=1e-9)
+
+
+def test_the_plain_kernel_gives_the_same():
+    logs, states = image(3)
+    got = gain.reference(KINDS, CORNERS, POINTS, BARE, BARE, GRID, logs, states, VECTOR)
+    assert both(POINTS, logs, states) == pytest.approx(got, abs=1e-8)
+
+
+def test_overlap_costs_and_touching_does_not():
+    share = np.ones((3, 3))
+    assert overlap.call(share) == 0.0
+    share[1, 1] = 1.3
+    assert overlap.call(share) == pytest.approx(0.5 * 9.0)
+    logs, states = image(4)
+    moved = POINTS.copy()
+    moved[0, :2] = POINTS[1, :2]
+    assert both(moved, logs, states) < both(POINTS, logs, states) - 100.0
+
+
+def test_slopes_are_those_of_the_gain():
+    logs, states = image(5)
+    slope, matrix = np.empty(12), np.empty((12, 12))
+    slopes.call(KINDS, CORNERS, POINTS, BARE, BARE, GRID, logs, states, VECTOR, slope, matrix)
+    assert matrix == pytest.approx(matrix.T)
+    assert np.linalg.eigvalsh(matrix).min() > -1e-6
+    for k, at in ((0, 3), (1, 5)):  # the loads: smooth
+        step = POINTS.copy()
+        step[k, at] += 1e-4
+        rise = (both(step, logs, states) - both(POINTS, logs, states)) / 1e-4
+        assert slope[6 * k + at] == pytest.approx(rise, rel=0.01, abs=0.02)
+    assert slope[4] == slope[5] == 0.0
+    assert matrix[4, 4] == matrix[5, 5] == 1.0
+
+
+def test_a_climb_gains_and_comes_near_the_truth():
+    off = []
+    for seed in range(12):
+        logs, states = image(seed)
+        points = POINTS + np.array([0.4, -0.3, 0.0, 0.0, 0.0, 0.0])
+        before = both(points, logs, states) + log_rest_of.call(
+            KINDS, CORNERS, points, VECTOR, PRIOR
+        )
+        top = climbed_together.call(
+            KINDS, CORNERS, points, BARE, BARE, GRID, logs, states, VECTOR, PRIOR, 25, 0.1
+        )
+        assert top > before
+        assert top == pytest.approx(
+            both(points, logs, states) + log_rest_of.call(KINDS, CORNERS, points, VECTOR, PRIOR)
+        )
+        off.append(np.hypot(*(points - POINTS)[:, :2].T))
+    assert np.median(off) < 0.48  # a climb ends at the nearest top; 0.5 where it began
+
+
+def test_no_prior_where_an_outline_is_too_small_or_too_light():
+    def rest(kind, corners, p):
+        return log_rest_of.call(np.array([kind]), np.array([corners]), p[None], VECTOR, PRIOR)
+
+    good = np.array([8.0, 8.0, 2.1, 0.1, 4.5, 0.0])
+    assert math.isfinite(rest(REGULAR, 3, good))
+    assert rest(REGULAR, 3, good - [0, 0, 0.2, 0, 0, 0]) == -math.inf  # sides 0.95 cm off
+    assert rest(REGULAR, 3, good - [0, 0, 0, 0, 3.0, 0]) == -math.inf  # shows not even once
+
+
+def test_the_best_cut_parts_two_discs():
+    kinds = np.array([DISC, DISC])
+    points = np.array([[6.0, 6.0, 2.6, 4.5, 0, 0], [9.9, 9.9, 2.6, 4.5, 0, 0]])
+    load, share = BARE.copy(), BARE.copy()
+    add_outline.call(int(kinds[0]), 0, points[0], GRID, VECTOR, load, share)
+    first = load > 5.0
+    add_outline.call(int(kinds[1]), 0, points[1], GRID, VECTOR, load, share)
+    states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
+    logs = np.log(np.where(load > 5.0, load, 1.0))
+    sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
+    found, _ = cuts.call(states, GRID, logs, VECTOR, 4, sides)
+    best = sides[int(np.argmax(found))]
+    assert ((best > 0) == (states == ON)).all()
+    assert min(((best == k) != first).sum() for k in (1, 2)) <= 2
+
+
+def test_the_surprise_of_one_outline_is_the_single_fits():
+    logs, states = image(6)
+    load, share = BARE.copy(), BARE.copy()
+    add_outline.call(RECTANGLE, 0, POINTS[1], GRID, VECTOR, load, share)
+    problem = problem_of(RECTANGLE, 0, GRID, logs, states, VECTOR, PRIOR)
+    alone = misfit.call(problem, POINTS[1])
+    found, _ = misfit_of_load.call(load, 6, logs, states, VECTOR)
+    assert found == pytest.approx(alone[0])
+
+
+def test_components_reach_over_corners_and_as_far_as_asked():
+    on = np.zeros((5, 5), bool)
+    on[0, 0] = on[1, 1] = on[1, 3] = on[4, 4] = True
+    assert components.call(on, 1).max() == 3
+    assert components.call(on, 2).max() == 2
+    assert components.call(on, 3).max() == 1
+    assert ((components.call(on, 1) > 0) == on).all()

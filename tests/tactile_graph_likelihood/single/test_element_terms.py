@@ -1,0 +1,53 @@
+"""The likelihood of single elements: a density, whatever the load, and twins that agree."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tactile_graph_likelihood.single.element_terms import OFF, ON, SPAN, UNKNOWN, bare, terms
+
+NOISE = np.array([0.48, 0.16, 1e-3, math.log(5.0), 0.0])
+
+
+@pytest.fixture(params=["reference", "compiled"])
+def kernel(request):
+    return getattr(terms, request.param)
+
+
+def one(kernel, expected, log, state, noise=NOISE):
+    states = np.array([[state]], np.uint8)
+    found = kernel(np.array([[expected]]), 0, 0, np.array([[log]]), states, noise)
+    return found + bare.loops(states, noise)
+
+
+@pytest.mark.parametrize("expected", [2.0, 6.0, 40.0, 500.0])
+def test_an_elements_readings_have_probability_one(kernel, expected):
+    # The lognormal part above the least load, the stray part over its own range.
+    logs = np.linspace(math.log(5.0), math.log(5.0) + SPAN, 4001)
+    density = [math.exp(one(kernel, expected, x, ON)) for x in logs]
+    total = np.trapezoid(density, logs) + math.exp(one(kernel, expected, 0.0, OFF))
+    assert total == pytest.approx(1.0, abs=2e-5)
+
+
+def test_a_covered_element_that_reads_nothing_is_about_as_likely_as_a_void(kernel):
+    assert one(kernel, 1e4, 0.0, OFF) == pytest.approx(math.log(0.16 * 0.999), abs=1e-6)
+
+
+def test_a_broken_element_says_nothing(kernel):
+    assert one(kernel, 40.0, 3.0, UNKNOWN) == 0.0
+
+
+def test_a_reading_far_from_what_is_expected_is_a_stray(kernel):
+    assert one(kernel, 6.0, 9.0, ON) == pytest.approx(math.log(1e-3 / SPAN), abs=1e-3)
+
+
+def test_twins_agree_on_windows_of_an_image():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        logs = rng.normal(3.0, 1.5, (9, 8))
+        states = rng.integers(0, 3, (9, 8)).astype(np.uint8)
+        expected = np.exp(rng.normal(3.0, 2.0, (4, 5))) * (rng.random((4, 5)) < 0.7)
+        noise = np.array([rng.uniform(0.05, 1), rng.uniform(0.01, 0.5), 1e-3, 1.6, 0.0])
+        args = (expected, 3, 2, logs, states, noise)
+        assert terms.compiled(*args) == pytest.approx(terms.reference(*args), rel=1e-11)

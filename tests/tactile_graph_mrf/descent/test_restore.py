@@ -1,0 +1,171 @@
+import itertools
+
+import numpy as np
+import pytest
+
+from helpers_restorers import square, tiny, tiny_model
+from tactile_graph.wires import Image
+from tactile_graph_mrf.descent import region_moves
+from tactile_graph_mrf.descent.box_moves import move_boxes
+from tactile_graph_mrf.descent.fuse import PROPOSALS, move_chains, propose
+from tactile_graph_mrf.descent.grid_cut import cut_grid
+from tactile_graph_mrf.descent.region_moves import fuse, shift_all, shift_regions
+from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.energy.line_field import no_lines
+from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.samplers.annealing import State
+
+
+def moved(problem, labels, lines, along_rows, kernel):
+    p = problem
+    own = p.curvature, p.centre, p.table, p.row
+    labels = labels.copy()
+    field = p.in_field, own, p.smooth, p.offsets, p.weights, p.observed
+    kernel(*field, *lines, labels, along_rows)
+    return labels
+
+
+def test_a_row_gets_the_best_combination_of_its_proposals():
+    """Against all combinations of the proposals of one row of three cells."""
+    problem = tiny_model(smoothness="truncated_quadratic").prepare(tiny(5))
+    labels = np.array([[0, 3, 1], [2, 2, 0], [3, 1, 3]])
+    own = problem.curvature, problem.centre, problem.table, problem.row
+    offered, kinds = np.empty((3, PROPOSALS), np.int64), np.empty(3, np.int64)
+    field = problem.in_field, own, problem.smooth, problem.observed, labels
+    propose.reference(*field, 0, True, offered, kinds)
+    each = [offered[j, : kinds[j]].tolist() for j in range(3)]
+    assert all(len(set(x)) == len(x) > 1 and x[0] == labels[0, j] for j, x in enumerate(each))
+    least = np.inf
+    for row in itertools.product(*each):
+        tried = labels.copy()
+        tried[0] = row
+        least = min(least, energy(problem, tried))
+    after = labels.copy()
+    after[0] = moved(problem, labels, no_lines((3, 3)), True, move_chains.reference)[0]
+    assert energy(problem, after) == pytest.approx(least)
+
+
+@pytest.mark.parametrize("along_rows", [True, False])
+def test_chain_moves_never_raise_the_energy_and_agree_compiled(along_rows):
+    pytest.importorskip("numba")
+    rng = np.random.default_rng(3)
+    model = Model(n_levels=30, order=2, lambda_l=60.0)
+    problem = model.prepare(square(20.0, 8))
+    for _ in range(5):
+        labels = rng.integers(0, 30, (8, 8))
+        lines = tuple(rng.random(x.shape) < 0.3 for x in no_lines((8, 8)))
+        one = moved(problem, labels, lines, along_rows, move_chains.reference)
+        two = moved(problem, labels, lines, along_rows, move_chains.compiled)
+        assert np.array_equal(one, two)
+        assert energy(problem, one, *lines) <= energy(problem, labels, *lines) + 1e-9
+
+
+def test_boxes_of_lines_only_open_and_close_where_that_pays():
+    pytest.importorskip("numba")
+    rng = np.random.default_rng(4)
+    problem = Model(n_levels=30, lambda_l=60.0).prepare(square(20.0, 8))
+    p = problem
+    own = p.in_field, p.curvature, p.centre, p.table, p.row, p.smooth, p.weights
+    for _ in range(5):
+        lines = (rng.random(x.shape) < 0.5 for x in no_lines((8, 8)))
+        state = State(rng.integers(0, 30, (8, 8)), *lines)
+        same = State(*(x.copy() for x in state))
+        before = energy(problem, *state)
+        assert move_boxes.reference(*own, p.pattern, p.parallel, p.one, p.observed, *state) > 0
+        move_boxes.compiled(*own, p.pattern, p.parallel, p.one, p.observed, *same)
+        assert energy(problem, *state) < before
+        assert all(np.array_equal(a, b) for a, b in zip(state, same, strict=True))
+
+
+def best_shift(problem, labels, target):
+    """The least energy of all ways to take some cells from ``target``."""
+    least = np.inf
+    for goes in itertools.product((False, True), repeat=labels.size):
+        tried = np.where(np.reshape(goes, labels.shape), target, labels)
+        if tried.min() >= 0 and tried.max() < problem.n_levels:
+            least = min(least, energy(problem, tried))
+    return least
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(seed, order):
+    rng = np.random.default_rng(seed)
+    problem = Model(n_levels=9, lines="none", order=order, lambda_d=0.9).prepare(
+        Image(rng.integers(0, 9, (3, 3)).astype(float))
+    )
+    labels = rng.integers(0, 9, (3, 3))
+    state = State(labels.copy(), *no_lines((3, 3)))
+    shift_regions(problem, state)
+    now = energy(problem, *state)
+    for step in (1, -1):
+        assert best_shift(problem, state.labels, state.labels + step) >= now - 1e-9
+    other = np.clip(labels + rng.integers(0, 3), 0, 8)  # as convex as a shift but at the top
+    fused = State(labels.copy(), *no_lines((3, 3)))
+    fuse(problem, fused, other)
+    assert energy(problem, *fused) == pytest.approx(best_shift(problem, labels, other))
+
+
+@pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
+def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, monkeypatch):
+    pytest.importorskip("numba")
+    rng = np.random.default_rng(8)
+    model = Model(n_levels=30, lines=lines, lambda_l=60.0, smoothness="truncated_quadratic",
+                  truncation=6.0)  # fmt: skip
+    problem = model.prepare(square(20.0, 8))
+    sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites())
+    drawn = no_lines((8, 8)) if lines != "explicit" else sites
+    start = State(rng.integers(0, 30, (8, 8)), *drawn)
+    other = rng.integers(0, 30, (8, 8))
+    ends = []
+    for kernel in (shift_all.reference, shift_all.compiled):
+        monkeypatch.setattr(region_moves, "fit_for", lambda *_, kernel=kernel: kernel)
+        state = State(*(x.copy() for x in start))
+        reached = [energy(problem, *state)]
+        for move in (lambda s: fuse(problem, s, other), lambda s: shift_regions(problem, s)):
+            assert move(state) > 0
+            reached.append(energy(problem, *state))
+        assert reached[2] < reached[1] < reached[0]
+        ends.append(state)
+    assert all(np.array_equal(a, b) for a, b in zip(*ends, strict=True))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_cut_of_a_grid_is_the_least_of_all_cuts(seed):
+    rng = np.random.default_rng(seed)
+    rows, columns = 3, 4
+    near = np.full((12, 4), -1)
+    cap = np.zeros((12, 4))
+    for i, j in np.ndindex(rows, columns):
+        for q, (m, n) in enumerate(((i, j + 1), (i, j - 1), (i + 1, j), (i - 1, j))):
+            if 0 <= m < rows and 0 <= n < columns:
+                near[i * columns + j, q] = m * columns + n
+                cap[i * columns + j, q] = rng.random() * (rng.random() < 0.8)
+    gain = rng.normal(size=12)
+
+    def cost(goes):  # of going against staying: pairs parted, gains not taken, losses taken
+        parted = sum(
+            cap[i, q]
+            for i in range(12)
+            for q in range(4)
+            if near[i, q] >= 0 and goes[i] and not goes[near[i, q]]
+        )
+        return parted + gain[~goes & (gain > 0)].sum() - gain[goes & (gain < 0)].sum()
+
+    least = min(cost(np.array(g)) for g in itertools.product((False, True), repeat=12))
+    goes = np.zeros(12, np.bool_)
+    full = cap.copy()
+    count = cut_grid.reference(near, full, np.maximum(gain, 0.0), np.maximum(-gain, 0.0), goes)
+    assert count == goes.sum()
+    assert cost(goes) == pytest.approx(least)
+
+
+def test_more_effort_is_allowed_and_stays_near():
+    model = Model(lines="marginal")
+    reached = [restore(square(40.0), model=model, effort=effort).energy for effort in (1, 2, 3)]
+    assert max(reached) <= 1.002 * min(reached)
+
+
+def test_without_rounds_the_graduation_is_given():
+    restored = restore(square(), model=Model(lines="marginal"), n_rounds=0)
+    assert restored.sweeps == 1
