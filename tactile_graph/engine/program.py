@@ -18,7 +18,6 @@ from tactile_graph.engine.step_operation import Block, Call, Operation, State, s
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 
-
 IMMUTABLE = frozenset({bool, int, float, str})
 
 
