@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done
+from tactile_graph.draw.display import images_in, is_picture
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
-from tactile_graph.wires import Image, Mask, Points
 
 MOST_COLUMNS = 10
 UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
@@ -93,32 +93,6 @@ def _is_scalar_type(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic)
 
 
-def is_picture(value: Any) -> bool:
-    """Return whether a value has a place on the pad, as against a bare number."""
-    if isinstance(value, Image | Mask | Points) or hasattr(value, "outline_cm"):
-        return True
-    if isinstance(value, Done | str):
-        return False
-    if place(value) is not None:
-        return True
-    if isinstance(value, list | tuple):
-        return any(is_picture(v) for v in value)
-    return any(view(value, kind) is not None for kind in (Mask, Image, Points))
-
-
-def place(value: Any) -> tuple[float, float] | None:
-    """Return the place on the pad that a record names as ``x_cm`` and ``y_cm``, or None."""
-    x, y = getattr(value, "x_cm", None), getattr(value, "y_cm", None)
-    numbers = isinstance(x, int | float) and isinstance(y, int | float)
-    return (float(x), float(y)) if numbers else None  # type: ignore[arg-type]
-
-
-def view(value: Any, kind: type) -> Any:
-    """Return a record's own view as ``kind`` (``provides``), or None."""
-    name = getattr(value, "provides", {}).get(kind)
-    return getattr(value, name) if name else None
-
-
 def _column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> Column:
     images = [i for r in results for i in images_in(outcome_of(r, name))]
     node = pipeline.nodes.get(name)
@@ -130,16 +104,3 @@ def _column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> Column:
     high = max((float(v.max()) for v in shown if v.size), default=1.0)
     low = min(low, 0.0)  # a pad's values are read from nothing up
     return Column(name, step, low, high if high > low else low + 1.0, images[0].quantity)
-
-
-def images_in(value: Any) -> Iterator[Image]:
-    """Yield the images that drawing a value shows as heat maps."""
-    if isinstance(value, Image):
-        yield value
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from images_in(item)
-    elif not isinstance(value, Mask) and view(value, Mask) is None:
-        image = view(value, Image)
-        if image is not None and not hasattr(value, "outline_cm"):
-            yield image
