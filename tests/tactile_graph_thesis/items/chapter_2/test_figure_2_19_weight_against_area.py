@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_thesis.chapter_2.weight_area import (
+from tactile_graph_thesis.items.chapter_2.figure_2_19_weight_against_area import (
     PRESSURES_G_CM2,
-    TABLE_2_2,
     Weighings,
+    table_2_2_radii_cm,
     weight_area,
 )
 
@@ -52,7 +52,8 @@ def test_calibrated_by_sums_weights_come_out_right() -> None:
 
 def test_objects_stand_under_equal_pressures() -> None:
     found = weighed("thesis", 0)
-    radius = np.array([r for _, _, r in TABLE_2_2])
+    radius = np.array([*table_2_2_radii_cm().values()])
+    assert radius.tolist() == [6.9, 6.1, 4.3, 3.8, 2.5]
     np.testing.assert_allclose(found.area_cm2, np.pi * radius**2)
     np.testing.assert_allclose(found.weight_g / found.area_cm2[:, None], [PRESSURES_G_CM2] * 5)
 

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from tactile_graph_thesis.catalogue import chosen, items
-from tactile_graph_thesis.items import noise_blocks
-from tactile_graph_thesis.items.rectangle_stages import lone_cells, rectangle_frame, with_strays
+from tactile_graph_thesis.items.chapter_4.figures_4_22_to_4_28_rectangles import (
+    lone_cells,
+    with_strays,
+)
 from tactile_graph_thesis.making import outcomes
-from tactile_graph_thesis.measure.stages import stages
+from tactile_graph_thesis.measure import noise_response
+from tactile_graph_thesis.measure.shown_reading import stages, typical_rectangle
 from tactile_graph_thesis.work import Work
 
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
@@ -42,7 +45,7 @@ def test_each_comes_out(name: str, work: Work) -> None:
 
 @pytest.mark.parametrize("name", NOISES)
 def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(noise_blocks, "QUICK_READINGS", 2)
+    monkeypatch.setattr(noise_response, "QUICK_READINGS", 2)
     (outcome,) = outcomes(chosen((name,)), Work(readings=20, quick=True))
     assert outcome.made is not None, outcome.trace
     assert outcome.made.table is not None
@@ -79,12 +82,12 @@ def test_the_convex_hull_betters_the_radius(work: Work) -> None:
 
 
 def test_the_comparison_is_tried_on_a_footprint_that_has_noise_points(work: Work) -> None:
-    frame = with_strays(rectangle_frame(work), work.seed)
+    frame = with_strays(typical_rectangle(work), work.seed)
     result = stages("rectangle-1", frame, work.seed)
     before, after = lone_cells(result["footprint"]), lone_cells(result["clean"])
     assert before >= 3
     assert after < before
-    read = rectangle_frame(work).image.values
+    read = typical_rectangle(work).image.values
     on = read >= 0.01
     np.testing.assert_array_equal(frame.image.values[on], read[on])
 
@@ -114,22 +117,3 @@ def test_what_an_item_gives_does_not_depend_on_what_was_made_before(work: Work) 
     assert alone.made is not None
     assert after.made is not None
     assert alone.made.compared == after.made.compared
-
-
-def test_work_shared_by_items_is_done_once() -> None:
-    calls = []
-    work = Work()
-    for _ in range(2):
-        assert work.once("x", lambda: calls.append(1) or 7) == 7
-    assert calls == [1]
-    assert Work(readings=12).group == 12
-    assert Work(readings=100).group == 20
-
-
-def test_frames_are_as_many_and_carry_the_truth() -> None:
-    frames = Work(seed=4, readings=20).frames("discs", 6)
-    assert [f.truth[0].name for f in frames if f.truth] == ["DISC I", "DISC II", "DISC III"] * 2
-    again = Work(seed=4, readings=20).frames("discs", 6)
-    assert all(
-        np.array_equal(a.image.values, b.image.values) for a, b in zip(frames, again, strict=True)
-    )

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_thesis.chapter_2.bias import COMPARED_OHM, bias_curves
-from tactile_graph_thesis.chapter_2.bias_random import bias_random
+from tactile_graph_thesis.items.chapter_2.figures_2_8_to_2_11_bias import (
+    COMPARED_OHM,
+    bias_curves,
+    element_volts,
+    neighbour_curves,
+)
 
-CURVES = bias_curves(load_pad("plain"))
+CURVES = bias_curves(5.0)
 
 
 def test_the_most_is_read_with_100_kohm_and_the_least_with_10_at_every_load() -> None:
@@ -31,7 +35,7 @@ def test_loaded_curves_cluster_beyond_50_kohm() -> None:
 
 
 def test_coupling_is_least_at_30_kohm_of_30_40_and_50_at_every_load() -> None:
-    taken = bias_curves(load_pad("plain"), bias_ohm=COMPARED_OHM).coupling_v
+    taken = bias_curves(5.0, COMPARED_OHM).coupling_v
     assert (taken[1:].argmin(axis=0) == 0).all()
 
 
@@ -42,8 +46,16 @@ def test_the_curves_are_those_of_the_closed_form() -> None:
     np.testing.assert_allclose(CURVES.loaded_v[2], expected)
 
 
+def test_where_in_the_column_the_neighbours_sit_makes_no_difference() -> None:
+    volts = element_volts([1e4, 1e5], [33e3, 66e3], [60e3, 300e3], 3.0)
+    again = element_volts([1e4, 1e5], [33e3, 66e3], [300e3, 60e3], 3.0)
+    assert volts.shape == (2, 2)
+    np.testing.assert_allclose(volts, again)
+    np.testing.assert_allclose(volts[1, 0], 3.0 / 1e4 / (1 / 66e3 + 1 / 1e4 + 1 / 60e3 + 1 / 300e3))
+
+
 def test_at_33_kohm_smaller_loading_resistances_couple_more() -> None:
-    found = bias_random(load_pad("plain"), np.random.default_rng(0))
+    found = neighbour_curves(load_pad("plain"), np.random.default_rng(0))
     assert (np.diff(found.loaded_v[:-1], axis=0) > 0.0).all()
     drawn = found.neighbours_ohm[-1]
     assert len(set(drawn)) == 8

@@ -9,9 +9,13 @@ import pytest
 
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_pads.scan import Converter
-from tactile_graph_thesis.chapter_2.samples import SAMPLES_TRIED, samples
+from tactile_graph_thesis.items.chapter_2.section_2_2_3_samples import (
+    SAMPLES_TRIED,
+    sample_errors,
+    scan_error_v,
+)
 
-FOUND = samples(load_pad("thesis"), np.random.default_rng(0))
+FOUND = sample_errors(load_pad("thesis"), np.random.default_rng(0))
 TEN, HUNDRED = SAMPLES_TRIED.index(10), SAMPLES_TRIED.index(100)
 
 
@@ -37,8 +41,15 @@ def test_a_scan_of_100_samples_takes_less_than_a_minute() -> None:
 
 def test_an_ideal_converter_has_no_step() -> None:
     pad = replace(load_pad("plain"), converter=Converter(bits=None))
-    found = samples(pad, np.random.default_rng(0))
+    found = sample_errors(pad, np.random.default_rng(0))
     assert found.step_v == 0.0
     assert found.repeatability_v == pytest.approx(0.0, abs=1e-12)
     error = found.error_v[0]
     assert error[TEN] / error[HUNDRED] == pytest.approx(np.sqrt(10.0), rel=0.1)
+
+
+def test_ten_samples_serve_as_well_as_hundred_beside_the_step_of_the_converter() -> None:
+    volts = np.random.default_rng(1).uniform(0.0, 2.0, (16, 16))
+    one, ten, hundred = scan_error_v([1, 10, 100], volts, np.random.default_rng(0))
+    assert one > ten > hundred
+    assert ten < 0.5 * 2.44e-3

@@ -7,19 +7,19 @@ from functools import cache
 import numpy as np
 
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_thesis.chapter_2.converter import (
+from tactile_graph_thesis.items.chapter_2.section_2_2_2_converter import (
     BITS,
     LOAD_G,
     NOISES_V,
     ConverterErrors,
-    converter,
+    converter_errors,
     usable_g,
 )
 
 
 @cache
 def found() -> ConverterErrors:
-    return converter(load_pad("thesis"), np.random.default_rng(0))
+    return converter_errors(load_pad("thesis"), np.random.default_rng(0))
 
 
 def test_each_bit_halves_the_error_in_the_middle_of_the_range() -> None:

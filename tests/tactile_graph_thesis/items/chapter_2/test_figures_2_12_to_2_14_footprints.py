@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactile_graph_pads.pad import load_pad
-from tactile_graph_thesis.chapter_2.footprints import (
+from tactile_graph_thesis.items.chapter_2.figures_2_12_to_2_14_footprints import (
     GRAIN,
     bump,
     edge_contrast,
