@@ -63,7 +63,6 @@ def reproduce(names: tuple[str, ...], **given: Any) -> None:
         list_items()
         return
     items, work, targets = chosen(names), _work(given), _targets(given)
-    assert work.pad  # one that is not there is told before the work
     targets.check(items)
     warm_up()
     found = _made(items, work, targets, book="all" in names)
@@ -74,8 +73,10 @@ def reproduce(names: tuple[str, ...], **given: Any) -> None:
 
 
 def _work(given: dict[str, Any]) -> Work:
+    from tactile_graph_pads.pad import load_pad
     from tactile_graph_thesis.work import QUICK_READINGS, READINGS, Work
 
+    load_pad(given["pad"])  # one that is not there is told before the work
     quick = given["quick"]
     readings = given["readings"] or (QUICK_READINGS if quick else READINGS)
     return Work(given["seed"], readings, quick, given["pad"])

@@ -159,42 +159,44 @@ def usable_g(
 
 
 def _findings(found: ConverterErrors) -> tuple[Finding, ...]:
-    spans = [
-        usable_g(found.load_g, p, n)
-        for p, n in zip(found.of_bits_percent, found.of_bits_lost, strict=True)
-    ]
-    words = ", ".join(
-        f"{b:.0f} bits {lo:.0f} to {hi:.0f} g" if hi else f"{b:.0f} bits nowhere"
-        for b, (lo, hi) in zip(found.bits, spans, strict=True)
+    by_bits, by_noise = (
+        [usable_g(found.load_g, p, n) for p, n in zip(percent, lost, strict=True)]
+        for percent, lost in (
+            (found.of_bits_percent, found.of_bits_lost),
+            (found.of_noise_percent, found.of_noise_lost),
+        )
     )
     twelve = int(np.flatnonzero(found.bits == 12)[0])
-    noisy = [
-        usable_g(found.load_g, p, n)
-        for p, n in zip(found.of_noise_percent, found.of_noise_lost, strict=True)
-    ]
-    at = int(np.argmin(abs(found.load_g - spans[twelve][1])))
-    wider = all(more[1] >= fewer[1] for fewer, more in pairwise(spans))
+    top_g = by_bits[twelve][1]
+    at = int(np.argmin(abs(found.load_g - top_g)))
+    wider = all(more[1] >= fewer[1] for fewer, more in pairwise(by_bits))
+    narrower = all(more[1] <= fewer[1] for fewer, more in pairwise(by_noise))
     return (
         Finding(
             "(not in the thesis) with eight loaded elements a column, grams are within 5 % rms",
-            words,
-            bool(spans[twelve][1] > 200.0 and wider),
+            _ranges([f"{bits:.0f} bits" for bits in found.bits], by_bits),
+            bool(top_g > 200.0 and wider),
         ),
         Finding(
             "(not in the thesis) the edge is where a column's readings add up to the supply",
-            f"at 12 bits the 5 % end at {spans[twelve][1]:.0f} g an element, T = "
+            f"at 12 bits the 5 % end at {top_g:.0f} g an element, T = "
             f"{found.column_sum[at]:.4f}; the first lost elements at T = "
             f"{_first_lost(found, twelve)}",
             bool(found.column_sum[at] > 0.9),
         ),
         Finding(
             "(not in the thesis) noise of the mean reading narrows it from both ends",
-            ", ".join(
-                f"{1e3 * v:g} mV {lo:.0f} to {hi:.0f} g" if hi else f"{1e3 * v:g} mV nowhere"
-                for v, (lo, hi) in zip(found.noise_v, noisy, strict=True)
-            ),
-            bool(noisy[0][1] >= noisy[1][1] >= noisy[2][1] >= noisy[3][1]),
+            _ranges([f"{1e3 * v:g} mV" for v in found.noise_v], by_noise),
+            narrower,
         ),
+    )
+
+
+def _ranges(names: list[str], usable: list[tuple[float, float]]) -> str:
+    """Return in words from which to which load each is usable."""
+    return ", ".join(
+        f"{name} {low:.0f} to {high:.0f} g" if high else f"{name} nowhere"
+        for name, (low, high) in zip(names, usable, strict=True)
     )
 
 

@@ -109,37 +109,38 @@ def _figure_4_2(work: Work) -> Made:
         _curves(axes, found, discs, work.group)
         axes.set_title(f"discs of {found.radius_cm[discs[0]]:g} cm")
         axes.legend(fontsize="small")
-    limit = numbers("threshold")["error_below_cm"]
-    above = found.level_v > numbers("threshold")["best_v"][1] + 1e-9
-    light, heavy = ([group[end] for group in _of_radius(found)] for end in (0, -1))
-    errors = {
-        name: found.mean_cm[above][:, some]
-        for name, some in (("lightest", light), ("heaviest", heavy))
-    }
-    below = float((found.mean_cm[:, heavy] < limit).mean())
     return Made(
-        findings=(
-            Finding(
-                "above 0.015 V heavier discs of the same radius err less",
-                f"mean error there {errors['lightest'].mean():.2f} cm for the lightest, "
-                f"{errors['heaviest'].mean():.2f} cm for the heaviest discs",
-                bool((errors["heaviest"] < errors["lightest"]).all()),
-            ),
-            Finding(
-                "heavier discs err by less than 1 cm for most thresholds",
-                f"the heaviest do at {100 * below:.0f} % of the levels",
-                below > 0.5,
-            ),
-            Finding(
-                "the lightest discs err more above 0.015 V than below",
-                f"{errors['lightest'].mean():.2f} cm above, "
-                f"{found.mean_cm[~above][:, light].mean():.2f} cm up to it",
-                bool(errors["lightest"].mean() > found.mean_cm[~above][:, light].mean()),
-            ),
-        ),
+        findings=_light_and_heavy(found),
         table=_threshold_table(found),
         figure=figure,
         notes=_notes(work, found),
+    )
+
+
+def _light_and_heavy(found: ThresholdErrors) -> tuple[Finding, ...]:
+    said = numbers("threshold")
+    above = found.level_v > said["best_v"][1] + 1e-9
+    light, heavy = ([group[end] for group in _of_radius(found)] for end in (0, -1))
+    lightest, heaviest = (found.mean_cm[above][:, some] for some in (light, heavy))
+    lightest_below = found.mean_cm[~above][:, light]
+    small = float((found.mean_cm[:, heavy] < said["error_below_cm"]).mean())
+    return (
+        Finding(
+            "above 0.015 V heavier discs of the same radius err less",
+            f"mean error there {lightest.mean():.2f} cm for the lightest, "
+            f"{heaviest.mean():.2f} cm for the heaviest discs",
+            bool((heaviest < lightest).all()),
+        ),
+        Finding(
+            "heavier discs err by less than 1 cm for most thresholds",
+            f"the heaviest do at {100 * small:.0f} % of the levels",
+            small > 0.5,
+        ),
+        Finding(
+            "the lightest discs err more above 0.015 V than below",
+            f"{lightest.mean():.2f} cm above, {lightest_below.mean():.2f} cm up to it",
+            bool(lightest.mean() > lightest_below.mean()),
+        ),
     )
 
 
@@ -160,37 +161,35 @@ def _figure_4_3(work: Work) -> Made:
     axes.set_title("All discs of table 4.1")
     figure.legend(loc="outside lower center", ncols=3, fontsize="small")
     best = (found.level_v >= low - 1e-9) & (found.level_v <= high + 1e-9)
+    what, limit = "largest mean error between 0.01 and 0.015 V", said["error_below_cm"]
     worst = float(found.mean_cm[best].max())
-    over_all = found.mean_cm.mean(axis=1)
-    least = float(found.level_v[over_all.argmin()])
-    chosen = float(over_all[found.at(said["chosen_v"])])
     return Made(
-        compared=(
-            Compared(
-                "largest mean error between 0.01 and 0.015 V",
-                "cm",
-                worst,
-                said["error_below_cm"],
-                limit=True,
-            ),
-        ),
-        findings=(
-            Finding(
-                "errors are lowest between 0.01 and 0.015 V",
-                f"the mean over all discs is least at {least:g} V, {over_all.min():.3f} cm",
-                low - 1e-9 <= least <= high + 1e-9,
-            ),
-            Finding(
-                "one threshold, 0.01 V, serves all discs",
-                f"the mean error over all discs there is {chosen:.3f} cm, "
-                f"{100 * (chosen / over_all.min() - 1):.0f} % above the least of any level; "
-                f"the worst disc's {found.mean_cm[found.at(said['chosen_v'])].max():.2f} cm",
-                bool(chosen < 1.25 * over_all.min()),
-            ),
-        ),
+        compared=(Compared(what, "cm", worst, limit, limit=True),),
+        findings=_one_threshold(found),
         table=_threshold_table(found),
         figure=figure,
         notes=_notes(work, found),
+    )
+
+
+def _one_threshold(found: ThresholdErrors) -> tuple[Finding, ...]:
+    said, over_all = numbers("threshold"), found.mean_cm.mean(axis=1)
+    low, high = said["best_v"]
+    least_v, at = float(found.level_v[over_all.argmin()]), found.at(said["chosen_v"])
+    more = over_all[at] / over_all.min()
+    return (
+        Finding(
+            "errors are lowest between 0.01 and 0.015 V",
+            f"the mean over all discs is least at {least_v:g} V, {over_all.min():.3f} cm",
+            low - 1e-9 <= least_v <= high + 1e-9,
+        ),
+        Finding(
+            "one threshold, 0.01 V, serves all discs",
+            f"the mean error over all discs there is {over_all[at]:.3f} cm, "
+            f"{100 * (more - 1):.0f} % above the least of any level; "
+            f"the worst disc's {found.mean_cm[at].max():.2f} cm",
+            bool(over_all[at] < 1.25 * over_all.min()),
+        ),
     )
 
 

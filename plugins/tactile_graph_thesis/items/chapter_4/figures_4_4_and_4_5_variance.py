@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
-from tactile_graph_thesis.measure.threshold_errors import threshold_errors
+from tactile_graph_thesis.measure.threshold_errors import ThresholdErrors, threshold_errors
 from tactile_graph_thesis.numbers import numbers
 from tactile_graph_thesis.work import Work
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 LONGEST_GROUP = 30
@@ -33,21 +38,69 @@ def running_variances(error_cm: Array, largest: int) -> Array:
     return np.asarray(np.maximum(variances, 0.0))
 
 
-def _figure_4_4(work: Work) -> Made:
-    found, said = threshold_errors(work), numbers("variance")
+class SampleVariances(NamedTuple):
+    """Variances of the first N readings of many samples, at one threshold.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (N - 1,)
+        2 to N.
+    runs : ndarray, shape (discs, samples, N - 1)
+    mean, low, high : ndarray, shape (N - 1,)
+        Over all samples; nine in ten lie between low and high.
+    """
+
+    readings: NDArray[np.intp]
+    runs: Array
+    mean: Array
+    low: Array
+    high: Array
+
+
+def _at_the_chosen_threshold(found: ThresholdErrors) -> SampleVariances:
     at = found.at(numbers("threshold")["chosen_v"])
     largest = min(LONGEST_GROUP, found.error_cm.shape[2])
     runs = running_variances(found.error_cm[at], largest)
-    n = np.arange(2, largest + 1)
-    mean = runs.mean(axis=(0, 1))
     low, high = np.quantile(runs.reshape(-1, largest - 1), [0.05, 0.95], axis=0)
+    return SampleVariances(np.arange(2, largest + 1), runs, runs.mean(axis=(0, 1)), low, high)
+
+
+def _figure_4_4(work: Work) -> Made:
+    found = threshold_errors(work)
+    samples = _at_the_chosen_threshold(found)
+    end = min(work.group, int(samples.readings[-1]))
+    mean, low, high = (float(v[end - 2]) for v in (samples.mean, samples.low, samples.high))
+    unsure = float(samples.runs[..., end - 2].std(axis=1).mean() / mean)
+    what = f"variance of the radius error, N = {end}"
+    said = numbers("variance")["variance_cm2"]
+    columns = (samples.readings, samples.mean, samples.low, samples.high)
+    return Made(
+        compared=(Compared(what, "cm²", mean, said, low, high),),
+        findings=(_flatness(samples.runs, work),),
+        table=Table(
+            ("readings", "mean_cm2", "low_cm2", "high_cm2"),
+            [tuple(map(float, row)) for row in zip(*columns, strict=True)],
+        ),
+        figure=_variance_figure(found, samples),
+        notes=(
+            f"A variance taken from {end} readings is uncertain by {100 * unsure:.0f} % "
+            "(standard deviation over samples).",
+        ),
+    )
+
+
+def _variance_figure(found: ThresholdErrors, samples: SampleVariances) -> Figure:
     figure = new_figure(8.0, 6.2)
     axes = figure.subplots()
-    axes.fill_between(n, low, high, color="0.88", label="nine in ten samples of any disc")
+    n, said = samples.readings, numbers("variance")["variance_cm2"]
+    axes.fill_between(
+        n, samples.low, samples.high, color="0.88", label="nine in ten samples of any disc"
+    )
     for k in range(len(found.names)):
-        axes.plot(n, runs[k, 0], lw=1.0, color=f"C{k}", label=f"{found.label(k)}: first readings")
-    axes.plot(n, mean, "k-", lw=2.0, label="mean of all samples")
-    axes.axhline(said["variance_cm2"], color="0.4", ls=":", label="the thesis', after N = 14")
+        label = f"{found.label(k)}: first readings"
+        axes.plot(n, samples.runs[k, 0], lw=1.0, color=f"C{k}", label=label)
+    axes.plot(n, samples.mean, "k-", lw=2.0, label="mean of all samples")
+    axes.axhline(said, color="0.4", ls=":", label="the thesis', after N = 14")
     axes.set(
         xlabel="readings N",
         ylabel="variance of the radius error / cm²",
@@ -55,30 +108,7 @@ def _figure_4_4(work: Work) -> Made:
     )
     axes.grid(alpha=0.3)
     figure.legend(loc="outside lower center", ncols=2, fontsize="small")
-    end = min(work.group, largest)
-    unsure = float(runs[..., end - 2].std(axis=1).mean() / mean[end - 2])
-    return Made(
-        compared=(
-            Compared(
-                f"variance of the radius error, N = {end}",
-                "cm²",
-                float(mean[end - 2]),
-                said["variance_cm2"],
-                float(low[end - 2]),
-                float(high[end - 2]),
-            ),
-        ),
-        findings=(_flatness(runs, work),),
-        table=Table(
-            ("readings", "mean_cm2", "low_cm2", "high_cm2"),
-            [tuple(map(float, row)) for row in zip(n, mean, low, high, strict=True)],
-        ),
-        figure=figure,
-        notes=(
-            f"A variance taken from {end} readings is uncertain by {100 * unsure:.0f} % "
-            "(standard deviation over samples).",
-        ),
-    )
+    return figure
 
 
 def _flatness(runs: Array, work: Work) -> Finding:
