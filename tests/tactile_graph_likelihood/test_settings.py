@@ -2,9 +2,8 @@
 
 import pytest
 
-from tactile_graph import load
+from tactile_graph import load, loads
 from tactile_graph.errors import PipelineError
-from tactile_graph.pipeline.load import loads
 from tactile_graph.plugins.registry import installed
 
 STEPS = {

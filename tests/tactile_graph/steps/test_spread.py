@@ -12,7 +12,8 @@ from annotated_types import Ge
 
 from tactile_graph import Frame
 from tactile_graph.engine.sources import open_source
-from tactile_graph.errors import PluginError
+from tactile_graph.errors import Mark, PluginError
+from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps import Report, Spread
 from tactile_graph.steps.settings import validate_settings
 from tactile_graph.steps.signature import read_signature
@@ -116,7 +117,8 @@ def test_ranges_and_unknown_names_are_told_as_of_any_setting() -> None:
 
 
 def test_a_source_takes_them_too() -> None:
-    (frame,) = open_source(read_signature("source", source), {"reach": 4}, 0, Report())
+    declared = Source(read_signature("source", source), {"reach": 4}, Mark("", 0, 0))
+    (frame,) = open_source(declared, 0, Report())
     assert frame.image.values == [[4]]
 
 
