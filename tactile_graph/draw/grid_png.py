@@ -1,4 +1,4 @@
-"""A grid of values as a small PNG in the page itself, one pixel a cell."""
+"""A grid of values as a small PNG within an SVG, one pixel a cell."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tactile_graph.draw.colours import MASK_OFF, MASK_ON
+from tactile_graph.wires import Image, Mask
 
 Colour = tuple[int, int, int]
 Palette = NDArray[np.uint8]
@@ -24,7 +27,6 @@ _TWO_WAYS: Sequence[Colour] = (
     (165, 60, 0),
 )  # fmt: skip
 BROKEN: Colour = (120, 120, 120)
-OFF, ON = (236, 239, 241), (55, 71, 79)
 
 
 def _ramp(stops: Sequence[Colour]) -> Palette:
@@ -36,7 +38,7 @@ def _ramp(stops: Sequence[Colour]) -> Palette:
 
 
 HEAT, PALE, TWO_WAYS = _ramp(_HEAT), _ramp(_PALE), _ramp(_TWO_WAYS)
-YES_NO: Palette = np.array([OFF, ON], dtype=np.uint8)
+YES_NO: Palette = np.array([list(bytes.fromhex(c[1:])) for c in (MASK_OFF, MASK_ON)], np.uint8)
 
 
 def heat_stops() -> list[str]:
@@ -79,3 +81,30 @@ def _png(cells: NDArray[np.uint8], palette: Palette) -> bytes:
 
 def _chunk(kind: bytes, data: bytes) -> bytes:
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+# -- what is shown of images and masks -------------------------------------------------------
+
+
+def heat_uri(image: Image, low: float, high: float) -> str:
+    """Return an image in colours from ``low`` to ``high``."""
+    return data_uri(levels(image.values, low, high, image.valid), HEAT)
+
+
+def pale_uri(image: Image) -> str:
+    """Return an image in pale grey, to lie beneath lines; light touches still show."""
+    values = np.sqrt(np.maximum(image.filled(0.0), 0.0))
+    high = float(values.max()) if values.size else 1.0
+    return data_uri(levels(values, 0.0, high, image.valid), PALE)
+
+
+def mask_uri(mask: Mask) -> str:
+    """Return a mask in dark and light."""
+    return data_uri(mask.values.astype(np.uint8), YES_NO)
+
+
+def change_uri(values: NDArray[np.float64]) -> str:
+    """Return differences: blue where less, orange where more, pale where the same."""
+    finite = values[np.isfinite(values)]
+    most = float(np.abs(finite).max()) if finite.size else 0.0
+    return data_uri(levels(values, -(most or 1.0), most or 1.0), TWO_WAYS)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done
-from tactile_graph.engine.result import Result
-from tactile_graph.pipeline.node import FRAME, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
-from tactile_graph.wires import Image, Mask, Points
+from tactile_graph.draw.display import images_in, is_picture
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
+from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
 
 MOST_COLUMNS = 10
 UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
@@ -35,7 +34,7 @@ class Column:
         return f"{self.quantity} in {unit}" if unit else self.quantity
 
 
-def columns(results: Sequence[Result], nodes: Sequence[str] | None) -> list[Column]:
+def columns(results: Sequence[Outcomes], nodes: Sequence[str] | None) -> list[Column]:
     """Return the columns to draw; without ``nodes`` the frame and every node with a picture.
 
     Raises
@@ -48,7 +47,7 @@ def columns(results: Sequence[Result], nodes: Sequence[str] | None) -> list[Colu
     return [_column(name, results, pipeline) for name in names]
 
 
-def outcome_of(result: Result, name: str) -> Any:
+def outcome_of(result: Outcomes, name: str) -> Any:
     """Return the outcome of a node, an output, or the frame itself."""
     if name == FRAME:
         return result.frame
@@ -65,7 +64,7 @@ def outcome_of(result: Result, name: str) -> Any:
     return ref.getter(value)
 
 
-def _picturable(results: Sequence[Result], pipeline: Pipeline) -> list[str]:
+def _picturable(results: Sequence[Outcomes], pipeline: Graph) -> list[str]:
     found = [n for n in pipeline.nodes if _worth_a_column(n, results, pipeline)]
     outputs = {ref.node for ref in pipeline.outputs.values()}
     spare = len(found) + 1 - MOST_COLUMNS
@@ -77,7 +76,7 @@ def _picturable(results: Sequence[Result], pipeline: Pipeline) -> list[str]:
     return [FRAME, *found[: MOST_COLUMNS - 1]]
 
 
-def _worth_a_column(name: str, results: Sequence[Result], pipeline: Pipeline) -> bool:
+def _worth_a_column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> bool:
     node = pipeline.nodes[name]
     outcomes = [r.outcome(name) for r in results]
     if all(o is NOT_ASKED for o in outcomes):
@@ -94,33 +93,7 @@ def _is_scalar_type(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic)
 
 
-def is_picture(value: Any) -> bool:
-    """Return whether a value has a place on the pad, as against a bare number."""
-    if isinstance(value, Image | Mask | Points) or hasattr(value, "outline_cm"):
-        return True
-    if isinstance(value, Done | str):
-        return False
-    if place(value) is not None:
-        return True
-    if isinstance(value, list | tuple):
-        return any(is_picture(v) for v in value)
-    return any(view(value, kind) is not None for kind in (Mask, Image, Points))
-
-
-def place(value: Any) -> tuple[float, float] | None:
-    """Return the place on the pad that a record names as ``x_cm`` and ``y_cm``, or None."""
-    x, y = getattr(value, "x_cm", None), getattr(value, "y_cm", None)
-    numbers = isinstance(x, int | float) and isinstance(y, int | float)
-    return (float(x), float(y)) if numbers else None  # type: ignore[arg-type]
-
-
-def view(value: Any, kind: type) -> Any:
-    """Return a record's own view as ``kind`` (``provides``), or None."""
-    name = getattr(value, "provides", {}).get(kind)
-    return getattr(value, name) if name else None
-
-
-def _column(name: str, results: Sequence[Result], pipeline: Pipeline) -> Column:
+def _column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> Column:
     images = [i for r in results for i in images_in(outcome_of(r, name))]
     node = pipeline.nodes.get(name)
     step = "" if node is None else "first of" if node.choices else node.what
@@ -131,16 +104,3 @@ def _column(name: str, results: Sequence[Result], pipeline: Pipeline) -> Column:
     high = max((float(v.max()) for v in shown if v.size), default=1.0)
     low = min(low, 0.0)  # a pad's values are read from nothing up
     return Column(name, step, low, high if high > low else low + 1.0, images[0].quantity)
-
-
-def images_in(value: Any) -> Iterator[Image]:
-    """Yield the images that drawing a value shows as heat maps."""
-    if isinstance(value, Image):
-        yield value
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from images_in(item)
-    elif not isinstance(value, Mask) and view(value, Mask) is None:
-        image = view(value, Image)
-        if image is not None and not hasattr(value, "outline_cm"):
-            yield image
