@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tactile_graph_pads.calibration.lists import Loaded
     from tactile_graph_pads.calibration.points import Observation
 
+SOURCE = "recording"
 FITS = ("polynomial", "isotonic", "sums", "power")
 
 
@@ -146,16 +147,22 @@ def _median(empty: Path | None) -> Any:
 
 
 def _frames(path: Path) -> tuple[list[Any], Origin]:
+    """Return the frames of a recording, read by whichever plugin offers that source."""
+    from tactile_graph.engine.sources import open_source
     from tactile_graph.errors import UsageError
+    from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.injected import Report
+    from tactile_graph.steps.settings import validate_settings
     from tactile_graph_pads.calibration.calibration import Origin
 
-    try:
-        from tactile_graph_sources.frames_of import frames_of
-    except ModuleNotFoundError as error:
-        raise UsageError(f"recordings need the plugin 'sources': {error}") from error
-    report = Report()
-    frames = list(frames_of(path, report))
+    steps = installed()
+    if not steps.has("steps", SOURCE):
+        raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
+    source, report = steps.step(SOURCE), Report()
+    settings, troubles = validate_settings(source, {"path": path})
+    if troubles:
+        raise UsageError(f"source {SOURCE}: {troubles[0][1]}")
+    frames = list(open_source(source, settings, 0, report))
     digest = next(iter(report.digests.values()), "")
     return frames, Origin(path.name, digest, len(frames))
 
