@@ -169,21 +169,15 @@ def _median(empty: Path | None) -> Any:
 
 def _frames(path: Path) -> tuple[list[Any], Origin]:
     """Return the frames of a recording, read by whichever plugin offers that source."""
-    from tactile_graph.engine.sources import open_source
     from tactile_graph.errors import UsageError
     from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.injected import Report
-    from tactile_graph.steps.settings import validate_settings
     from tactile_graph_pads.calibration.calibration import Origin
 
-    steps = installed()
+    steps, report = installed(), Report()
     if not steps.has("steps", SOURCE):
         raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
-    source, report = steps.step(SOURCE), Report()
-    settings, troubles = validate_settings(source, {"path": path})
-    if troubles:
-        raise UsageError(f"source {SOURCE}: {troubles[0][1]}")
-    frames = list(open_source(source, settings, 0, report))
+    frames = list(steps.load("steps", SOURCE)(path=path, report=report))
     digest = next(iter(report.digests.values()), "")
     return frames, Origin(path.name, digest, len(frames))
 
