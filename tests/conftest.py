@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from helpers_kernels import compile_once_among_processes
+from helpers_processes import compile_once_among_processes
 
 settings.register_profile("fast", derandomize=True, deadline=None)
 settings.register_profile("full", deadline=None)
