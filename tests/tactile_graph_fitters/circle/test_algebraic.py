@@ -6,7 +6,7 @@ import pytest
 from helpers_circles import arc_xy, three
 from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Circle, Points
-from tactile_graph_fitters.circle.algebra import moments
+from tactile_graph_fitters.circle.algebraic import moments
 from tactile_graph_fitters.circle.fit_circle_hyper import fit_circle_hyper
 from tactile_graph_fitters.circle.fit_circle_kasa import fit_circle_kasa
 from tactile_graph_fitters.circle.fit_circle_taubin import fit_circle_taubin

@@ -10,12 +10,12 @@ from tactile_graph.wires import Points, Polygon
 from tactile_graph_fitters.circle.fit_circle import fit_circle
 from tactile_graph_fitters.ellipse.fit_ellipse import fit_ellipse
 from tactile_graph_fitters.rectangle.fit_rectangle import fit_rectangle
-from tactile_graph_fitters.shape.shape_misfits import (
+from tactile_graph_fitters.shape.shape_fits import (
     DISC,
     ELLIPSE,
     RECTANGLE,
     evenly,
-    shape_misfits,
+    shape_fits,
     squared_from_sides,
 )
 from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon
@@ -70,27 +70,27 @@ def test_distances_from_sides_are_measured_to_the_nearest_side(kernel):
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_every_shape_is_that_of_its_own_step(kernel):
     for corners in outlines():
-        n, _, misfits, shapes, polygons = getattr(shape_misfits, kernel)(corners, 0.65, 6, 1.3)
+        n, _, mean_squares, shapes, polygons = getattr(shape_fits, kernel)(corners, 0.65, 6, 1.3)
         xy = evenly(corners, 0.65)[0]
         assert n == len(xy)
         circle, ellipse = fit_circle(Points(xy)), fit_ellipse(Points(xy))
         rectangle = fit_rectangle(Points(xy), scale_cm=1.3)
         assert shapes[DISC, :3] == pytest.approx([circle.x_cm, circle.y_cm, circle.radius_cm])
-        assert math.sqrt(misfits[DISC]) == pytest.approx(circle.rms_cm)
-        assert math.sqrt(misfits[ELLIPSE]) == pytest.approx(ellipse.rms_cm, rel=1e-5)
+        assert math.sqrt(mean_squares[DISC]) == pytest.approx(circle.rms_cm)
+        assert math.sqrt(mean_squares[ELLIPSE]) == pytest.approx(ellipse.rms_cm, rel=1e-5)
         assert sorted(shapes[ELLIPSE, 2:4]) == pytest.approx(
             [ellipse.semi_minor_cm, ellipse.semi_major_cm], rel=1e-3
         )
         off = off_sides(rectangle.outline_cm(), xy)
-        assert misfits[RECTANGLE] == pytest.approx((off * off).mean(), rel=1e-3)
+        assert mean_squares[RECTANGLE] == pytest.approx((off * off).mean(), rel=1e-3)
         for count in range(3, 7):
             polygon = SimplifyPolygon(corners=count)(Polygon(corners)).xy_cm
             assert polygons[count, :count] == pytest.approx(polygon)
-            assert misfits[count] == pytest.approx((off_sides(polygon, xy) ** 2).mean())
+            assert mean_squares[count] == pytest.approx((off_sides(polygon, xy) ** 2).mean())
 
 
 def test_a_hull_of_few_corners_has_no_polygon_of_more():
     triangle = np.array([[0.0, 0.0], [4.0, 8.0], [10.0, 0.0]])
-    misfits = shape_misfits(triangle, 0.5, 6, 1.3)[2]
-    assert misfits[3] == pytest.approx(0.0, abs=1e-20)
-    assert np.isinf(misfits[4:]).all()
+    mean_squares = shape_fits(triangle, 0.5, 6, 1.3)[2]
+    assert mean_squares[3] == pytest.approx(0.0, abs=1e-20)
+    assert np.isinf(mean_squares[4:]).all()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_fitters.circle.geometric import geometric_fit
-from tactile_graph_fitters.circle.principal import into_frame
+from tactile_graph_fitters.circle.principal_axes import into_frame
 from tactile_graph_fitters.ellipse.fit_ellipse import refined
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 from tactile_graph_fitters.rectangle.fit_rectangle import outline_fit
@@ -19,10 +19,10 @@ from tactile_graph_fitters.shape.simplify_polygon import met, thinned
 Values: TypeAlias = NDArray[np.float64]
 
 DISC, ELLIPSE, RECTANGLE = range(3)
-"""Rows of what `shape_misfits` returns; a polygon of k corners stands in row k."""
+"""Rows of what `shape_fits` returns; a polygon of k corners stands in row k."""
 FEWEST_CORNERS = 3  # of a polygon
 FEWEST_POINTS = 12
-NEAR = 1e-4  # of a shape's size, at which a search ends: misfits grow with its square
+NEAR = 1e-4  # of a shape's size, at which a search ends: mean squares grow with its square
 
 
 @compiled_as_is
@@ -73,7 +73,7 @@ def squared_from_sides(corners: Values, xy: Values) -> float:
 
 @compiled_as_is
 def _ellipse(xy: Values, found: Values) -> float:
-    """Write centre, half axes and angle (in x and y) of the nearest ellipse; return its misfit.
+    """Write the nearest ellipse: centre, half axes, angle in x and y; return the mean square.
 
     The search starts from the ellipse with the points' moments.
     """
@@ -102,7 +102,7 @@ def _ellipse(xy: Values, found: Values) -> float:
 
 @compiled_as_is
 def _rectangle(xy: Values, scale: float, found: Values) -> float:
-    """Write centre, half sides and angle (as seen) of the nearest rectangle; return its misfit."""
+    """Write the nearest rectangle: centre, half sides, angle as seen; return the mean square."""
     status, x, y, first, second, angle, _, _ = outline_fit(xy, scale, 2, NEAR)
     if status != 0:
         return np.inf
@@ -117,7 +117,7 @@ def _rectangle(xy: Values, scale: float, found: Values) -> float:
 
 
 @compiled_as_is
-def shape_misfits(
+def shape_fits(
     corners: Values, step: float, most: int, scale: float
 ) -> tuple[int, float, Values, Values, Values]:
     """Fit every kind of shape to the outline of a hull.
@@ -139,7 +139,7 @@ def shape_misfits(
         Points compared.
     length : float
         Of the outline, in cm.
-    misfits : ndarray, shape (most + 1,)
+    mean_squares : ndarray, shape (most + 1,)
         Mean squared distance in cm2 from the disc, ellipse and rectangle, then from the polygon of
         as many corners as the index says; infinite where there is no such shape.
     shapes : ndarray, shape (3, 5)
@@ -149,20 +149,20 @@ def shape_misfits(
         Corners of each polygon.
     """
     xy, length = evenly(corners, step)
-    misfits = np.full(most + 1, np.inf)
+    mean_squares = np.full(most + 1, np.inf)
     shapes = np.zeros((3, 5))
     polygons = np.zeros((most + 1, most, 2))
     status, x, y, radius, rms, _ = geometric_fit(xy)
     if status == 0:
         shapes[DISC, 0], shapes[DISC, 1], shapes[DISC, 2] = x, y, radius
-        misfits[DISC] = rms * rms
-    misfits[ELLIPSE] = _ellipse(xy, shapes[ELLIPSE])
-    misfits[RECTANGLE] = _rectangle(xy, scale, shapes[RECTANGLE])
+        mean_squares[DISC] = rms * rms
+    mean_squares[ELLIPSE] = _ellipse(xy, shapes[ELLIPSE])
+    mean_squares[RECTANGLE] = _rectangle(xy, scale, shapes[RECTANGLE])
     kept = np.arange(corners.shape[0])
     left = corners.shape[0]
     for count in range(min(most, left), FEWEST_CORNERS - 1, -1):
         left = thinned(corners, kept, left, count, -1.0)
         found = met(corners, kept[:count])
-        misfits[count] = squared_from_sides(found, xy)
+        mean_squares[count] = squared_from_sides(found, xy)
         polygons[count, :count] = found
-    return xy.shape[0], length, misfits, shapes, polygons
+    return xy.shape[0], length, mean_squares, shapes, polygons

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is, compiled_twin_of
-from tactile_graph_fitters.circle.principal import OK, Frame, into_frame
+from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 
 KASA, TAUBIN, HYPER = range(3)
 

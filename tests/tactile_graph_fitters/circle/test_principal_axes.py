@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.compiled import have_compiler
-from tactile_graph_fitters.circle.principal import (
+from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
     NOT_FINITE,
     OK,

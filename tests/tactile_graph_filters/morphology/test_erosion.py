@@ -11,8 +11,8 @@ from tactile_graph_filters.morphology.close import Close
 from tactile_graph_filters.morphology.dilate import Dilate
 from tactile_graph_filters.morphology.elements import parse_element
 from tactile_graph_filters.morphology.erode import Erode
+from tactile_graph_filters.morphology.erosion import make_plan, sweep
 from tactile_graph_filters.morphology.open import Open
-from tactile_graph_filters.morphology.planes import make_plan, sweep
 
 SHAPES = [(16, 16), (32, 32), (1, 1), (1, 9), (7, 1), (5, 40)]
 
