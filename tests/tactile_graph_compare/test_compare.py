@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from helpers_graphs import STEPS, registry
-from tactile_graph import Circle, Ellipse, Frame, load, loads
-from tactile_graph.errors import RuleError, UsageError
+from tactile_graph import Circle, Ellipse, Frame, Image, load, loads
+from tactile_graph.errors import PluginError, RuleError, UsageError
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare import compare
 from tactile_graph_compare.output.tables import heading
@@ -222,6 +222,16 @@ def test_the_same_seed_gives_the_same_errors_and_intervals():
     np.testing.assert_array_equal(first.scores[0].errors, again.scores[0].errors)
     assert first.provenance["seed"] == 0
     assert other.provenance["seed"] == 1
+
+
+def test_steps_are_held_to_what_they_promise():
+    def liar(image: Image) -> Circle:
+        return image
+
+    text = "pipeline: p\nnodes: {a: {step: liar, in: frame}}\noutputs: [a]"
+    pipeline = loads(text, registry=registry({**STEPS, "liar": liar}))
+    with pytest.raises(PluginError, match="promises Circle, but gave Image"):
+        compare([pipeline], [Frame.of(np.ones((2, 2)))])
 
 
 def test_provenance_tells_every_variant_with_all_its_settings():
