@@ -7,14 +7,13 @@ any variants: merged into one graph, so that only what a guard keeps from runnin
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.result import Result
 from tactile_graph.engine.rows import as_data
 from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.wires.frame import Frame
@@ -24,7 +23,6 @@ from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.run.frame_choice import Keeper
 from tactile_graph_compare.run.session import WARM_FRAMES, Session, VariantLog
 from tactile_graph_compare.run.summarise import close
-from tactile_graph_compare.run.variant_result import OwnResult
 from tactile_graph_compare.variants.shadows import shadows_of
 from tactile_graph_compare.variants.variants import Prepared
 
@@ -85,26 +83,23 @@ class Auditor:
             self._take(frame)
 
     def _take(self, frame: Frame) -> None:
-        result = self.session.add(frame)
-        times_us = result.times_us
-        logs = self.session.logs
-        plain, spent = OwnResult(result, logs[0].member), _spent_us(logs[0], times_us)
-        for i, log in enumerate(logs[1:]):
-            self._compare(i, result, plain, OwnResult(result, log.member))
+        self.session.add(frame)
+        plain, *shadows = self.session.logs
+        spent = _spent_us(plain)
+        for i, log in enumerate(shadows):
+            self._compare(i, frame, _asked_of(plain), _asked_of(log))
             # Node by node: what both run takes the same, whatever the clock says.
-            its = _spent_us(log, times_us)
+            its = _spent_us(log)
             more = [its[n] for n in its if n not in spent]
             self._more_us[i].append(sum(more) - sum(spent[n] for n in spent if n not in its))
             self._stopped[i].append(bool(more))
 
-    def _compare(self, i: int, result: Result, plain: OwnResult, shadow: OwnResult) -> None:
-        ours = [plain.merged_outcome(r) for r in plain.member.asked]
-        theirs = [shadow.merged_outcome(r) for r in shadow.member.asked]
+    def _compare(self, i: int, frame: Frame, ours: list[Any], theirs: list[Any]) -> None:
         told = [(_told(a), _told(b)) for a, b in zip(ours, theirs, strict=True) if a is not b]
         changed = any(a != b for a, b in told)
         self._counts["changed"][i] += changed
         self._counts["failed"][i] += any(b == "Failed" and a != b for a, b in told)
-        empty = result.frame.truth == ()
+        empty = frame.truth == ()
         found = any(
             a.__class__ in NO_VALUE and b.__class__ not in NO_VALUE
             for a, b in zip(ours, theirs, strict=True)
@@ -148,13 +143,14 @@ class Auditor:
             )
 
 
-def _spent_us(log: VariantLog, times_us: Mapping[str, float]) -> dict[str, float]:
-    """Return the time of each node that a variant's last frame needed and that ran."""
-    return {
-        node: time
-        for node, code in zip(log.nodes, log.states[-1], strict=True)
-        if code and (time := times_us[log.member.names[node]]) > 0.0
-    }
+def _asked_of(log: VariantLog) -> list[Any]:
+    """Return the outcomes of what was asked of a variant in its last frame."""
+    return [log.last.outcome_at(ref) for ref in log.member.asked]
+
+
+def _spent_us(log: VariantLog) -> dict[str, float]:
+    """Return the time of each node that ran for a variant's last frame."""
+    return {node: time for node, time in log.last.times_us.items() if time > 0.0}
 
 
 def _told(outcome: Any) -> Any:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
+from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.result import Result
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
-from tactile_graph_compare.records.graph import STATES
+from tactile_graph_compare.records.graph import STATES, state_of
 from tactile_graph_compare.run.session import Session, VariantLog
-from tactile_graph_compare.run.variant_result import NOT_SETTLED, RAN, OwnResult
 
 
 def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
@@ -29,24 +29,19 @@ def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
 
 def stories(result: Result, log: VariantLog) -> dict[str, NodeStory]:
     """Return what each node of a variant came to in one frame, as it alone would have."""
-    own = OwnResult(result, log.member)
-    states, times_us = own.states(), result.times_us
+    alone = log.member.alone(result)
+    times_us = alone.times_us
     found = {}
     for name in log.nodes:
-        merged = log.member.names[name]
-        state = states.get(name, NOT_SETTLED)
-        if state == NOT_SETTLED:
-            found[name] = NodeStory(name, merged, STATES[0], "nothing asked for it", "", 0.0, None)
-            continue
-        outcome = own.outcome_at(Ref(name))
-        ran = state == RAN
+        outcome = alone.outcome_at(Ref(name))
+        ran = outcome.__class__ not in NO_VALUE
         found[name] = NodeStory(
             name,
-            merged,
-            STATES[state],
+            log.member.names[name],
+            STATES[state_of(outcome)],
             "" if ran else outcome.reason,
             "" if ran else outcome.origin,
-            times_us[merged],
+            times_us[name],
             outcome if ran else None,
         )
     return found

@@ -12,10 +12,11 @@ import numpy as np
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
 from tactile_graph.engine.result import Result
 from tactile_graph.engine.runner import Runner, check_frame
+from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.records.graph import state_of
 from tactile_graph_compare.run.frame_choice import Keeper
 from tactile_graph_compare.run.run_orders import orders
-from tactile_graph_compare.run.variant_result import OwnResult
 from tactile_graph_compare.score.answers import answers_of
 from tactile_graph_compare.score.scoring import Scorer
 from tactile_graph_compare.variants.merge import Member, merge
@@ -38,41 +39,41 @@ class VariantLog:
         For each frame, a code for each node, as `graph_records.STATES`.
     times_us : list of float
         Time of each frame; NaN where it was reused.
+    last : Result
+        Of the last frame, as the variant alone would have given it.
     """
 
     def __init__(self, prepared: Prepared, member: Member) -> None:
         self.prepared = prepared
         self.member = member
         self.nodes = tuple(i.name for i in member.plan.nodes)
+        self._refs = [Ref(name) for name in self.nodes]
+        self.last: Result
         self.scorer = Scorer(answers_of(prepared.pipeline, prepared.asked))
         self.states: list[bytes] = []
         self.times_us: list[float] = []
         self.n_ok = self.n_skipped = self.n_failed = 0
         self.reasons: dict[tuple[str, str, str], list[Any]] = {}
-        self._merged = [member.names[n] for n in self.nodes]
 
-    def add(self, position: int, result: Result, times_us: dict[str, float]) -> dict[str, float]:
+    def add(self, position: int, result: Result) -> dict[str, float]:
         """Note a frame; return its worst error of each quantity."""
-        own = OwnResult(result, self.member)
-        codes = own.states()
-        self.states.append(bytes([codes.get(n, 0) for n in self.nodes]))
-        spent = sum(
-            times_us[m] for n, m in zip(self.nodes, self._merged, strict=True) if n in codes
-        )
+        alone = self.last = self.member.alone(result)
+        self.states.append(bytes([state_of(alone.outcome_at(ref)) for ref in self._refs]))
+        spent = sum(alone.times_us.values())
         self.times_us.append(math.nan if result.reused else spent)
-        self._count(own)
-        return self.scorer.add(position, result.frame, own.merged_outcome)
+        self._count(alone)
+        return self.scorer.add(position, result.frame, alone.outcome_at)
 
-    def _count(self, own: OwnResult) -> None:
+    def _count(self, alone: Result) -> None:
         refs = self.member.asked
-        kinds = {own.merged_outcome(r).__class__ for r in refs}
+        kinds = {alone.outcome_at(r).__class__ for r in refs}
         self.n_failed += Failed in kinds
         self.n_skipped += Skipped in kinds and Failed not in kinds
         self.n_ok += not kinds & NO_VALUE
         if not kinds & NO_VALUE:
             return
         for name, ref in zip(self.prepared.asked, refs, strict=True):
-            outcome = own.outcome_at(ref)
+            outcome = alone.outcome_at(ref)
             if isinstance(outcome, Skipped | Failed):
                 word = "failed" if outcome.__class__ is Failed else "skipped"
                 first = [outcome.reason.partition("\n")[0], 0]
@@ -178,7 +179,7 @@ class Session:
             self.promises.check(result)
         times_us = result.times_us
         position = self.n
-        worst = {log.prepared.label: log.add(position, result, times_us) for log in self.logs}
+        worst = {log.prepared.label: log.add(position, result) for log in self.logs}
         self.keeper.add(position, result, worst)
         self._note(frame, result, whole_us, times_us)
         self.last = time.perf_counter()
@@ -201,7 +202,7 @@ class Session:
     ) -> None:
         times = [times_us[n] for n in self.merged_nodes]
         self.node_times_us.append(times)
-        self.merged_states.append(bytes([_code(result.outcome(n)) for n in self.merged_nodes]))
+        self.merged_states.append(bytes([state_of(result.outcome(n)) for n in self.merged_nodes]))
         self.fixed_us.append(math.nan if result.reused else whole_us - sum(times))
         self.indices.append(frame.index)
         self.times_s.append(math.nan if frame.time_s is None else frame.time_s)
@@ -212,11 +213,3 @@ class Session:
     def times_by_node(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         """Return microseconds, shape (n_frames, n_merged_nodes)."""
         return np.array(self.node_times_us).reshape(self.n, len(self.merged_nodes))
-
-
-def _code(outcome: Any) -> int:
-    from tactile_graph.engine.outcome import NOT_ASKED
-
-    if outcome is NOT_ASKED:
-        return 0
-    return {Skipped: 2, Failed: 3}.get(outcome.__class__, 1)

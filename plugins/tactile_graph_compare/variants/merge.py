@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from tactile_graph.engine.plan import Plan, make_plan
+from tactile_graph.engine.replay import Replay
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.node import FRAME, Node
 from tactile_graph.pipeline.pipeline import Pipeline
@@ -32,14 +34,15 @@ class Member:
     plan: Plan
     names: dict[str, str]
     asked: tuple[Ref, ...]
-    _refs: dict[Ref, Ref] = field(default_factory=dict, init=False)
 
     def ref(self, ref: Ref) -> Ref:
         """Return where the merged graph has what the variant reads at ``ref``."""
-        found = self._refs.get(ref)
-        if found is None:
-            found = self._refs[ref] = replace(ref, node=self.names[ref.node])
-        return found
+        return replace(ref, node=self.names[ref.node])
+
+    @cached_property
+    def alone(self) -> Replay:
+        """What turns a merged result into the one the variant alone would have given."""
+        return Replay(self.plan, self.names)
 
 
 @dataclass(frozen=True, eq=False)
