@@ -16,7 +16,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.wires.frame import Frame
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -129,7 +129,7 @@ def open_pipeline(
     PipelineError
         If the file or a setting is wrong.
     """
-    from tactile_graph.pipeline.load import load
+    from tactile_graph.api.pipeline import load
 
     found = registry.installed()
     if name is None:

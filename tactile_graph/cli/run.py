@@ -24,8 +24,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, is_plain
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
 
 IN_A_PICTURE = 12
 LONG_RUN = 200

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done
-from tactile_graph.engine.result import Result
-from tactile_graph.pipeline.node import FRAME, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
 from tactile_graph.wires import Image, Mask, Points
 
 MOST_COLUMNS = 10
@@ -35,7 +34,7 @@ class Column:
         return f"{self.quantity} in {unit}" if unit else self.quantity
 
 
-def columns(results: Sequence[Result], nodes: Sequence[str] | None) -> list[Column]:
+def columns(results: Sequence[Outcomes], nodes: Sequence[str] | None) -> list[Column]:
     """Return the columns to draw; without ``nodes`` the frame and every node with a picture.
 
     Raises
@@ -48,7 +47,7 @@ def columns(results: Sequence[Result], nodes: Sequence[str] | None) -> list[Colu
     return [_column(name, results, pipeline) for name in names]
 
 
-def outcome_of(result: Result, name: str) -> Any:
+def outcome_of(result: Outcomes, name: str) -> Any:
     """Return the outcome of a node, an output, or the frame itself."""
     if name == FRAME:
         return result.frame
@@ -65,7 +64,7 @@ def outcome_of(result: Result, name: str) -> Any:
     return ref.getter(value)
 
 
-def _picturable(results: Sequence[Result], pipeline: Pipeline) -> list[str]:
+def _picturable(results: Sequence[Outcomes], pipeline: Graph) -> list[str]:
     found = [n for n in pipeline.nodes if _worth_a_column(n, results, pipeline)]
     outputs = {ref.node for ref in pipeline.outputs.values()}
     spare = len(found) + 1 - MOST_COLUMNS
@@ -77,7 +76,7 @@ def _picturable(results: Sequence[Result], pipeline: Pipeline) -> list[str]:
     return [FRAME, *found[: MOST_COLUMNS - 1]]
 
 
-def _worth_a_column(name: str, results: Sequence[Result], pipeline: Pipeline) -> bool:
+def _worth_a_column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> bool:
     node = pipeline.nodes[name]
     outcomes = [r.outcome(name) for r in results]
     if all(o is NOT_ASKED for o in outcomes):
@@ -120,7 +119,7 @@ def view(value: Any, kind: type) -> Any:
     return getattr(value, name) if name else None
 
 
-def _column(name: str, results: Sequence[Result], pipeline: Pipeline) -> Column:
+def _column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> Column:
     images = [i for r in results for i in images_in(outcome_of(r, name))]
     node = pipeline.nodes.get(name)
     step = "" if node is None else "first of" if node.choices else node.what

@@ -16,7 +16,7 @@ from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
 
 FieldOf = Callable[[Ref], Callable[[Any], Any]]

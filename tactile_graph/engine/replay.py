@@ -9,16 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from operator import itemgetter
-from typing import Any
+from typing import Any, TypeVar
 
 from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, REUSED, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.engine.result import Result
-from tactile_graph.pipeline.node import FRAME, Node
+from tactile_graph.pipeline.graph import FRAME, Node
 from tactile_graph.pipeline.wiring import Ref
 
 Read = Callable[[list[Any]], tuple[Any, ...]]
+AnyOutcomes = TypeVar("AnyOutcomes", bound=Outcomes)
 
 
 class Replay:
@@ -41,13 +42,12 @@ class Replay:
         self._recorded_as = {FRAME: FRAME, **recorded_as}
         self._recorded: tuple[Any, ...] = ()
         self._reads: list[tuple[Plan, Read]] = []
-        n = plan.n_slots
-        self._blank: list[Any] = [None] * n + [0] * n + [(), None]
+        self._blank = blank_state(plan.n_slots)
         # What depends on no frame is settled anew in each: it counts only where it is needed.
         forgotten = self._blank.copy()
         self._operations = make_program(plan, self._call_of, forgotten, self._field_of)
 
-    def __call__(self, result: Result) -> Result:
+    def __call__(self, result: AnyOutcomes) -> AnyOutcomes:
         """Return what the plan came to in the frame of a recorded result."""
         recorded = self._recorded = self._reader(result.plan)(result._state)
         n, state = self.plan.n_slots, self._blank.copy()
@@ -59,13 +59,16 @@ class Replay:
             0 if outcome is None else time
             for outcome, time in zip(state, recorded[n:], strict=False)
         ]
-        failures, inner = result._state[-2], result.inner
+        state[REUSED] = result.reused
+        failures, inner = result._state[ITEM_FAILURES], result.inner
         if failures or inner:
             settled = [i.name for i in self.plan.nodes if state[i.slot] is not None]
             rows = [(name, self._recorded_as[name]) for name in settled]
-            state[-2] = [f.at(name) for name, known in rows for f in failures if f.origin == known]
-            state[-1] = {name: inner[known] for name, known in rows if known in inner}
-        return result.__class__(self.plan, state)
+            state[ITEM_FAILURES] = [
+                f.at(name) for name, known in rows for f in failures if f.origin == known
+            ]
+            state[INNER] = {name: inner[known] for name, known in rows if known in inner}
+        return type(result)(self.plan, state)
 
     def _reader(self, recorded: Plan) -> Read:
         """Return what takes the plan's outcomes and times out of a state of the recorded plan."""

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.outcome import Done, Failed, Skipped
-from tactile_graph.engine.result import Result
+from tactile_graph.engine.outcomes import Outcomes
 
 
-def result_row(result: Result) -> dict[str, Any]:
+def result_row(result: Outcomes) -> dict[str, Any]:
     """Return frame number and time, then each output's scalars; a reason where it has none."""
     frame = result.frame
     row: dict[str, Any] = {"frame": frame.index}

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.facts import embedded_facts, source_facts
-from tactile_graph.pipeline.node import FRAME, Binding, Facts, Node, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
 from tactile_graph.wires.frame import Frame
@@ -18,7 +17,7 @@ from tactile_graph.wires.image import Image
 
 
 def inline_nodes(
-    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark,
+    name: str, inner: Graph, ref: Ref, kind: Any, guard: Guard | None, mark: Mark,
     outer: Facts,
 ) -> tuple[list[Node], list[str]]:  # fmt: skip
     """Return the inner nodes under ``name/…`` and one passing node per output."""
@@ -41,7 +40,7 @@ def inline_nodes(
     return nodes, troubles
 
 
-def _facts_at(ref: Ref, inner: Pipeline) -> Facts:
+def _facts_at(ref: Ref, inner: Graph) -> Facts:
     if ref.node == FRAME:
         return source_facts(None) if ref.path in ((), ("image",)) else Facts()
     return inner.nodes[ref.node].facts if ref.whole else Facts()
@@ -81,7 +80,7 @@ def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], outer: Facts) ->
 
 
 def map_node(
-    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
+    name: str, inner: Graph, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
 ) -> tuple[Node, str]:
     """Return a node that runs the inner pipeline over each item, and what is wrong with it."""
     trouble = ""
@@ -101,7 +100,7 @@ def map_node(
     )  # fmt: skip
 
 
-def _map_output(name: str, inner: Pipeline) -> Any:
+def _map_output(name: str, inner: Graph) -> Any:
     kinds = {n.replace(".", "_"): inner.type_of(r) for n, r in inner.outputs.items()}
     if len(kinds) == 1:
         return list[next(iter(kinds.values()))]  # type: ignore[misc]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, load
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import Skipped
-from tactile_graph.engine.result import Result
 from tactile_graph.steps import Report
 from tactile_graph_filters.contacts.align_contacts import AlignContacts
 from tactile_graph_sources.recording import recording

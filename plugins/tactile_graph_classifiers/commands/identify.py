@@ -14,8 +14,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
 
 HEAD = ("frame", "object", "distance", "runner-up", "margin", "")
 

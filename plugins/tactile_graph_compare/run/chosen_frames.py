@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.result import Result
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.graph import STATES, state_of

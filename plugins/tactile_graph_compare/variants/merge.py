@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.node import FRAME, Node
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, Node
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.variants.identity import identities
 

@@ -27,9 +27,9 @@ from helpers_draw import (
     registry,
 )
 from tactile_graph import Ellipse, Image, Points, Polygon, Rectangle, loads
+from tactile_graph.api.result import Result
 from tactile_graph.draw.picture import FAILED, cell_edges
 from tactile_graph.draw.strip import figure_png, picture_format, save_strip, strip_figure
-from tactile_graph.engine.result import Result
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Mask, TrueObject
 

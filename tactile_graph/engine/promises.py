@@ -9,21 +9,19 @@ from __future__ import annotations
 import inspect
 import typing
 from collections.abc import Iterable, Mapping, Sequence, Sized
-from typing import TYPE_CHECKING, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
 import numpy as np
 
 from tactile_graph.engine.outcome import NO_VALUE
+from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.errors import PluginError
-from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import arms, public_fields
+from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import Grid
 from tactile_graph.steps.signature import list_item, type_name
 from tactile_graph.wires.image import Image, Mask
-
-if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.plugins.registry import Registry
 
 MOST_ITEMS = 16
 """How many items of a list are looked at."""
@@ -48,7 +46,7 @@ class Promises:
         self.waiting = [n for n in nodes if n.kind is NodeKind.STEP and not n.is_sink]
         self._registry = registry
 
-    def check(self, result: Result) -> None:
+    def check(self, result: Outcomes) -> None:
         """Hold the values of a frame against the promises that wait for one.
 
         Raises
@@ -137,7 +135,7 @@ def _described(value: Any) -> str:
 # -- quantity and shape ----------------------------------------------------------------------
 
 
-def _broken_rule(node: Node, value: Any, result: Result) -> str:
+def _broken_rule(node: Node, value: Any, result: Outcomes) -> str:
     signature = node.signature
     if signature is None or not isinstance(value, Image | Mask):
         return ""
@@ -156,7 +154,7 @@ def _broken_rule(node: Node, value: Any, result: Result) -> str:
     return f"promises {' or '.join(allowed)}, but gave {value.quantity}"
 
 
-def _broken_shape(node: Node, grid: Grid | None, value: Image | Mask, result: Result) -> str:
+def _broken_shape(node: Node, grid: Grid | None, value: Image | Mask, result: Outcomes) -> str:
     given = _at_port(node, grid.port, result) if grid is not None else None
     if grid is None or given is None:
         return ""
@@ -168,7 +166,7 @@ def _broken_shape(node: Node, grid: Grid | None, value: Image | Mask, result: Re
     return ""
 
 
-def _at_port(node: Node, port: str, result: Result) -> Image | Mask | None:
+def _at_port(node: Node, port: str, result: Outcomes) -> Image | Mask | None:
     """Return the image a frame brought to a port; None where there is none to be had."""
     for binding in node.inputs:
         if binding.port.name == port and not binding.collects and not binding.iterates:

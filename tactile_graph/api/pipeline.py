@@ -1,21 +1,21 @@
-"""``Pipeline``: a frozen graph, ready to run."""
+"""``Pipeline``: a graph that runs, draws and varies itself; ``load`` and ``loads`` make one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
 from functools import cached_property
+from pathlib import Path
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.errors import Mark, PipelineError, Problem, UsageError
-from tactile_graph.pipeline.node import FRAME, FrameRule, Node, node_key
-from tactile_graph.pipeline.plain import plain as plain
-from tactile_graph.pipeline.plain import plain_node
-from tactile_graph.pipeline.references import ConditionError, resolve_reference
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.errors import PipelineError, Problem, UsageError
+from tactile_graph.pipeline.graph import FRAME, Graph
+from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
+from tactile_graph.pipeline.resolve import SourceOverride
+from tactile_graph.pipeline.scope import Overrides
+from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.injected import Report
-from tactile_graph.steps.signature import Signature
 from tactile_graph.wires.frame import Frame
 
 if TYPE_CHECKING:
@@ -24,42 +24,58 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from rich.console import RenderableType
 
-    from tactile_graph.engine.result import Result
+    from tactile_graph.api.result import Result
+    from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
-    from tactile_graph.pipeline.promises import Promises
-    from tactile_graph.plugins.registry import Registry
 
 
-@dataclass(frozen=True)
-class Source:
-    """The source step a pipeline takes its frames from unless told otherwise."""
+def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline of that name or in that file.
 
-    signature: Signature
-    settings: dict[str, Any]
-    mark: Mark
+    Parameters
+    ----------
+    name : str or Path
+        A name some plugin offers, or a path ending in ``.yaml`` or ``.yml``.
+    registry : Registry, optional
+        Where steps and names are looked up; the installed plugins if not given.
 
-    @property
-    def name(self) -> str:
-        """Name of the source step."""
-        return self.signature.name
+    Raises
+    ------
+    PipelineError
+        With every problem of the file.
+    UsageError
+        If there is no such pipeline or file.
+    """
+    return Pipeline.of(load_graph(name, registry))
 
 
-@dataclass(frozen=True, eq=False)
-class Pipeline:
-    """A resolved, checked, frozen graph. Make one with `tactile_graph.load`."""
+def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline that YAML text declares.
 
-    name: str
-    about: str
-    evolves: str
-    source: Source | None
-    nodes: Mapping[str, Node]
-    outputs: Mapping[str, Ref]
-    file: str
-    text: str
-    frame_rules: tuple[FrameRule, ...] = ()
-    overrides: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    source_override: tuple[str, dict[str, Any]] | None = None
-    registry: Registry | None = None
+    Parameters
+    ----------
+    text : str
+    file : str
+        The name its errors carry.
+    registry : Registry, optional
+        As in `load`.
+
+    Raises
+    ------
+    PipelineError
+        With every problem of the text.
+    """
+    return Pipeline.of(parse_graph(text, file, registry))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Pipeline(Graph):
+    """A resolved, checked, frozen graph, ready to run. Make one with `tactile_graph.load`."""
+
+    @classmethod
+    def of(cls, graph: Graph) -> Pipeline:
+        """Return the pipeline of a graph."""
+        return cls(**{f.name: getattr(graph, f.name) for f in fields(graph)})
 
     # -- running -----------------------------------------------------------------------------
 
@@ -109,15 +125,16 @@ class Pipeline:
                 self.promises.check(result)
             yield result
 
-    def runner(self, only: Sequence[str] | None = None, seed: int = 0) -> Runner:
+    def runner(self, only: Sequence[str] | None = None, seed: int = 0) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own."""
+        from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner
 
-        return Runner(self, tuple(only or self.outputs), seed)
+        return Runner(self, tuple(only or self.outputs), seed, Result)
 
-    def _runner(self, only: tuple[str, ...], seed: int) -> Runner:
+    def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""
-        kept: dict[Any, Runner] = self._kept
+        kept: dict[Any, Runner[Result]] = self._kept
         key = (only, seed, get_ident())  # a runner serves one thread
         runner = kept.get(key)
         if runner is None or runner.stateful:
@@ -127,13 +144,13 @@ class Pipeline:
         return runner
 
     @cached_property
-    def _kept(self) -> dict[Any, Runner]:
+    def _kept(self) -> dict[Any, Runner[Result]]:
         return {}
 
     @cached_property
     def promises(self) -> Promises:
         """What the steps promise and have not been seen to keep yet."""
-        from tactile_graph.pipeline.promises import Promises
+        from tactile_graph.engine.promises import Promises
 
         return Promises(self.nodes.values(), self.registry)
 
@@ -150,11 +167,8 @@ class Pipeline:
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.sources import open_source
-        from tactile_graph.pipeline.source_errors import told
 
-        source = self.source
-        frames = open_source(source.signature, source.settings, seed, report or Report())
-        return told(source.name, frames)
+        return open_source(self.source, seed, report or Report())
 
     # -- variants ----------------------------------------------------------------------------
 
@@ -171,65 +185,22 @@ class Pipeline:
         PipelineError
             If a node, a setting or a value is not allowed.
         """
-        from tactile_graph.pipeline.load import rebuild
-
         overrides = {k: dict(v) for k, v in self.overrides.items()}
         for name, value in settings.items():
             node, dot, setting = name.rpartition(".")
             if not dot:
                 raise PipelineError([Problem(None, f"setting {name!r}: it is named node.setting")])
             overrides.setdefault(node, {})[setting] = value
-        return rebuild(self, overrides, self.source_override)
+        return self._again(overrides, self.source_override)
 
     def with_source(self, step: str, **settings: Any) -> Pipeline:
         """Return the pipeline with another source; rules about quantities are checked again."""
-        from tactile_graph.pipeline.load import rebuild
+        return self._again(self.overrides, (step, settings))
 
-        return rebuild(self, self.overrides, (step, settings))
+    def _again(self, overrides: Overrides, source: SourceOverride) -> Pipeline:
+        return Pipeline.of(resolve_again(self, overrides, source))
 
     # -- looking in --------------------------------------------------------------------------
-
-    @cached_property
-    def types(self) -> dict[str, Any]:
-        """Type of each node's value."""
-        return {FRAME: Frame, **{n: node.output for n, node in self.nodes.items()}}
-
-    def ref(self, text: str) -> Ref:
-        """Return the reference that ``node`` or ``node.field`` spells.
-
-        Raises
-        ------
-        UsageError
-            If there is no such node or field.
-        """
-        if text in self.types:
-            return Ref(text)
-        try:
-            return resolve_reference(tuple(text.split(".")), self.types, [])[0]
-        except ConditionError as error:
-            raise UsageError(f"pipeline {self.name!r}: {error.message}") from None
-
-    def type_of(self, ref: Ref) -> Any:
-        """Return the type of the value at a reference."""
-        return resolve_reference((ref.node, *ref.path), self.types, [])[1]
-
-    @cached_property
-    def key(self) -> str:
-        """Digest that is equal for pipelines that compute the same."""
-        return node_key([(k, self.nodes[r.node].key if r.node in self.nodes else r.node, r.path)
-                         for k, r in self.outputs.items()])  # fmt: skip
-
-    @cached_property
-    def unused(self) -> list[str]:
-        """Nodes that no output needs; they run only when asked for."""
-        needed: set[str] = set()
-        waiting = [r.node for r in self.outputs.values()]
-        while waiting:
-            name = waiting.pop()
-            if name not in needed and name in self.nodes:
-                needed.add(name)
-                waiting += [r.node for r in self.nodes[name].wires()]
-        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
 
     def graph(self) -> networkx.DiGraph[str]:
         """Return the graph for networkx: nodes by name, an edge for each wire."""
@@ -269,17 +240,6 @@ class Pipeline:
 
     def __repr__(self) -> str:
         return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
-
-    def resolved(self) -> dict[str, Any]:
-        """Return the graph as plain data with every setting spelled out, as provenance keeps it."""
-        return {
-            "pipeline": self.name,
-            "source": None
-            if self.source is None
-            else {"step": self.source.name, "with": plain(self.source.settings)},
-            "nodes": {name: plain_node(node) for name, node in self.nodes.items()},
-            "outputs": {name: str(ref) for name, ref in self.outputs.items()},
-        }
 
 
 def _as_frame(frame: Any) -> Frame:

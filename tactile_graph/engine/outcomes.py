@@ -1,20 +1,24 @@
-"""``Result``: what a frame came to, node by node, with reasons and times."""
+"""``Outcomes``: what a frame came to, node by node, with reasons and times."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped
+from tactile_graph.engine.plan import Plan
 from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
+from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.wires.frame import Frame
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from rich.console import RenderableType
+REUSED, ITEM_FAILURES, INNER = -3, -2, -1
+"""Behind the outcomes and times of its slots a state holds whether it is the last frame's again,
+the failures of single items, and the results of embedded pipelines."""
 
-    from tactile_graph.engine.plan import Plan
-    from tactile_graph.pipeline.wiring import Ref
-    from tactile_graph.wires.frame import Frame
+
+def blank_state(n_slots: int) -> list[Any]:
+    """Return the state a frame starts from: outcomes, times in nanoseconds, and what is extra."""
+    return [None] * n_slots + [0] * n_slots + [False, (), None]
 
 
 class NoResult(TactileGraphError):  # noqa: N818 -- it reads as what it says
@@ -43,25 +47,26 @@ class Explained(NamedTuple):
     value: Any = None
 
 
-class Result(Mapping[str, Any]):
-    """The outcome of one frame; as a mapping, the outputs that have a value.
-
-    ``result["circle"]`` is the output's value; `NoResult` says why where there is none.
-    """
+class Outcomes(Mapping[str, Any]):
+    """The outcome of one frame; as a mapping, the outputs that have a value."""
 
     __slots__ = ("_state", "plan")
-    reused: ClassVar[bool] = False
-    """Whether the frame was equal to the one before, so that nothing had to run."""
 
     def __init__(self, plan: Plan, state: list[Any]) -> None:
         self.plan = plan
         self._state = state
 
-    def again(self, frame: Frame) -> Result:
+    def again(self, frame: Frame) -> Self:
         """Return the same outcomes for an equal frame; they took no time."""
         state = self._state.copy()
         state[0] = frame
-        return _Reused(self.plan, state)
+        state[REUSED] = True
+        return type(self)(self.plan, state)
+
+    @property
+    def reused(self) -> bool:
+        """Whether the frame was equal to the one before, so that nothing had to run."""
+        return self._state[REUSED] is True
 
     @property
     def frame(self) -> Frame:
@@ -70,9 +75,9 @@ class Result(Mapping[str, Any]):
         return frame
 
     @property
-    def inner(self) -> dict[str, list[Result]]:
+    def inner(self) -> dict[str, list[Self]]:
         """For each node that ran a pipeline over a list, the results of its items."""
-        return self._state[-1] or {}
+        return self._state[INNER] or {}
 
     # -- outputs -----------------------------------------------------------------------------
 
@@ -135,17 +140,15 @@ class Result(Mapping[str, Any]):
     @property
     def times_us(self) -> dict[str, float]:
         """Microseconds each node's step took; 0 where it did not run."""
-        n = self.plan.n_slots
-        return {
-            i.name: 0.0 if self.reused else self._state[n + i.slot] / 1e3 for i in self.plan.nodes
-        }
+        n, reused = self.plan.n_slots, self.reused
+        return {i.name: 0.0 if reused else self._state[n + i.slot] / 1e3 for i in self.plan.nodes}
 
     @property
     def failures(self) -> list[Failed]:
         """The failures of this frame, each once, those of single items of a list included."""
         single = [f for results in self.inner.values() for r in results for f in r.failures]
         outcomes = [self._state[item.slot] for item in self.plan.items]
-        found = [*outcomes, *self._state[-2], *single]
+        found = [*outcomes, *self._state[ITEM_FAILURES], *single]
         return list({id(f): f for f in found if f.__class__ is Failed}.values())
 
     @property
@@ -170,40 +173,9 @@ class Result(Mapping[str, Any]):
         state = "reused" if self.reused else "ran"
         return Explained(name, step, state, "", time_us, outcome)
 
-    # -- to look at --------------------------------------------------------------------------
-
-    def row(self) -> dict[str, Any]:
-        """Return the outputs flattened into named scalars, as tables and CSV have them."""
-        from tactile_graph.engine.rows import result_row
-
-        return result_row(self)
-
-    def picture(self, *names: str) -> Figure:
-        """Return a figure of the named nodes' values (all, if none is named), axes in cm."""
-        from tactile_graph.draw.strip import strip_figure
-
-        return strip_figure([self], list(names) or None)
-
-    def _repr_png_(self) -> bytes:
-        from tactile_graph.draw.strip import figure_png
-
-        return figure_png(self.picture())
-
-    def __rich__(self) -> RenderableType:
-        from tactile_graph.draw.tables import result_table
-
-        return result_table(self)
-
     def __repr__(self) -> str:
         parts = []
         for name in self.plan.asked:
             outcome = self.outcome(name)
             parts.append(f"{name}={outcome!r}")
         return f"<Result frame {self.frame.index}: {', '.join(parts)}>"
-
-
-class _Reused(Result):
-    """The result of a frame equal to the one before."""
-
-    __slots__ = ()
-    reused = True

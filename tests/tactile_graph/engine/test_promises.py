@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Degenerate, Ellipse, Frame, Image, Mask, hookimpl, loads
+from tactile_graph.engine.promises import misfit
 from tactile_graph.errors import PluginError
-from tactile_graph.pipeline.promises import misfit
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps import Grid, Quantity
 
