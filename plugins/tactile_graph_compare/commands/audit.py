@@ -21,8 +21,7 @@ from tactile_graph.files import check_target
 
 if TYPE_CHECKING:
     from tactile_graph_compare.output.tables import Table
-    from tactile_graph_compare.records.audit import Audit, GuardAudit
-    from tactile_graph_compare.run.audit import Auditor
+    from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
 EPILOG = """\b
 Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C; what was done is shown.

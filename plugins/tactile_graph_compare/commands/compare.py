@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.records.comparison import Comparison
     from tactile_graph_compare.run.session import Session
-    from tactile_graph_compare.variants.request import Wanted
-    from tactile_graph_compare.variants.variants import Prepared
+    from tactile_graph_compare.variants.prepare import PreparedVariant
+    from tactile_graph_compare.variants.request import VariantRequest
 
 EPILOG = """\b
 A variant is a pipeline's name or file, or one with settings, as one quoted word:
@@ -130,11 +130,11 @@ def _check_files(options: _Options) -> None:
 
 def _prepared(
     words: Sequence[str], span: Span, options: _Options
-) -> tuple[list[Prepared], list[str]]:
+) -> tuple[list[PreparedVariant], list[str]]:
     from tactile_graph.cli.arguments import assignment, offered, sourced
     from tactile_graph_compare.variants.one_source import first_source, given_of, on_source
+    from tactile_graph_compare.variants.prepare import prepare
     from tactile_graph_compare.variants.sweeps import parse_sweep
-    from tactile_graph_compare.variants.variants import prepare
 
     wanted, recordings = _told_apart(words)
     if not wanted:
@@ -158,17 +158,17 @@ def _prepared(
     return on_source(prepared, step, settings), notes
 
 
-def _told_apart(words: Sequence[str]) -> tuple[list[Wanted], list[str]]:
+def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
     """Return the variants and the recordings among the words of a command line."""
-    from tactile_graph_compare.variants.request import parse_wanted
+    from tactile_graph_compare.variants.request import parse_request
 
     found = registry.installed()
-    wanted: list[Wanted] = []
+    wanted: list[VariantRequest] = []
     recordings: list[str] = []
     for word in words:
         name = _first(word)
         if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
-            wanted.append(parse_wanted(word, found))
+            wanted.append(parse_request(word, found))
         elif Path(word).exists():
             recordings.append(word)
         else:
@@ -190,7 +190,7 @@ class _Run:
     """One comparison from its first frame to its files."""
 
     def __init__(
-        self, prepared: list[Prepared], notes: list[str], span: Span, options: _Options
+        self, prepared: list[PreparedVariant], notes: list[str], span: Span, options: _Options
     ) -> None:
         from tactile_graph.cli.terminal import console
         from tactile_graph.steps.injected import Report
@@ -222,7 +222,7 @@ class _Run:
 
     def _frames(self, held: Any) -> tuple[bool, Exception | None]:
         from tactile_graph.cli.progress import Bar
-        from tactile_graph_compare.run.side_by_side import warmed
+        from tactile_graph_compare.run.compare import warmed
 
         bar = Bar(self.stderr, "compare")
         source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)

@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.engine.outcome import NOT_ASKED, Failed, Skipped
+from tactile_graph import Pipeline
+from tactile_graph.inspect import NOT_ASKED, Failed, Skipped
 
 
 @dataclass(frozen=True)

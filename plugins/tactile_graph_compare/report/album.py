@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.draw.columns import UNITS, images_in, is_picture
-from tactile_graph.engine.rows import scalars
+from tactile_graph.inspect import scalars
 from tactile_graph_compare.output.tables import us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory

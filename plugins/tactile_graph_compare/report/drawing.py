@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.draw.columns import place, view
 from tactile_graph.draw.picture import cell_edges
-from tactile_graph.engine.outcome import Done, Failed, Skipped
-from tactile_graph.engine.rows import scalars
+from tactile_graph.inspect import Done, Failed, Skipped, scalars
 from tactile_graph.wires import Circle, Image, Mask, Points
 from tactile_graph_compare.report.grid_png import (
     HEAT,

@@ -8,23 +8,21 @@ any variants: merged into one graph, so that only what a guard keeps from runnin
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.rows import as_data
+from tactile_graph import Pipeline
+from tactile_graph.inspect import NO_VALUE, as_data
 from tactile_graph.wires.frame import Frame
-from tactile_graph_compare.records.audit import Audit, GuardAudit
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
-from tactile_graph_compare.run.frame_choice import Keeper
+from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import WARM_FRAMES, Session, VariantLog
 from tactile_graph_compare.run.summarise import close
-from tactile_graph_compare.variants.shadows import shadows_of
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph_compare.variants.ablations import ablations_of
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 
 class Auditor:
@@ -45,12 +43,12 @@ class Auditor:
         self, pipeline: Pipeline, asked: tuple[str, ...] = (), sample: float = 1.0, seed: int = 0
     ) -> None:
         self.pipeline = pipeline
-        self.shadows = shadows_of(pipeline)
+        self.shadows = ablations_of(pipeline)
         asked = asked or tuple(pipeline.outputs)
         rows = [(pipeline.name, pipeline)]
         rows += [(s.label, s.pipeline) for s in self.shadows]
-        prepared = [Prepared(label, p, asked, pipeline.name) for label, p in rows]
-        self.session = Session(prepared, seed, Keeper(n_regular=0, most=0))
+        prepared = [PreparedVariant(label, p, asked, pipeline.name) for label, p in rows]
+        self.session = Session(prepared, seed, FrameChooser(n_regular=0, most=0))
         self.whole = self.session.stateful
         self.sample = sample
         self.n_seen = 0
@@ -205,3 +203,65 @@ def audit(
     for frame in frames:
         auditor.add(frame)
     return auditor.close()
+
+
+@dataclass(frozen=True)
+class GuardAudit:
+    """What one guard, or one hand-over, saved and what it cost.
+
+    Parameters
+    ----------
+    node : str
+        The guarded node, or the ``first_of``.
+    kind : str
+        ``when`` or ``first_of``.
+    text : str
+        The condition, or the choices that were left out.
+    n_stopped : int
+        Frames in which it kept something from running.
+    saved_us : float
+        Time saved per frame, mean over all frames of the sample: that of the nodes which ran in
+        the shadow only, less that of nodes only the guard itself needs.
+    saved_share : float
+        The same as a share of the time per frame without it.
+    saved_when_us : float
+        Time saved per frame in which it stopped something.
+    differences : tuple of Difference
+        For each quantity, the pipeline's absolute error less the shadow's: what the guard brought
+        in. ``n_only_reference`` counts the answers it cost.
+    n_false_prevented : int
+        Frames in which truly nothing lay on the pad and only the shadow answered.
+    n_failed_prevented : int
+        Frames in which an output failed in the shadow only.
+    n_changed : int
+        Frames in which an output came out otherwise in any way.
+    """
+
+    node: str
+    kind: str
+    text: str
+    n_stopped: int
+    saved_us: float
+    saved_share: float
+    saved_when_us: float
+    differences: tuple[Difference, ...]
+    n_false_prevented: int
+    n_failed_prevented: int
+    n_changed: int
+
+
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """All guards of a pipeline, on one sample of frames.
+
+    ``everything`` is the comparison of the pipeline with its shadows; ``whole`` tells that a step
+    keeps state, so that every frame had to be taken.
+    """
+
+    pipeline: Pipeline
+    guards: tuple[GuardAudit, ...]
+    n_frames: int
+    n_seen: int
+    median_us: float
+    everything: Comparison
+    whole: bool

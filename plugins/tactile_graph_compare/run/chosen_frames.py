@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 
-from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph import Result
+from tactile_graph.inspect import NO_VALUE, Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.graph import STATES, state_of
 from tactile_graph_compare.run.session import Session, VariantLog
 
 
 def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
-    """Return the frames a session's keeper has chosen, in order."""
+    """Return the frames a session's chooser has chosen, in order."""
     errors = {log.prepared.label: _errors(log) for log in session.logs}
     return tuple(
         ChosenFrame(
@@ -23,7 +22,7 @@ def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
             {log.prepared.label: stories(result, log) for log in session.logs},
             {label: of.get(position, {}) for label, of in errors.items()},
         )
-        for position, result, choices in session.keeper.chosen()
+        for position, result, choices in session.chooser.chosen()
     )
 
 

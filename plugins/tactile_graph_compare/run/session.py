@@ -9,22 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
-from tactile_graph.engine.runner import Runner, check_frame
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph import Result
+from tactile_graph.inspect import NO_VALUE, Failed, Ref, Runner, Skipped, check_frame
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.graph import state_of
-from tactile_graph_compare.run.frame_choice import Keeper
-from tactile_graph_compare.run.run_orders import orders
+from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.score.answers import answers_of
 from tactile_graph_compare.score.scoring import Scorer
 from tactile_graph_compare.variants.merge import Member, merge
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 WARM_FRAMES = 8
 WARM_S = 1.0
-MOST_TURNS = 8
+MOST_ORDERS = 8
 """Orders in which the variants run, at most."""
 
 
@@ -43,7 +40,7 @@ class VariantLog:
         Of the last frame, as the variant alone would have given it.
     """
 
-    def __init__(self, prepared: Prepared, member: Member) -> None:
+    def __init__(self, prepared: PreparedVariant, member: Member) -> None:
         self.prepared = prepared
         self.member = member
         self.nodes = tuple(i.name for i in member.plan.nodes)
@@ -85,15 +82,18 @@ class Session:
 
     Parameters
     ----------
-    prepared : sequence of Prepared
+    prepared : sequence of PreparedVariant
     seed : int
         Seed of the steps that take randomness.
-    keeper : Keeper, optional
+    chooser : FrameChooser, optional
         Chooses the frames that are kept whole.
     """
 
     def __init__(
-        self, prepared: Sequence[Prepared], seed: int = 0, keeper: Keeper | None = None
+        self,
+        prepared: Sequence[PreparedVariant],
+        seed: int = 0,
+        chooser: FrameChooser | None = None,
     ) -> None:
         self.prepared = tuple(prepared)
         self.seed = seed
@@ -108,7 +108,7 @@ class Session:
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
-        self.keeper = keeper or Keeper()
+        self.chooser = chooser or FrameChooser()
         self.merged_nodes = tuple(i.name for i in self.plan.nodes)
         self.node_times_us: list[list[float]] = []
         self.merged_states: list[bytes] = []
@@ -131,7 +131,7 @@ class Session:
         """
         if first.stateful:
             return [first]
-        turns = orders(len(self.prepared), MOST_TURNS)
+        turns = balanced_orders(len(self.prepared), MOST_ORDERS)
         return [self.merged.in_order(turn).runner(seed=self.seed) for turn in turns]
 
     @property
@@ -180,7 +180,7 @@ class Session:
         times_us = result.times_us
         position = self.n
         worst = {log.prepared.label: log.add(position, result) for log in self.logs}
-        self.keeper.add(position, result, worst)
+        self.chooser.add(position, result, worst)
         self._note(frame, result, whole_us, times_us)
         self.last = time.perf_counter()
         return result
@@ -213,3 +213,25 @@ class Session:
     def times_by_node(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         """Return microseconds, shape (n_frames, n_merged_nodes)."""
         return np.array(self.node_times_us).reshape(self.n, len(self.merged_nodes))
+
+
+def balanced_orders(n: int, most: int) -> list[tuple[int, ...]]:
+    """Return orders of ``n`` variants in which none is favoured.
+
+    Parameters
+    ----------
+    n : int
+    most : int
+        So many orders at most.
+
+    Returns
+    -------
+    list of tuples of int
+        Each comes at each place, and behind each other, equally often: a Latin square for an even
+        number, two for an odd one (Williams 1949). Beyond ``most`` some of them, evenly taken.
+    """
+    zigzag = [0, *(k for pair in zip(range(1, n), range(n - 1, 0, -1), strict=True) for k in pair)]
+    rows = [tuple((z + k) % n for z in zigzag[:n]) for k in range(n)]
+    if n % 2 and n > 1:
+        rows += [row[::-1] for row in rows]
+    return [rows[round(i * len(rows) / most)] for i in range(most)] if len(rows) > most else rows

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.steps.injected import Report
-from tactile_graph_compare.records.comparison import Comparison, FrameTable, Variant
+from tactile_graph_compare.records.comparison import Comparison, Evolution, FrameTable, Variant
 from tactile_graph_compare.records.graph import Saving, Timeline
-from tactile_graph_compare.records.lineage import Evolution
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
 from tactile_graph_compare.run.chosen_frames import chosen_frames
 from tactile_graph_compare.run.merged_graph import merged_graph

@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, Skipped
-from tactile_graph.engine.truth import shape_kind
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.inspect import NO_VALUE, Ref, Skipped, shape_kind
 from tactile_graph.wires.frame import Frame, TrueObject
 from tactile_graph.wires.shapes import Ellipse, Rectangle, printed_angle_deg
 from tactile_graph_compare.score.answers import OF_SHAPES, Answers, Places
@@ -27,7 +25,7 @@ Outcomes = Callable[[Ref], Any]
 
 
 @dataclass
-class Targets:
+class QuantityErrors:
     """The targets of one quantity so far: what there was to answer, and how far the answer is off.
 
     ``offsets`` are (x, y) of centres, in cm.
@@ -59,7 +57,7 @@ class Scorer:
     def __init__(self, answers: Answers, gate_cm: float = GATE_CM) -> None:
         self.answers = answers
         self.gate_cm = gate_cm
-        self.targets: dict[str, Targets] = defaultdict(Targets)
+        self.targets: dict[str, QuantityErrors] = defaultdict(QuantityErrors)
 
     def add(self, position: int, frame: Frame, outcomes: Outcomes) -> dict[str, float]:
         """Enter a frame; return its worst error of each quantity, NaN where something is missing.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference, Times
 from tactile_graph_compare.score.quantities import QUANTITIES
-from tactile_graph_compare.score.scoring import Targets
+from tactile_graph_compare.score.scoring import QuantityErrors
 
 Reals = NDArray[np.float64]
 LEVEL = 0.95
@@ -29,7 +29,7 @@ def frozen(values: Sequence[float] | Reals, kind: type = np.float64) -> NDArray[
     return array
 
 
-def score_of(variant: str, quantity: str, targets: Targets) -> Score:
+def score_of(variant: str, quantity: str, targets: QuantityErrors) -> Score:
     """Return the score of what was collected for one quantity of one variant."""
     errors = np.asarray(targets.errors, dtype=np.float64)
     known = errors[~np.isnan(errors)]

@@ -6,11 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
 from tactile_graph.errors import PipelineError, Problem, UsageError
-from tactile_graph.pipeline.graph import Source
-from tactile_graph.pipeline.plain import plain
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph.inspect import Source, plain
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 COUNT = "frames"
 """The setting by which a source that makes its frames is told how many."""
@@ -19,7 +18,7 @@ Given = tuple[str, dict[str, Any]]
 """A source step and what is set of it."""
 
 
-def first_source(prepared: Sequence[Prepared]) -> tuple[Prepared, list[str]]:
+def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, list[str]]:
     """Return the first variant that declares a source, and what people should know of that.
 
     Raises
@@ -52,8 +51,8 @@ def makes_frames(pipeline: Pipeline, step: str) -> bool:
     return any(s.name == COUNT for s in registry.step(step).settings)
 
 
-def on_source(prepared: Sequence[Prepared], step: str, settings: Mapping[str, Any]) -> list[
-    Prepared
+def on_source(prepared: Sequence[PreparedVariant], step: str, settings: Mapping[str, Any]) -> list[
+    PreparedVariant
 ]:  # fmt: skip
     """Return the variants on a source.
 
@@ -76,7 +75,7 @@ def on_source(prepared: Sequence[Prepared], step: str, settings: Mapping[str, An
     return placed
 
 
-def without_source(prepared: Sequence[Prepared]) -> list[Prepared]:
+def without_source(prepared: Sequence[PreparedVariant]) -> list[PreparedVariant]:
     """Return the variants as they are on frames handed in: with no source of their own."""
     return [replace(p, pipeline=replace(p.pipeline, source=None)) for p in prepared]
 

@@ -8,7 +8,7 @@ import pytest
 from tactile_graph import Circle, Frame, loads
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare.run.audit import audit
-from tactile_graph_compare.variants.shadows import shadows_of
+from tactile_graph_compare.variants.ablations import ablations_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -31,7 +31,7 @@ def by_name(found):
 
 
 def test_every_guard_and_hand_over_that_is_asked_for_has_a_shadow():
-    told = [(s.node, s.kind, s.text) for s in shadows_of(loads(HANDED))]
+    told = [(s.node, s.kind, s.text) for s in ablations_of(loads(HANDED))]
     assert told == [("good", "when", "cheap.x_cm > 2"), ("circle", "first_of", "without good")]
 
 

@@ -19,8 +19,7 @@ from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.engine.rows import as_data
 from tactile_graph.plugins.registry import installed
 from tactile_graph_compare.records.graph import STATES
-from tactile_graph_compare.run.run_orders import orders
-from tactile_graph_compare.run.session import state_of
+from tactile_graph_compare.run.session import balanced_orders, state_of
 from tactile_graph_compare.variants.merge import Merged, merge
 
 FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (4, 0.7), (5, 2.0), (1, 2.25), (2, 4.0)]
@@ -103,7 +102,9 @@ def check(pipelines: list[Pipeline], frames: list[Any], seed: int = 0) -> Merged
     merged = merge(pipelines, [list(p.outputs) for p in pipelines])
     turns = [merged.pipeline.runner(seed=seed)]
     if not turns[0].stateful:
-        turns += [merged.in_order(turn).runner(seed=seed) for turn in orders(len(pipelines), 8)]
+        turns += [
+            merged.in_order(turn).runner(seed=seed) for turn in balanced_orders(len(pipelines), 8)
+        ]
     alone = [p.runner(seed=seed) for p in pipelines]
     called: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
     for i, one in enumerate(frames):

@@ -7,13 +7,13 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
-from tactile_graph_compare.run.frame_choice import Keeper
+from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import WARM_FRAMES, Session
 from tactile_graph_compare.run.summarise import close
 from tactile_graph_compare.variants.one_source import (
@@ -24,13 +24,13 @@ from tactile_graph_compare.variants.one_source import (
     on_source,
     without_source,
 )
-from tactile_graph_compare.variants.request import Wanted, parse_wanted
+from tactile_graph_compare.variants.prepare import PreparedVariant, prepare
+from tactile_graph_compare.variants.request import VariantRequest, parse_request
 from tactile_graph_compare.variants.sweeps import Sweep
-from tactile_graph_compare.variants.variants import Prepared, prepare
 
 
 def compare(
-    variants: Sequence[str | Path | Pipeline | Wanted],
+    variants: Sequence[str | Path | Pipeline | VariantRequest],
     frames: Iterable[Frame] | None = None,
     *,
     source: str | None = None,
@@ -41,7 +41,7 @@ def compare(
     crossed: bool = False,
     lineage: bool = False,
     seed: int = 0,
-    keeper: Keeper | None = None,
+    chooser: FrameChooser | None = None,
     registry: Registry | None = None,
 ) -> Comparison:
     """Return how variants compare on the same frames, against the same truth.
@@ -66,7 +66,7 @@ def compare(
         Whether the pipelines that those named evolved from are compared too.
     seed : int
         Of everything random: the source's frames, the steps, the resampling.
-    keeper : Keeper, optional
+    chooser : FrameChooser, optional
         How many frames are kept whole.
     registry : Registry, optional
         The installed plugins if not given.
@@ -90,17 +90,17 @@ def compare(
         raise UsageError("give frames or a source, not both")
     else:
         prepared = without_source(prepared)
-    session = Session(prepared, seed, keeper)
+    session = Session(prepared, seed, chooser)
     run_all(session, islice(iter(frames), n_frames))
     return close(session, report, notes=notes)
 
 
 def _on_one_source(
-    prepared: list[Prepared],
+    prepared: list[PreparedVariant],
     source: str | None,
     settings: Mapping[str, Any] | None,
     n_frames: int | None,
-) -> tuple[list[Prepared], list[str]]:
+) -> tuple[list[PreparedVariant], list[str]]:
     """Return the variants on the source given, or on the first's own, and what to say of it."""
     notes: list[str] = []
     given = dict(settings or {})
@@ -116,10 +116,10 @@ def _on_one_source(
     return on_source(prepared, source, given), notes
 
 
-def _wanted(variant: str | Path | Pipeline | Wanted, registry: Registry) -> Wanted:
-    if isinstance(variant, Wanted):
+def _wanted(variant: str | Path | Pipeline | VariantRequest, registry: Registry) -> VariantRequest:
+    if isinstance(variant, VariantRequest):
         return variant
-    return parse_wanted(variant, registry) if isinstance(variant, str) else Wanted(variant)
+    return parse_request(variant, registry) if isinstance(variant, str) else VariantRequest(variant)
 
 
 def run_all(session: Session, frames: Iterator[Frame]) -> None:

@@ -7,17 +7,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline, load
+from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean
-from tactile_graph.pipeline.graph import Graph
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.inspect import Graph, plain
 from tactile_graph.plugins.registry import Registry
-from tactile_graph_compare.variants.request import Wanted, as_yaml, spelled
+from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedVariant:
     """A variant ready to run: its pipeline, its label, and how to ask for it again."""
 
     label: str
@@ -29,25 +28,25 @@ class Prepared:
 
 @dataclass(frozen=True, eq=False)
 class _Loaded:
-    wanted: Wanted
+    wanted: VariantRequest
     pipeline: Pipeline
     settings: Mapping[str, Any]
     """All that was set of it: its own, the common ones, those of sweeps."""
 
 
 def prepare(
-    wanted: Sequence[Wanted],
+    wanted: Sequence[VariantRequest],
     registry: Registry,
     settings: Mapping[str, Any] | None = None,
     sweeps: Sequence[Sweep] = (),
     crossed: bool = False,
     lineage: bool = False,
-) -> list[Prepared]:
+) -> list[PreparedVariant]:
     """Return the variants, each with its label.
 
     Parameters
     ----------
-    wanted : sequence of Wanted
+    wanted : sequence of VariantRequest
     registry : Registry
     settings : mapping, optional
         For every pipeline that has the node and the setting.
@@ -78,7 +77,7 @@ def prepare(
     return _with_parent_labels([_prepared(x, everything) for x in everything], everything)
 
 
-def _load(wanted: Wanted, registry: Registry) -> _Loaded:
+def _load(wanted: VariantRequest, registry: Registry) -> _Loaded:
     name = wanted.name
     pipeline = name if isinstance(name, Pipeline) else load(name, registry)
     return _set(_Loaded(wanted, pipeline, {}), wanted.settings)
@@ -100,7 +99,9 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
         while child.evolves:
             beside = Path(child.file).parent / child.evolves
             is_file = child.evolves.endswith((".yaml", ".yml"))
-            parent = _load(Wanted(beside if is_file else child.evolves, swept=False), registry)
+            parent = _load(
+                VariantRequest(beside if is_file else child.evolves, swept=False), registry
+            )
             if parent.pipeline.name in names:
                 break
             names.add(parent.pipeline.name)
@@ -148,7 +149,7 @@ def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: st
 # -- labels ----------------------------------------------------------------------------------
 
 
-def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> Prepared:
+def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> PreparedVariant:
     pipeline, only = one.pipeline, one.wanted.only
     for name in only:
         pipeline.ref(name)  # says what is wrong with it
@@ -159,7 +160,7 @@ def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> Prepared:
     if sum(_label(other) == label for other in everything) > 1:
         label = given.strip("'")
     asked = only or tuple(pipeline.outputs)
-    return Prepared(label, pipeline, asked, given)
+    return PreparedVariant(label, pipeline, asked, given)
 
 
 def _label(one: _Loaded) -> str:
@@ -177,7 +178,9 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else as_yaml(value)
 
 
-def _with_parent_labels(prepared: Sequence[Prepared], loaded: Sequence[_Loaded]) -> list[Prepared]:
+def _with_parent_labels(
+    prepared: Sequence[PreparedVariant], loaded: Sequence[_Loaded]
+) -> list[PreparedVariant]:
     seen: set[str] = set()
     found = []
     for one, its in zip(prepared, loaded, strict=True):
