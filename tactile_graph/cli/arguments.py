@@ -130,6 +130,7 @@ def open_pipeline(
         If the file or a setting is wrong.
     """
     from tactile_graph.api.pipeline import load
+    from tactile_graph.pipeline.document import assignment
 
     found = registry.installed()
     if name is None:
@@ -164,6 +165,8 @@ def sourced(
     UsageError
         If there is none, or it is not allowed.
     """
+    from tactile_graph.pipeline.document import assignment
+
     if recordings and step is not None and step != RECORDING:
         raise UsageError(f"give recordings or --source {step}, not both: {recordings[0]}")
     own = pipeline.source
@@ -231,25 +234,3 @@ def _is_source(name: str) -> bool:
     from tactile_graph.plugins.outline import outline
 
     return outline(registry.installed().offer("steps", name).target).kind == "source"
-
-
-def assignment(option: str, text: str) -> tuple[str, Any]:
-    """Return name and value of ``name=value``, the value read as YAML.
-
-    Raises
-    ------
-    UsageError
-        If there is no ``=``, or the value is no plain YAML.
-    """
-    from tactile_graph.pipeline.document import read_document
-
-    name, sign, value = text.partition("=")
-    form = "node.setting=value" if option == "--set" else "key=value"
-    if not sign or not name.strip():
-        raise UsageError(f"{option} {text}: must be {form}")
-    if not value.strip():
-        return name.strip(), ""
-    document = read_document(value, f"{option} {name.strip()}")
-    if document.problems:
-        raise UsageError(f"{option} {text}: {document.problems[0].message}")
-    return name.strip(), document.data

@@ -65,7 +65,7 @@ def audit(
     if not auditor.shadows:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
     interrupted = _frames(auditor, span, seed)
-    found = auditor.close(interrupted)
+    found = auditor.summarise(interrupted)
     if not found.n_frames:
         raise UsageError(
             f"none of {found.n_seen} frames is in the sample of {sample:g}: give a larger --sample"

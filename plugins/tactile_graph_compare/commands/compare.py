@@ -131,7 +131,8 @@ def _check_files(options: _Options) -> None:
 def _prepared(
     words: Sequence[str], span: Span, options: _Options
 ) -> tuple[list[PreparedVariant], list[str]]:
-    from tactile_graph.cli.arguments import assignment, offered, sourced
+    from tactile_graph.cli.arguments import offered, sourced
+    from tactile_graph.pipeline.document import assignment
     from tactile_graph_compare.variants.one_source import first_source, given_of, on_source
     from tactile_graph_compare.variants.prepare import prepare
     from tactile_graph_compare.variants.sweeps import parse_sweep
@@ -212,7 +213,7 @@ class _Run:
             interrupted, error = self._frames(held)
         with held:
             if self.session.n:
-                self._close(interrupted)
+                self._finish(interrupted)
             elif error is None and not interrupted:
                 got = self.report.counts["frames"]
                 error = UsageError(f"there is nothing to compare: the source gave {got} frames")
@@ -243,11 +244,11 @@ class _Run:
 
     # -- the end -----------------------------------------------------------------------------
 
-    def _close(self, interrupted: bool) -> None:
+    def _finish(self, interrupted: bool) -> None:
         from tactile_graph_compare.output.shown import show
-        from tactile_graph_compare.run.summarise import close
+        from tactile_graph_compare.run.summarise import summarise
 
-        comparison = close(self.session, self.report, interrupted, self.notes, self.span.start)
+        comparison = summarise(self.session, self.report, interrupted, self.notes, self.span.start)
         if interrupted:
             self.people.print("interrupted", style="bold red")
         try:

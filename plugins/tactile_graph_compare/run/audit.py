@@ -20,7 +20,7 @@ from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import WARM_FRAMES, Session, VariantLog
-from tactile_graph_compare.run.summarise import close
+from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.ablations import ablations_of
 from tactile_graph_compare.variants.prepare import PreparedVariant
 
@@ -104,11 +104,11 @@ class Auditor:
         )
         self._counts["false"][i] += empty and found
 
-    def close(self, interrupted: bool = False) -> Audit:
+    def summarise(self, interrupted: bool = False) -> Audit:
         """Return what the guards came to over the frames so far."""
         if self._waiting:
             self._start()
-        found = close(self.session, interrupted=interrupted)
+        found = summarise(self.session, interrupted=interrupted)
         return Audit(
             pipeline=self.pipeline,
             guards=tuple(self._guards(found)),
@@ -202,7 +202,7 @@ def audit(
     auditor = Auditor(pipeline, asked, sample, seed)
     for frame in frames:
         auditor.add(frame)
-    return auditor.close()
+    return auditor.summarise()
 
 
 @dataclass(frozen=True)

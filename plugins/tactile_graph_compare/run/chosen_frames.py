@@ -49,8 +49,8 @@ def stories(result: Result, log: VariantLog) -> dict[str, NodeStory]:
 def _errors(log: VariantLog) -> dict[int, dict[str, float]]:
     """Return by frame and quantity the signed error that is largest."""
     found: dict[int, dict[str, float]] = {}
-    for quantity, targets in log.scorer.targets.items():
-        for position, error in zip(targets.positions, targets.errors, strict=True):
+    for quantity, errors in log.scorer.errors.items():
+        for position, error in zip(errors.positions, errors.errors, strict=True):
             if math.isnan(error):
                 continue
             here = found.setdefault(position, {})

@@ -15,7 +15,7 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import WARM_FRAMES, Session
-from tactile_graph_compare.run.summarise import close
+from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.one_source import (
     COUNT,
     first_source,
@@ -92,7 +92,7 @@ def compare(
         prepared = without_source(prepared)
     session = Session(prepared, seed, chooser)
     run_all(session, islice(iter(frames), n_frames))
-    return close(session, report, notes=notes)
+    return summarise(session, report, notes=notes)
 
 
 def _on_one_source(

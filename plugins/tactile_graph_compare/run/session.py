@@ -78,7 +78,7 @@ class VariantLog:
 
 
 class Session:
-    """A comparison under way: add frames, then let `close.close` make the `Comparison`.
+    """A comparison under way: add frames, then let `summarise` make the `Comparison`.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from tactile_graph_compare.variants.request import as_yaml
 LONGEST_SOURCE = 120
 
 
-def close(
+def summarise(
     session: Session,
     report: Report | None = None,
     interrupted: bool = False,
@@ -84,7 +84,7 @@ def close(
 
 def _scored(log: VariantLog) -> dict[str, Any]:
     """Return the targets of each quantity that something was there to answer for."""
-    return {q: t for q, t in log.scorer.targets.items() if t.positions or t.n_extra}
+    return {q: t for q, t in log.scorer.errors.items() if t.positions or t.n_extra}
 
 
 def _variant(number: int, log: VariantLog) -> Variant:
@@ -212,7 +212,7 @@ def _evolutions(
 
 def _provenance(session: Session, report: Report, interrupted: bool, start: int) -> dict[str, Any]:
     """Return how to make it again: as of a run, with the pipeline of every variant."""
-    from tactile_graph.cli.provenance import provenance
+    from tactile_graph.provenance import provenance
 
     rows = [
         provenance(p.pipeline, session.seed, report, given=p.given, asked=p.asked)

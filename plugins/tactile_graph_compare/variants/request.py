@@ -11,6 +11,7 @@ from typing import Any
 from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.inspect import plain
+from tactile_graph.pipeline.document import assignment
 from tactile_graph.plugins.registry import Registry
 
 
@@ -67,14 +68,8 @@ def parse_request(text: str, registry: Registry) -> VariantRequest:
         if option == "--only":
             only.append(value)
         else:
-            settings |= dict([_assigned(value)])
+            settings |= dict([assignment("--set", value)])
     return VariantRequest(name, settings, tuple(only))
-
-
-def _assigned(text: str) -> tuple[str, Any]:
-    from tactile_graph.cli.arguments import assignment
-
-    return assignment("--set", text)
 
 
 def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:
