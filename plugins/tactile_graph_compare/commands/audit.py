@@ -62,7 +62,7 @@ def audit(
         check_target("--json", json_path)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     auditor = Auditor(opened, tuple(only), sample, seed)
-    if not auditor.shadows:
+    if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
     interrupted = _frames(auditor, span, seed)
     found = auditor.summarise(interrupted)

@@ -8,7 +8,8 @@ from tactile_graph import Result
 from tactile_graph.inspect import NO_VALUE, Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.graph import STATES, state_of
-from tactile_graph_compare.run.session import Session, VariantLog
+from tactile_graph_compare.run.logs import VariantLog
+from tactile_graph_compare.run.session import Session
 
 
 def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:

@@ -2,79 +2,23 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from tactile_graph import Result
-from tactile_graph.inspect import NO_VALUE, Failed, Ref, Runner, Skipped, check_frame
+from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.wires.frame import Frame
-from tactile_graph_compare.records.graph import state_of
 from tactile_graph_compare.run.frame_choice import FrameChooser
-from tactile_graph_compare.score.answers import answers_of
-from tactile_graph_compare.score.scoring import Scorer
-from tactile_graph_compare.variants.merge import Member, merge
+from tactile_graph_compare.run.logs import MergedLog, VariantLog
+from tactile_graph_compare.variants.merge import merge
 from tactile_graph_compare.variants.prepare import PreparedVariant
 
 WARM_FRAMES = 8
 WARM_S = 1.0
 MOST_ORDERS = 8
 """Orders in which the variants run, at most."""
-
-
-class VariantLog:
-    """What one variant came to so far.
-
-    Attributes
-    ----------
-    nodes : tuple of str
-        Those its outputs need, in the order of its file.
-    states : list of bytes
-        For each frame, a code for each node, as `graph_records.STATES`.
-    times_us : list of float
-        Time of each frame; NaN where it was reused.
-    last : Result
-        Of the last frame, as the variant alone would have given it.
-    """
-
-    def __init__(self, prepared: PreparedVariant, member: Member) -> None:
-        self.prepared = prepared
-        self.member = member
-        self.nodes = tuple(i.name for i in member.plan.nodes)
-        self._refs = [Ref(name) for name in self.nodes]
-        self.last: Result
-        self.scorer = Scorer(answers_of(prepared.pipeline, prepared.asked))
-        self.states: list[bytes] = []
-        self.times_us: list[float] = []
-        self.n_ok = self.n_skipped = self.n_failed = 0
-        self.reasons: dict[tuple[str, str, str], list[Any]] = {}
-
-    def add(self, position: int, result: Result) -> dict[str, float]:
-        """Note a frame; return its worst error of each quantity."""
-        alone = self.last = self.member.alone(result)
-        self.states.append(bytes([state_of(alone.outcome_at(ref)) for ref in self._refs]))
-        spent = sum(alone.times_us.values())
-        self.times_us.append(math.nan if result.reused else spent)
-        self._count(alone)
-        return self.scorer.add(position, result.frame, alone.outcome_at)
-
-    def _count(self, alone: Result) -> None:
-        refs = self.member.asked
-        kinds = {alone.outcome_at(r).__class__ for r in refs}
-        self.n_failed += Failed in kinds
-        self.n_skipped += Skipped in kinds and Failed not in kinds
-        self.n_ok += not kinds & NO_VALUE
-        if not kinds & NO_VALUE:
-            return
-        for name, ref in zip(self.prepared.asked, refs, strict=True):
-            outcome = alone.outcome_at(ref)
-            if isinstance(outcome, Skipped | Failed):
-                word = "failed" if outcome.__class__ is Failed else "skipped"
-                first = [outcome.reason.partition("\n")[0], 0]
-                self.reasons.setdefault((word, name, outcome.origin), first)[1] += 1
 
 
 class Session:
@@ -104,20 +48,12 @@ class Session:
         self.runners = self._runners(first)
         self._runner: Runner[Result] | None = None
         self.promises = self.merged.pipeline.promises
-        self._turns = np.random.default_rng(seed)
+        self._order_rng = np.random.default_rng(seed)
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
         self.chooser = chooser or FrameChooser()
-        self.merged_nodes = tuple(i.name for i in self.plan.nodes)
-        self.node_times_us: list[list[float]] = []
-        self.merged_states: list[bytes] = []
-        self.fixed_us: list[float] = []
-        self.indices: list[int] = []
-        self.times_s: list[float] = []
-        self.labels: list[str] = []
-        self.n_true: list[int] = []
-        self.reused: list[bool] = []
+        self.merged_log = MergedLog(first.plan)
         self.started = time.perf_counter()
         self.last = self.started
 
@@ -131,13 +67,13 @@ class Session:
         """
         if first.stateful:
             return [first]
-        turns = balanced_orders(len(self.prepared), MOST_ORDERS)
-        return [self.merged.in_order(turn).runner(seed=self.seed) for turn in turns]
+        found = balanced_orders(len(self.prepared), MOST_ORDERS)
+        return [self.merged.in_order(order).runner(seed=self.seed) for order in found]
 
     @property
     def n(self) -> int:
         """Frames so far."""
-        return len(self.indices)
+        return self.merged_log.n
 
     def warm_up(self, frames: Sequence[Frame]) -> None:
         """Run some frames through a copy, so that what is compiled or made once is not timed.
@@ -177,11 +113,10 @@ class Session:
         whole_us = 1e6 * (time.perf_counter() - start)
         if self.promises.waiting:
             self.promises.check(result)
-        times_us = result.times_us
         position = self.n
         worst = {log.prepared.label: log.add(position, result) for log in self.logs}
         self.chooser.add(position, result, worst)
-        self._note(frame, result, whole_us, times_us)
+        self.merged_log.add(frame, result, whole_us)
         self.last = time.perf_counter()
         return result
 
@@ -192,27 +127,10 @@ class Session:
         """
         last = self._runner
         if last is None or not last.repeats(frame):
-            self._runner = self.runners[int(self._turns.integers(len(self.runners)))]
+            self._runner = self.runners[int(self._order_rng.integers(len(self.runners)))]
             self._runner.forget()  # what it saw last was not the frame before
         assert self._runner is not None
         return self._runner
-
-    def _note(
-        self, frame: Frame, result: Result, whole_us: float, times_us: dict[str, float]
-    ) -> None:
-        times = [times_us[n] for n in self.merged_nodes]
-        self.node_times_us.append(times)
-        self.merged_states.append(bytes([state_of(result.outcome(n)) for n in self.merged_nodes]))
-        self.fixed_us.append(math.nan if result.reused else whole_us - sum(times))
-        self.indices.append(frame.index)
-        self.times_s.append(math.nan if frame.time_s is None else frame.time_s)
-        self.labels.append(frame.label)
-        self.n_true.append(-1 if frame.truth is None else len(frame.truth))
-        self.reused.append(result.reused)
-
-    def times_by_node(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Return microseconds, shape (n_frames, n_merged_nodes)."""
-        return np.array(self.node_times_us).reshape(self.n, len(self.merged_nodes))
 
 
 def balanced_orders(n: int, most: int) -> list[tuple[int, ...]]:

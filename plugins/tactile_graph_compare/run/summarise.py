@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.steps.injected import Report
-from tactile_graph_compare.records.comparison import Comparison, Evolution, FrameTable, Variant
+from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.graph import Saving, Timeline
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
 from tactile_graph_compare.run.chosen_frames import chosen_frames
+from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.run.merged_graph import merged_graph
-from tactile_graph_compare.run.session import Session, VariantLog
+from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.score.statistics import (
     difference_of,
-    frozen,
     score_of,
     time_difference_of,
     times_of,
@@ -65,11 +65,11 @@ def summarise(
     chosen = chosen_frames(session)
     return Comparison(
         variants=variants,
-        frames=_frames(session),
+        frames=session.merged_log.frames(),
         source=_source(session),
         graph=merged_graph(session),
         saving=_saving(session, variants),
-        fixed_us=times_of(session.fixed_us).median_us,
+        fixed_us=times_of(session.merged_log.fixed_us).median_us,
         scores=scores,
         differences=differences,
         time_differences=times,
@@ -107,16 +107,6 @@ def _variant(number: int, log: VariantLog) -> Variant:
     )
 
 
-def _frames(session: Session) -> FrameTable:
-    return FrameTable(
-        frozen(session.indices, np.int64),
-        frozen(session.times_s),
-        tuple(session.labels),
-        frozen(session.n_true, np.int64),
-        frozen(session.reused, np.bool_),
-    )
-
-
 def _source(session: Session) -> str:
     source = session.merged.pipeline.source
     if source is None:
@@ -136,9 +126,9 @@ def _saving(session: Session, variants: Sequence[Variant]) -> Saving:
             owners[merged] = owners.get(merged, 0) + 1
     return Saving(
         alone_s=alone_us * 1e-6,
-        merged_s=float(session.times_by_node().sum()) * 1e-6,
+        merged_s=float(session.merged_log.times_us().sum()) * 1e-6,
         n_nodes_alone=sum(len(m.plan.nodes) for m in members),
-        n_nodes_merged=len(session.merged_nodes),
+        n_nodes_merged=len(session.merged_log.nodes),
         n_shared=sum(n > 1 for n in owners.values()),
     )
 

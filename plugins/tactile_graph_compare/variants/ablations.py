@@ -1,4 +1,4 @@
-"""Shadows of a pipeline: each with one guard or one choice less."""
+"""Ablations of a pipeline: each lacks one guard, or the first choices of a ``first_of``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Ablation:
 
 
 def ablations_of(pipeline: Pipeline) -> list[Ablation]:
-    """Return a shadow for each guard and each hand-over that something asked for may meet."""
+    """Return an ablation for each guard and each hand-over that something asked for may meet."""
     unused = set(pipeline.unused)
     found = []
     for name, node in pipeline.nodes.items():

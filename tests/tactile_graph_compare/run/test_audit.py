@@ -30,12 +30,12 @@ def by_name(found):
     return {(g.node, g.kind): g for g in found.guards}
 
 
-def test_every_guard_and_hand_over_that_is_asked_for_has_a_shadow():
+def test_every_guard_and_hand_over_that_is_asked_for_has_an_ablation():
     told = [(s.node, s.kind, s.text) for s in ablations_of(loads(HANDED))]
     assert told == [("good", "when", "cheap.x_cm > 2"), ("circle", "first_of", "without good")]
 
 
-def test_a_guard_is_worth_what_its_shadow_runs_besides():
+def test_a_guard_is_worth_what_its_ablation_runs_besides():
     pipeline = loads(HANDED)
     found = by_name(audit(pipeline))
     handed = found["circle", "first_of"]

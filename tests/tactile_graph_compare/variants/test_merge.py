@@ -18,8 +18,8 @@ from tactile_graph import Pipeline, compiled, load, loads
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.engine.rows import as_data
 from tactile_graph.plugins.registry import installed
-from tactile_graph_compare.records.graph import STATES
-from tactile_graph_compare.run.session import balanced_orders, state_of
+from tactile_graph_compare.records.graph import STATES, state_of
+from tactile_graph_compare.run.session import balanced_orders
 from tactile_graph_compare.variants.merge import Merged, merge
 
 FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (4, 0.7), (5, 2.0), (1, 2.25), (2, 4.0)]
