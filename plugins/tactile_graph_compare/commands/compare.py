@@ -137,13 +137,13 @@ def _prepared(
     from tactile_graph_compare.variants.prepare import prepare
     from tactile_graph_compare.variants.sweeps import parse_sweep
 
-    wanted, recordings = _told_apart(words)
-    if not wanted:
+    requests, recordings = _told_apart(words)
+    if not requests:
         raise UsageError(f"name the pipelines to compare, or files of them\n{offered()}")
     if options.only:
-        wanted = [w if w.only else replace(w, only=options.only) for w in wanted]
+        requests = [r if r.only else replace(r, only=options.only) for r in requests]
     prepared = prepare(
-        wanted,
+        requests,
         registry.installed(),
         dict(assignment("--set", s) for s in options.settings),
         [parse_sweep(s) for s in options.sweeps],
@@ -164,17 +164,17 @@ def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
     from tactile_graph_compare.variants.request import parse_request
 
     found = registry.installed()
-    wanted: list[VariantRequest] = []
+    requests: list[VariantRequest] = []
     recordings: list[str] = []
     for word in words:
         name = _first(word)
         if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
-            wanted.append(parse_request(word, found))
+            requests.append(parse_request(word, found))
         elif Path(word).exists():
             recordings.append(word)
         else:
             raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
-    return wanted, recordings
+    return requests, recordings
 
 
 def _first(word: str) -> str:

@@ -73,8 +73,8 @@ def _title(frame: ChosenFrame) -> Html:
 
 def _strip(comparison: Comparison, album: Album, frame: ChosenFrame) -> Html:
     stories = [s for of in frame.stories.values() for s in of.values()]
-    wanted = album.pictured | {s.node for s in stories if s.state in ("skipped", "failed")}
-    columns = [n for n in node_order(frame, comparison.labels) if n in wanted]
+    shown = album.pictured | {s.node for s in stories if s.state in ("skipped", "failed")}
+    columns = [n for n in node_order(frame, comparison.labels) if n in shown]
     rows = [_row(comparison, album, frame, label, columns) for label in comparison.labels]
     return tag(
         "table",

@@ -79,9 +79,9 @@ def compare(
         If a frame breaks a rule of some variant.
     """
     found = registry or installed()
-    wanted = [_wanted(v, found) for v in variants]
+    requests = [_request(v, found) for v in variants]
     swept = [Sweep(name, tuple(values)) for name, values in (sweeps or {}).items()]
-    prepared = prepare(wanted, found, settings, swept, crossed, lineage)
+    prepared = prepare(requests, found, settings, swept, crossed, lineage)
     report, notes = Report(), list[str]()
     if frames is None:
         prepared, notes = _on_one_source(prepared, source, source_settings, n_frames)
@@ -116,7 +116,7 @@ def _on_one_source(
     return on_source(prepared, source, given), notes
 
 
-def _wanted(variant: str | Path | Pipeline | VariantRequest, registry: Registry) -> VariantRequest:
+def _request(variant: str | Path | Pipeline | VariantRequest, registry: Registry) -> VariantRequest:
     if isinstance(variant, VariantRequest):
         return variant
     return parse_request(variant, registry) if isinstance(variant, str) else VariantRequest(variant)

@@ -95,11 +95,11 @@ def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merg
     often = _often(pipelines)
     members: list[Member] = []
     outputs: dict[str, Ref] = {}
-    for number, (pipeline, wanted) in enumerate(zip(pipelines, asked, strict=True), 1):
-        plan = make_plan(pipeline, tuple(wanted))
+    for number, (pipeline, names) in enumerate(zip(pipelines, asked, strict=True), 1):
+        plan = make_plan(pipeline, tuple(names))
         always = {plan.items[slot].name for slot in plan.main}
         digests = identities(pipeline, always, number)
-        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in wanted)
+        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in names)
         member = Member(pipeline, plan, {FRAME: FRAME}, refs)
         for item in plan.nodes:
             digest = digests[item.name]
@@ -108,7 +108,7 @@ def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merg
                 by_identity[digest] = name
                 nodes[name] = _moved(pipeline.nodes[item.name], name, member)
             member.names[item.name] = by_identity[digest]
-        outputs |= {f"{number}:{name}": member.ref(r) for name, r in zip(wanted, refs, strict=True)}
+        outputs |= {f"{number}:{name}": member.ref(r) for name, r in zip(names, refs, strict=True)}
         members.append(member)
     return Merged(_pipeline(pipelines, nodes, outputs), tuple(members))
 

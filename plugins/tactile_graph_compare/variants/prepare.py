@@ -1,4 +1,4 @@
-"""From what is wanted to pipelines with labels: settings, sweeps, parents."""
+"""From requests to pipelines with labels: settings, sweeps, parents."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ class PreparedVariant:
 
 @dataclass(frozen=True, eq=False)
 class _Loaded:
-    wanted: VariantRequest
+    request: VariantRequest
     pipeline: Pipeline
     settings: Mapping[str, Any]
     """All that was set of it: its own, the common ones, those of sweeps."""
 
 
 def prepare(
-    wanted: Sequence[VariantRequest],
+    requests: Sequence[VariantRequest],
     registry: Registry,
     settings: Mapping[str, Any] | None = None,
     sweeps: Sequence[Sweep] = (),
@@ -46,7 +46,7 @@ def prepare(
 
     Parameters
     ----------
-    wanted : sequence of VariantRequest
+    requests : sequence of VariantRequest
     registry : Registry
     settings : mapping, optional
         For every pipeline that has the node and the setting.
@@ -55,21 +55,21 @@ def prepare(
     crossed : bool
         Whether several sweeps are crossed with one another instead of going side by side.
     lineage : bool
-        Whether the pipelines that those wanted evolved from are compared too, before them.
+        Whether the pipelines that those asked for evolved from are compared too, before them.
 
     Raises
     ------
     UsageError, PipelineError
         If something does not exist, is not allowed, or is named twice.
     """
-    if not wanted:
+    if not requests:
         raise UsageError("name the pipelines to compare")
-    loaded = [_load(w, registry) for w in wanted]
+    loaded = [_load(r, registry) for r in requests]
     if lineage:
         loaded = list(_with_parents(loaded, registry))
     common = settings or {}
     _check_names([*common], [x.pipeline for x in loaded], "--set")
-    swept = [x.pipeline for x in loaded if x.wanted.swept]
+    swept = [x.pipeline for x in loaded if x.request.swept]
     _check_names([s.name for s in sweeps], swept, "--sweep")
     loaded = [_set(x, {k: v for k, v in common.items() if has_setting(x.pipeline, k)})
               for x in loaded]  # fmt: skip
@@ -77,10 +77,10 @@ def prepare(
     return _with_parent_labels([_prepared(x, everything) for x in everything], everything)
 
 
-def _load(wanted: VariantRequest, registry: Registry) -> _Loaded:
-    name = wanted.name
+def _load(request: VariantRequest, registry: Registry) -> _Loaded:
+    name = request.name
     pipeline = name if isinstance(name, Pipeline) else load(name, registry)
-    return _set(_Loaded(wanted, pipeline, {}), wanted.settings)
+    return _set(_Loaded(request, pipeline, {}), request.settings)
 
 
 def _set(loaded: _Loaded, settings: Mapping[str, Any]) -> _Loaded:
@@ -112,7 +112,7 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
 
 
 def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[_Loaded]:
-    own = [s for s in sweeps if loaded.wanted.swept and has_setting(loaded.pipeline, s.name)]
+    own = [s for s in sweeps if loaded.request.swept and has_setting(loaded.pipeline, s.name)]
     if not own:
         yield loaded
         return
@@ -150,10 +150,10 @@ def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: st
 
 
 def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> PreparedVariant:
-    pipeline, only = one.pipeline, one.wanted.only
+    pipeline, only = one.pipeline, one.request.only
     for name in only:
         pipeline.ref(name)  # says what is wrong with it
-    named = one.wanted.name
+    named = one.request.name
     given = spelled(pipeline.name if isinstance(named, Pipeline) else str(named),
                     one.settings, only)  # fmt: skip
     label = _label(one)
@@ -169,8 +169,8 @@ def _label(one: _Loaded) -> str:
     words = [one.pipeline.name]
     for key, short in zip(one.settings, bare, strict=True):
         words.append(f"{short if bare.count(short) == 1 else key}={_short(one.settings[key])}")
-    if one.wanted.only:
-        words.append("only " + ", ".join(one.wanted.only))
+    if one.request.only:
+        words.append("only " + ", ".join(one.request.only))
     return " ".join(words)
 
 
