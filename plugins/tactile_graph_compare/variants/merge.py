@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,7 +12,6 @@ from tactile_graph import Pipeline
 from tactile_graph.inspect import (
     FRAME,
     Graph,
-    Guard,
     Node,
     NodeKind,
     Plan,
@@ -87,65 +87,51 @@ def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merg
     -----
     What comes out of a variant's nodes is what it alone would have given: a node's outcome is a
     function of the frame and of its state, and steps that keep state are shared only where both
-    see every frame (`identity`). What ran may be more: what one variant needs, another may not.
+    see every frame (`node_digests`). What ran may be more: what one variant needs, another may not.
     """
-    nodes: dict[str, Node] = {}
-    by_identity: dict[str, str] = {}
-    taken: set[str] = set()
-    often = _often(pipelines)
-    members: list[Member] = []
-    outputs: dict[str, Ref] = {}
-    for number, (pipeline, names) in enumerate(zip(pipelines, asked, strict=True), 1):
-        plan = make_plan(pipeline, tuple(names))
+    merger = _Merger(pipelines)
+    members = tuple(
+        merger.add(number, pipeline, names)
+        for number, (pipeline, names) in enumerate(zip(pipelines, asked, strict=True), 1)
+    )
+    return Merged(_pipeline(pipelines, merger.nodes, merger.outputs), members)
+
+
+class _Merger:
+    """The merged nodes so far."""
+
+    def __init__(self, pipelines: Sequence[Pipeline]) -> None:
+        self.nodes: dict[str, Node] = {}
+        self.outputs: dict[str, Ref] = {}
+        self._by_digest: dict[str, str] = {}
+        uses = Counter(name for pipeline in pipelines for name in pipeline.nodes)
+        self._ambiguous = {name for name, n in uses.items() if n > 1}
+
+    def add(self, number: int, pipeline: Pipeline, asked: Sequence[str]) -> Member:
+        """Enter what a demand on a pipeline needs; return its place."""
+        plan = make_plan(pipeline, tuple(asked))
         always = {plan.items[slot].name for slot in plan.main}
-        digests = identities(pipeline, always, number)
-        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in names)
+        digests = node_digests(pipeline, always, number)
+        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in asked)
         member = Member(pipeline, plan, {FRAME: FRAME}, refs)
         for item in plan.nodes:
             digest = digests[item.name]
-            if digest not in by_identity:
-                name = _name(item.name, number, often, taken)
-                by_identity[digest] = name
-                nodes[name] = _moved(pipeline.nodes[item.name], name, member)
-            member.names[item.name] = by_identity[digest]
-        outputs |= {f"{number}:{name}": member.ref(r) for name, r in zip(names, refs, strict=True)}
-        members.append(member)
-    return Merged(_pipeline(pipelines, nodes, outputs), tuple(members))
+            if digest not in self._by_digest:
+                name = self._by_digest[digest] = self._name(item.name, number)
+                self.nodes[name] = pipeline.nodes[item.name].rewired(name, member.ref)
+            member.names[item.name] = self._by_digest[digest]
+        for name, ref in zip(asked, refs, strict=True):
+            self.outputs[f"{number}:{name}"] = member.ref(ref)
+        return member
 
-
-def _often(pipelines: Sequence[Pipeline]) -> set[str]:
-    """Return the names that more than one pipeline uses."""
-    seen: set[str] = set()
-    often: set[str] = set()
-    for pipeline in pipelines:
-        often |= seen & set(pipeline.nodes)
-        seen |= set(pipeline.nodes)
-    return often
-
-
-def _name(own: str, number: int, often: set[str], taken: set[str]) -> str:
-    """Return a name no other merged node has; without dots, which part fields."""
-    name = plain = own.replace(".", ":")
-    if own in often and name in taken:
-        name = f"{plain}@{number}"
-    while name in taken:
-        name += "'"
-    taken.add(name)
-    return name
-
-
-def _moved(node: Node, name: str, member: Member) -> Node:
-    guard = node.guard
-    if guard is not None:
-        refs = tuple(member.ref(r) for r in guard.refs)
-        guard = Guard(guard.text, refs, guard.function, guard.meaning)
-    return replace(
-        node,
-        name=name,
-        inputs=tuple(replace(b, refs=tuple(member.ref(r) for r in b.refs)) for b in node.inputs),
-        choices=tuple(member.ref(c) for c in node.choices),
-        guard=guard,
-    )
+    def _name(self, own: str, number: int) -> str:
+        """Return a name no other merged node has; without dots, which part fields."""
+        name = plain = own.replace(".", ":")
+        if own in self._ambiguous and name in self.nodes:
+            name = f"{plain}@{number}"
+        while name in self.nodes:
+            name += "'"
+        return name
 
 
 def _pipeline(
@@ -165,7 +151,7 @@ def _pipeline(
     )
 
 
-def identities(pipeline: Graph, always: Collection[str], private: object) -> dict[str, str]:
+def node_digests(pipeline: Graph, always: Collection[str], private: object) -> dict[str, str]:
     """Return a digest for each node, equal for nodes that may be run as one.
 
     Parameters
@@ -183,14 +169,19 @@ def identities(pipeline: Graph, always: Collection[str], private: object) -> dic
     dict of str
         Node name -> digest. Equal are step, settings, guard (spelled out) and all that is read,
         down to the frame.
+
+    Notes
+    -----
+    `Node.key` is made for seeding: it tells a node from the same one inside an embedded pipeline.
+    Here such nodes are equal too, unless they take randomness, which is seeded by that very key.
     """
-    found = {FRAME: FRAME}
+    digests = {FRAME: FRAME}
     for name, node in pipeline.nodes.items():
         own: tuple[object, ...] = ()
         if node.stateful and name not in always:
             own = ("private", private, name)
-        found[name] = node_key(_what(node), _wires(node, found), own)
-    return found
+        digests[name] = node_key(_what(node), _wires(node, digests), own)
+    return digests
 
 
 def _what(node: Node) -> tuple[object, ...]:
@@ -207,7 +198,7 @@ def _what(node: Node) -> tuple[object, ...]:
 def _inner(pipeline: Graph | None) -> tuple[object, ...]:
     """Return what makes two mapped pipelines equal: also their names, which failures carry."""
     assert pipeline is not None
-    inner = identities(pipeline, pipeline.nodes, "")
+    inner = node_digests(pipeline, pipeline.nodes, "")
     return (pipeline.resolved()["nodes"], inner, list(pipeline.outputs.items()), pipeline.key)
 
 

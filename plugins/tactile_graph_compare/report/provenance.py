@@ -13,7 +13,7 @@ from tactile_graph_compare.report.markup import Html, details, join, tag
 from tactile_graph_compare.variants.request import as_yaml
 
 
-def making(comparison: Comparison) -> Html:
+def provenance(comparison: Comparison) -> Html:
     """Return the command, versions and source, and the pipelines folded away."""
     told = comparison.provenance
     rows = [
