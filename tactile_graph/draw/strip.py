@@ -10,8 +10,9 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from tactile_graph.draw.columns import Column, columns, outcome_of
-from tactile_graph.draw.picture import DASHES, FOUND, TRUE, Pen
+from tactile_graph.draw.colours import FOUND, TRUE
+from tactile_graph.draw.paint_strip import DASHES, Pen
+from tactile_graph.draw.strip_columns import Column, columns, outcome_of
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.files import write_whole
