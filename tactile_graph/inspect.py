@@ -2,8 +2,9 @@
 
 A plugin's steps need none of this. What compares, audits, tunes or explains pipelines finds here:
 
-- the graph: `Graph`, `Node`, `NodeKind`, `Guard`, `Ref`, `Source`; types along its wires (`arms`,
-  `field_type`, `public_fields`); settings as plain data (`plain`) and digests of it (`node_key`);
+- the graph: `Graph`, `Node`, `NodeKind`, `Guard`, `Ref`, `Source`, and the frame's own name in it
+  (`FRAME`); types along its wires (`arms`, `field_type`, `public_fields`); settings as plain data
+  (`plain`) and digests of it (`node_key`);
 - the plan of a demand (`make_plan`, `Plan`), what it needs of a frame (`check_frame`), and its
   `Runner`;
 - outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`; values as numbers (`scalars`) and
