@@ -181,7 +181,7 @@ def sourced(
             )
         step = own.name
     if own is not None and step == own.name and not recordings:
-        base = {k: v for k, v in own.settings.items() if not _is_default(own, k, v)}
+        base = own.given
     base.update(assignment("--with", text) for text in given)
     wanted = {text.partition("=")[0].strip() for text in given}
     if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
@@ -190,11 +190,6 @@ def sourced(
         return pipeline
     _check_source(step, base, bool(recordings))
     return pipeline.with_source(step, **base)
-
-
-def _is_default(source: Any, name: str, value: Any) -> bool:
-    default = next(s.default for s in source.signature.settings if s.name == name)
-    return default is value
 
 
 def _counts(step: str) -> bool:

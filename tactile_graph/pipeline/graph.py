@@ -188,6 +188,12 @@ class Source:
         """Name of the source step."""
         return self.signature.name
 
+    @property
+    def given(self) -> dict[str, Any]:
+        """Those of its settings that are not the defaults."""
+        defaults = {s.name: s.default for s in self.signature.settings}
+        return {k: v for k, v in self.settings.items() if v is not defaults.get(k)}
+
 
 @dataclass(frozen=True, eq=False)
 class Graph:

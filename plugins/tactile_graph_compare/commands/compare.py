@@ -133,7 +133,7 @@ def _prepared(
 ) -> tuple[list[PreparedVariant], list[str]]:
     from tactile_graph.cli.arguments import offered, sourced
     from tactile_graph.pipeline.document import assignment
-    from tactile_graph_compare.variants.one_source import first_source, given_of, on_source
+    from tactile_graph_compare.variants.one_source import first_source, on_source
     from tactile_graph_compare.variants.prepare import prepare
     from tactile_graph_compare.variants.sweeps import parse_sweep
 
@@ -155,8 +155,7 @@ def _prepared(
         base, notes = first_source(prepared)
     placed = sourced(base.pipeline, recordings, options.source, options.source_settings, span)
     assert placed.source is not None
-    step, settings = given_of(placed.source)
-    return on_source(prepared, step, settings), notes
+    return on_source(prepared, placed.source.name, placed.source.given), notes
 
 
 def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
@@ -223,14 +222,13 @@ class _Run:
 
     def _frames(self, held: Any) -> tuple[bool, Exception | None]:
         from tactile_graph.cli.progress import Bar
-        from tactile_graph_compare.run.compare import warmed
 
         bar = Bar(self.stderr, "compare")
         source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)
         frames: Iterator[Frame] = self.span.of(source)
         try:
             bar.now(self.span.expected(None))
-            for frame in warmed(self.session, frames):
+            for frame in self.session.warmed(frames):
                 with held:
                     self.session.add(frame)
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain, islice
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +14,11 @@ from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.run.frame_choice import FrameChooser
-from tactile_graph_compare.run.session import WARM_FRAMES, Session
+from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.one_source import (
     COUNT,
     first_source,
-    given_of,
     makes_frames,
     on_source,
     without_source,
@@ -91,7 +90,8 @@ def compare(
     else:
         prepared = without_source(prepared)
     session = Session(prepared, seed, chooser)
-    run_all(session, islice(iter(frames), n_frames))
+    for frame in session.warmed(islice(iter(frames), n_frames)):
+        session.add(frame)
     return summarise(session, report, notes=notes)
 
 
@@ -107,7 +107,7 @@ def _on_one_source(
     if source is None:
         first, notes = first_source(prepared)
         assert first.pipeline.source is not None
-        source, own = given_of(first.pipeline.source)
+        source, own = first.pipeline.source.name, first.pipeline.source.given
         if n_frames is not None:
             own.pop(COUNT, None)
         given = own | given
@@ -120,16 +120,3 @@ def _request(variant: str | Path | Pipeline | VariantRequest, registry: Registry
     if isinstance(variant, VariantRequest):
         return variant
     return parse_request(variant, registry) if isinstance(variant, str) else VariantRequest(variant)
-
-
-def run_all(session: Session, frames: Iterator[Frame]) -> None:
-    """Run all frames through a session, after a few of them to warm it up."""
-    for frame in warmed(session, frames):
-        session.add(frame)
-
-
-def warmed(session: Session, frames: Iterator[Frame]) -> Iterator[Frame]:
-    """Yield the frames, the session warmed up with the first of them."""
-    first = list(islice(frames, WARM_FRAMES))
-    session.warm_up(first)
-    return chain(first, frames)

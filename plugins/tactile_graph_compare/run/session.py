@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import chain, islice
 
 import numpy as np
 
@@ -92,6 +93,12 @@ class Session:
             copy(frame)
             if time.perf_counter() > until:
                 break
+
+    def warmed(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Yield the frames, having warmed up with the first of them."""
+        first = list(islice(frames, WARM_FRAMES))
+        self.warm_up(first)
+        return chain(first, frames)
 
     def _check(self, frame: Frame) -> None:
         """Check the rules that only a frame can settle, each variant's in its own name."""

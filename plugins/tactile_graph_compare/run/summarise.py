@@ -24,7 +24,6 @@ from tactile_graph_compare.score.statistics import (
     with_pareto,
 )
 from tactile_graph_compare.variants.lineage import difference_images, nodes_between
-from tactile_graph_compare.variants.one_source import given_of
 from tactile_graph_compare.variants.request import as_yaml
 
 LONGEST_SOURCE = 120
@@ -111,7 +110,7 @@ def _source(session: Session) -> str:
     source = session.merged.pipeline.source
     if source is None:
         return "frames handed in"
-    name, given = given_of(source)
+    name, given = source.name, source.given
     told = ", ".join(f"{k}: {as_yaml(v)}" for k, v in given.items())
     told = told if len(told) <= LONGEST_SOURCE else told[: LONGEST_SOURCE - 1] + "…"
     return f"{name} ({told})" if told else name

@@ -8,14 +8,11 @@ from typing import Any
 
 from tactile_graph import Pipeline
 from tactile_graph.errors import PipelineError, Problem, UsageError
-from tactile_graph.inspect import Source, plain
+from tactile_graph.inspect import plain
 from tactile_graph_compare.variants.prepare import PreparedVariant
 
 COUNT = "frames"
 """The setting by which a source that makes its frames is told how many."""
-
-Given = tuple[str, dict[str, Any]]
-"""A source step and what is set of it."""
 
 
 def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, list[str]]:
@@ -37,12 +34,6 @@ def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, 
     return first, [told + ", ".join(others)]
 
 
-def given_of(source: Source) -> Given:
-    """Return a source's step, and those of its settings that are not the defaults."""
-    defaults = {s.name: s.default for s in source.signature.settings}
-    return source.name, {k: v for k, v in source.settings.items() if v is not defaults.get(k)}
-
-
 def makes_frames(pipeline: Pipeline, step: str) -> bool:
     """Return whether a source step can be told how many frames to make."""
     registry = pipeline.registry
@@ -51,9 +42,9 @@ def makes_frames(pipeline: Pipeline, step: str) -> bool:
     return any(s.name == COUNT for s in registry.step(step).settings)
 
 
-def on_source(prepared: Sequence[PreparedVariant], step: str, settings: Mapping[str, Any]) -> list[
-    PreparedVariant
-]:  # fmt: skip
+def on_source(
+    prepared: Sequence[PreparedVariant], step: str, settings: Mapping[str, Any]
+) -> list[PreparedVariant]:
     """Return the variants on a source.
 
     Raises
