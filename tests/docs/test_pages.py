@@ -27,7 +27,7 @@ from tactile_graph_thesis.catalogue import chosen, items
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
 FILES = (".npz", ".npy", ".csv", ".zarr", ".yaml", ".html", ".md")
 pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests")
 

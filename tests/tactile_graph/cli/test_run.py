@@ -195,17 +195,14 @@ def test_infinity_and_nan_are_null_for_json_has_neither():
     assert cleaned == {"a": [{"b": None, "c": None}]}
 
 
-def test_private_fields_of_records_are_not_written():
-    from dataclasses import dataclass
-
-    from tactile_graph.engine.rows import as_data
-
-    @dataclass
-    class Kept:
-        shown: int = 1
-        _whole: int = 2
-
-    assert as_data(Kept()) == {"shown": 1}
+def test_lines_tell_a_big_array_by_its_shape_and_in_full_by_its_numbers(monkeypatch):
+    monkeypatch.setattr("tactile_graph.engine.rows.MOST_NUMBERS", 23)
+    args = ["run", "discs", "--only", "footprint", "-o", "-"]
+    short, full = (lines(call(*args, *more).stdout)[0] for more in ([], ["--full"]))
+    assert short["outputs"]["footprint"]["values"] == {"shape": [4, 6]}
+    assert full["outputs"]["footprint"]["values"][1] == [True, True, False, False, False, False]
+    without = {k: v for k, v in full["outputs"]["footprint"].items() if k != "values"}
+    assert without.items() <= short["outputs"]["footprint"].items()
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path):
@@ -311,6 +308,8 @@ def test_without_a_step_that_reads_recordings_it_is_said(tmp_path, monkeypatch):
         (["-o", "."], "-o .: is a folder; name a file in it"),
         (["--plot", "strip.gif"], "--plot strip.gif: its name must end in .png, .svg"),
         (["a.csv", "-o", "a.csv"], "-o a.csv: would overwrite the recording it is made from"),
+        (["--full"], "--full: a table holds single numbers only; give -o FILE.jsonl or -o -"),
+        (["--full", "-o", "out.csv"], "--full: CSV holds single numbers only"),
         (["--seed", "-1"], "'--seed'"),
         (["--bogus"], "--bogus"),
     ],
