@@ -50,7 +50,7 @@ def _frames(source: Source, seed: int, report: Report) -> Iterator[Frame]:
         injected[signature.rng] = np.random.default_rng(seed)
     if signature.report:
         injected[signature.report] = report
-    frames = signature.target(**source.settings, **injected)
+    frames = signature.target(**signature.arguments(source.settings), **injected)
     try:
         for frame in frames:
             if not isinstance(frame, Frame):

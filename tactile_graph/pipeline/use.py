@@ -8,10 +8,9 @@ from typing import Any
 from tactile_graph.errors import PipelineError, TactileGraphError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.embed import inline_nodes, map_node
+from tactile_graph.pipeline.embed import Embedding, inline_nodes, map_node
 from tactile_graph.pipeline.facts import embedded_rules, ref_facts
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
-from tactile_graph.pipeline.references import resolve_reference
 from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.wiring import Ref
 
@@ -19,13 +18,18 @@ from tactile_graph.pipeline.wiring import Ref
 def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     """Enter what a ``use`` stands for; what is wrong with it is reported in the scope."""
     inner = _inner(scope, declared)
-    ref = None if inner is None else _input(scope, declared)
-    if inner is None or ref is None:
+    found = None if inner is None else _input(scope, declared)
+    if inner is None or found is None:
         scope.add_unknown(declared.name)
-    elif declared.each:
-        _map(scope, declared, inner, ref, guard)
+        return
+    ref, kind = found
+    at = Embedding(
+        declared.name, scope.mark(declared), ref, kind, ref_facts(ref, scope.facts), guard
+    )
+    if declared.each:
+        _map(scope, declared, inner, at)
     else:
-        _inline(scope, declared, inner, ref, guard)
+        _inline(scope, declared, inner, at)
 
 
 def _inner(scope: Scope, declared: NodeDeclaration) -> Graph | None:
@@ -60,7 +64,7 @@ def _cannot_be_used(scope: Scope, declared: NodeDeclaration, text: str) -> None:
     scope.problem(declared, f": pipeline {declared.use!r} cannot be used: {text}", "use")
 
 
-def _input(scope: Scope, declared: NodeDeclaration) -> Ref | None:
+def _input(scope: Scope, declared: NodeDeclaration) -> tuple[Ref, Any] | None:
     wired = declared.inputs
     if isinstance(wired, dict) and list(wired) == [FRAME]:
         wired = wired[FRAME]
@@ -69,32 +73,23 @@ def _input(scope: Scope, declared: NodeDeclaration) -> Ref | None:
     if not isinstance(wired, str):
         scope.problem(declared, ": an embedded pipeline has one port, 'frame'", "in")
         return None
-    found = scope.ref(declared, wired, "in")
-    return None if found is None else found[0]
+    return scope.ref(declared, wired, "in")
 
 
-def _map(
-    scope: Scope, declared: NodeDeclaration, inner: Graph, ref: Ref, guard: Guard | None
-) -> None:
-    kind = resolve_reference((ref.node, *ref.path), scope.types, [])[1]
-    node, trouble = map_node(declared.name, inner, ref, kind, guard, scope.mark(declared))
+def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
+    node, trouble = map_node(inner, at)
     if trouble:
         scope.problem(declared, f": {trouble}", "in")
-    key = node_key("map", inner.key, scope.ref_key(ref), scope.guard_key(guard))
+    key = node_key("map", inner.key, scope.ref_key(at.ref), scope.guard_key(at.guard))
     scope.add(replace(node, key=key))
 
 
-def _inline(
-    scope: Scope, declared: NodeDeclaration, inner: Graph, ref: Ref, guard: Guard | None
-) -> None:
-    kind = resolve_reference((ref.node, *ref.path), scope.types, [])[1]
-    outer = ref_facts(ref, scope.facts)
-    mark = scope.mark(declared)
-    nodes, troubles = inline_nodes(declared.name, inner, ref, kind, guard, mark, outer)
-    broken, rules = embedded_rules(declared.name, inner.frame_rules, outer)
+def _inline(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
+    nodes, troubles = inline_nodes(inner, at)
+    broken, rules = embedded_rules(at.name, inner.frame_rules, at.facts)
     scope.rules += rules
     for trouble in [*troubles, *broken]:
         scope.problem(declared, f": {trouble}", "in")
     for node in nodes:
-        key = node_key("in", node.key, scope.ref_key(ref), scope.guard_key(node.guard))
+        key = node_key("in", node.key, scope.ref_key(at.ref), scope.guard_key(node.guard))
         scope.add(replace(node, key=key))

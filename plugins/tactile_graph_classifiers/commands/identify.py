@@ -60,7 +60,7 @@ def identify(
         lines.add(runner(frame))
     for where, what in report.troubles:
         click.echo(f"{where}: {what}", err=True)
-    lines.close()
+    lines.summarise()
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 
@@ -129,7 +129,7 @@ class _Lines:
         self.n_right += name == identity.name
         return "" if name == identity.name else f"(truly {name})"
 
-    def close(self) -> None:
+    def summarise(self) -> None:
         """Write what the lines came to.
 
         Raises

@@ -83,11 +83,15 @@ def _work(given: dict[str, Any]) -> Work:
 
 
 def _targets(given: dict[str, Any]) -> Targets:
-    elsewhere = given["show_only"] or given["csv"] or given["plot"]
-    folder = given["output"] or (None if elsewhere else Path(FOLDER))
-    if given["show_only"]:
-        folder = None
-    return Targets(folder, given["csv"], given["plot"])
+    from tactile_graph.errors import UsageError
+
+    folder, csv, plot = given["output"], given["csv"], given["plot"]
+    named = [o for o, to in (("-o", folder), ("--csv", csv), ("--plot", plot)) if to is not None]
+    if given["show_only"] and named:
+        raise UsageError(f"--show-only writes no files, but {named[0]} names one")
+    if not named and not given["show_only"]:
+        folder = Path(FOLDER)
+    return Targets(folder, csv, plot)
 
 
 def _made(items: list[Item], work: Work, targets: Targets, book: bool) -> list[Outcome]:

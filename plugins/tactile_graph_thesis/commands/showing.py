@@ -128,8 +128,8 @@ class Showing:
         if book:
             _show_summary(say, found)
         if written:
-            what = f"wrote {', '.join(written)} ({len(found)} items, {seconds:.0f} s)"
-            say.print(what, soft_wrap=True)
+            n = "1 item" if len(found) == 1 else f"{len(found)} items"
+            say.print(f"wrote {', '.join(written)} ({n}, {seconds:.0f} s)", soft_wrap=True)
 
 
 def show_item(item: Item, made: Made, how: str, aside: bool = False) -> None:

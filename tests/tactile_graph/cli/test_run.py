@@ -11,12 +11,14 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
-from helpers_cli import DISCS, call
+from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, load
 from tactile_graph.cli.live_table import LiveTable
 from tactile_graph.engine.columns import columns_of
@@ -252,6 +254,30 @@ def test_a_source_that_ends_early_is_told(tmp_path):
     got = call("run", "loads", "a.txt", "--frames", 5)
     assert got.exit_code == 0
     assert "the source ended after 1 of 5 frames" in got.stdout
+
+
+def test_recordings_are_read_by_whatever_step_its_plugin_offers_for_it(tmp_path, monkeypatch):
+    def lines_read(*, lines_of: list[Path] | Path) -> Iterator[Frame]:
+        for text in Path(str(lines_of)).read_text().split():
+            yield Frame.of(np.full((2, 2), float(text)), quantity="volt")
+
+    readers = {"recording": "path", "lines_read": "lines_of"}
+    install(monkeypatch, tmp_path, steps={"lines_read": lines_read}, readers=readers)
+    (tmp_path / "a.txt").write_text("1\n2\n")
+    steps = []
+    for choice in ([], ["--source", "lines_read"]):
+        got = call("run", "loads", "a.txt", *choice, "-o", tmp_path / "out.jsonl")
+        assert got.exit_code == 0, got.stderr
+        meta = json.loads((tmp_path / "out.jsonl.meta.json").read_text())
+        steps.append((meta["source"]["step"], meta["result"]["frames"]))
+    assert steps == [("recording", 2), ("lines_read", 2)]
+
+
+def test_without_a_step_that_reads_recordings_it_is_said(tmp_path, monkeypatch):
+    install(monkeypatch, tmp_path, ("torn", "torn-package", "1", broken_plugin), readers={})
+    got = call("run", "loads", "a.txt")
+    assert got.exit_code == 2
+    assert "no plugin offers a step that reads recordings (plugins failed to load" in got.stderr
 
 
 @pytest.mark.parametrize(

@@ -177,6 +177,8 @@ def test_where_to_write_is_checked_before_the_work(tmp_path: Path) -> None:
         run("bump", "--csv", tmp_path / "none" / "b.csv")
     with pytest.raises(UsageError, match=r"--plot b.doc: its name must end in"):
         run("bump", "--plot", "b.doc")
+    with pytest.raises(UsageError, match="--show-only writes no files, but --csv names one"):
+        run("bump", "--csv", "-", "--show-only")
     with pytest.raises(UsageError, match=r"--csv takes one item, 2 are named: figure-4.5, table-4"):
         run("4.5", "--csv", tmp_path / "b.csv")
 
