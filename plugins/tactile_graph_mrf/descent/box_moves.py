@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_mrf.energy.potentials import LineCliques, Potentials
+from tactile_graph_mrf.energy.potentials import Potentials
 from tactile_graph_mrf.energy.state import State
 
 
@@ -30,26 +30,26 @@ def set_sides(over: Any, left: Any, i: int, j: int, sites: int, code: int) -> No
 
 @compiled_as_is
 def lines_around(
-    cliques: LineCliques, in_field: Any, over: Any, left: Any, i: int, j: int
+    pattern: Any, parallel: float, one: float, in_field: Any, over: Any, left: Any, i: int, j: int
 ) -> float:
     """Return the energy of all cliques of lines that hold a line around cell (i, j)."""
     rows, columns = in_field.shape
     cost = 0.0
     for on in (over[i, j], over[i + 1, j], left[i, j], left[i, j + 1]):
         if on:
-            cost += cliques.one
+            cost += one
     for k in range(-1, 2):
         # Lines side by side across this cell, and across the one before and after it.
         if 0 <= i + k < rows and over[i + k, j]:
-            cost += cliques.parallel * over[i + k + 1, j]
+            cost += parallel * over[i + k + 1, j]
         if 0 <= j + k < columns and left[i, j + k]:
-            cost += cliques.parallel * left[i, j + k + 1]
+            cost += parallel * left[i, j + k + 1]
     for m in range(max(i - 1, 0), min(i + 1, rows - 1)):
         for n in range(max(j - 1, 0), min(j + 1, columns - 1)):
             both = in_field[m, n] and in_field[m + 1, n]
             if both and in_field[m, n + 1] and in_field[m + 1, n + 1]:
                 code = 1 * left[m, n + 1] + 2 * left[m + 1, n + 1]
-                cost += cliques.pattern[code + 4 * over[m + 1, n] + 8 * over[m + 1, n + 1]]
+                cost += pattern[code + 4 * over[m + 1, n] + 8 * over[m + 1, n + 1]]
     return cost
 
 
@@ -62,6 +62,7 @@ def move_boxes(potentials: Potentials, observed: Any, state: State) -> int:
     """
     in_field, curvature, centre, table, row = potentials.unary
     smooth, weights = potentials.pairwise.smooth, potentials.pairwise.weights
+    pattern, parallel, one = potentials.lines
     labels, across, down = state
     rows, columns = labels.shape
     over, left = np.zeros((rows + 1, columns), np.bool_), np.zeros((rows, columns + 1), np.bool_)
@@ -96,7 +97,7 @@ def move_boxes(potentials: Potentials, observed: Any, state: State) -> int:
                 if lines & ~sites or (turn > 0 and lines == now):
                     continue
                 set_sides(over, left, i, j, sites, lines)
-                fixed = lines_around(potentials.lines, in_field, over, left, i, j)
+                fixed = lines_around(pattern, parallel, one, in_field, over, left, i, j)
                 mass = max(curvature[i, j], 1e-9)
                 total = mass * (centre[i, j] if curvature[i, j] > 0.0 else observed[i, j])
                 for k in range(7):

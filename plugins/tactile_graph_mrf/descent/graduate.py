@@ -110,22 +110,15 @@ def relax(
     levels: Any, out: Any,
 ) -> None:  # fmt: skip
     """Write into ``out`` the levels after the sweeps with each row of ``influences``."""
+    in_field = potentials.unary.in_field
     awake = np.empty(levels.shape, np.bool_)
     for k in range(len(influences)):
         bends = influences[k]
         for s in range(len(visits)):
             i, j = visits[s, 0], visits[s, 1]
-            awake[i, j] = potentials.unary.in_field[i, j]
+            awake[i, j] = in_field[i, j]
         for _ in range(relaxation.sweeps):
-            stirred = False
-            for s in range(len(visits)):
-                i, j = visits[s, 0], visits[s, 1]
-                if awake[i, j]:
-                    awake[i, j] = False
-                    if relax_cell(potentials, observed, bends, relaxation, levels, i, j):
-                        wake_beside(potentials, i, j, awake)
-                        stirred = True
-            if not stirred:
+            if not relax_once(potentials, observed, bends, relaxation, visits, levels, awake):
                 break
         for s in range(len(visits)):
             i, j = visits[s, 0], visits[s, 1]
@@ -133,11 +126,11 @@ def relax(
 
 
 @compiled_as_is
-def relax_cell(
-    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, levels: Any,
-    i: int, j: int,
+def relax_once(
+    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, visits: Any,
+    levels: Any, awake: Any,
 ) -> bool:  # fmt: skip
-    """Move one cell; return whether it went so far that it, and those beside it, are to wake.
+    """Move each cell that is awake; return whether any went so far as to wake those beside it.
 
     It goes ``over`` times the way to the minimum of the parabola that touches its conditional
     energy from above (half-quadratic majorisation).
@@ -146,39 +139,47 @@ def relax_cell(
     offsets, weights = potentials.pairwise.offsets, potentials.pairwise.weights
     rows, columns = levels.shape
     top = table.shape[1] - 1
-    x = levels[i, j]
-    mass, goal = curvature[i, j], observed[i, j]
-    if mass > 0:
-        goal = centre[i, j]
-    if row[i, j] > 0:
-        away = abs(x - observed[i, j])
-        at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
-        slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
-        mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
-    pull = mass * (goal - x)
-    for q in range(len(weights)):
-        for sign in (1, -1):
-            m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
-            if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
-                step = levels[m, n] - x
-                d = min(abs(step), top)
-                whole = int(d)
-                low, high = bends[whole], bends[whole + 1]
-                w = weights[q] * (low + (d - whole) * (high - low))
-                pull += w * step
-                mass += w
-    if not mass > 0:
-        return False
-    levels[i, j] = min(max(x + relaxation.over * pull / mass, 0.0), top)
-    return bool(abs(levels[i, j] - x) >= relaxation.still * top)
+    over, still = relaxation.over, relaxation.still * top
+    stirred = False
+    for s in range(len(visits)):
+        i, j = visits[s, 0], visits[s, 1]
+        if not awake[i, j]:
+            continue
+        awake[i, j] = False
+        x = levels[i, j]
+        mass, goal = curvature[i, j], observed[i, j]
+        if mass > 0:
+            goal = centre[i, j]
+        if row[i, j] > 0:
+            away = abs(x - observed[i, j])
+            at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
+            slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
+            mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
+        pull = mass * (goal - x)
+        for q in range(len(weights)):
+            for sign in (1, -1):
+                m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+                if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                    step = levels[m, n] - x
+                    d = min(abs(step), top)
+                    whole = int(d)
+                    low, high = bends[whole], bends[whole + 1]
+                    w = weights[q] * (low + (d - whole) * (high - low))
+                    pull += w * step
+                    mass += w
+        if mass > 0:
+            after = min(max(x + over * pull / mass, 0.0), top)
+            levels[i, j] = after
+            if abs(after - x) >= still:
+                stirred = awake[i, j] = True
+                wake_beside(in_field, offsets, i, j, awake)
+    return stirred
 
 
 @compiled_as_is
-def wake_beside(potentials: Potentials, i: int, j: int, awake: Any) -> None:
-    """Wake a cell and those in one clique with it."""
-    in_field, offsets = potentials.unary.in_field, potentials.pairwise.offsets
+def wake_beside(in_field: Any, offsets: Any, i: int, j: int, awake: Any) -> None:
+    """Wake the cells in one clique with cell (i, j)."""
     rows, columns = in_field.shape
-    awake[i, j] = True
     for q in range(len(offsets)):
         for sign in (1, -1):
             m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]

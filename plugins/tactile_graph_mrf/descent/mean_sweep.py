@@ -105,51 +105,44 @@ def mean_sweep(
     smoothness is the same from ``reach`` levels on. Each visit lowers the free energy
     mean U - T entropy, or leaves it.
     """
+    in_field, curvature, centre, table, row = potentials.unary
+    smooth, _, _, offsets, weights = potentials.pairwise
+    labels, felt, across, down = chances
+    rows, columns, n_levels = labels.shape
+    lined = len(sites) > 0
     moved = 0.0
-    costs, chance = np.empty(chances.cells.shape[2]), np.empty(chances.cells.shape[2])
+    costs, chance = np.empty(n_levels), np.empty(n_levels)
     for s in range(len(cells)):
         i, j = cells[s, 0], cells[s, 1]
-        mean_cell_costs(potentials, len(sites) > 0, chances, i, j, costs)
+        for x in range(n_levels):
+            costs[x] = curvature[i, j] * (x - centre[i, j]) ** 2 + table[row[i, j], x]
+        for q in range(len(weights)):
+            for sign in (1, -1):
+                m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+                if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                    weight = weights[q]
+                    if q == 0 and lined:
+                        weight *= 1.0 - down[i, min(j, n)]
+                    elif q == 1 and lined:
+                        weight *= 1.0 - across[min(i, m), j]
+                    near = felt[m, n]
+                    for x in range(n_levels):
+                        costs[x] += weight * near[x]
         softened(costs, temperature, chance)
-        change = np.abs(chance - chances.cells[i, j]).sum()
+        change = np.abs(chance - labels[i, j]).sum()
         if change > 0.0:
             for x in range(len(chance)):
-                chances.cells[i, j, x] = chance[x]
-            mean_costs(chance, potentials.pairwise.smooth, reach, chances.felt[i, j])
+                labels[i, j, x] = chance[x]
+            mean_costs(chance, smooth, reach, felt[i, j])
         moved = max(moved, change)
     for s in range(len(sites)):
         is_down, i, j = sites[s, 0] == 1, sites[s, 1], sites[s, 2]
-        lines = chances.down if is_down else chances.across
+        lines = down if is_down else across
         m, n = (i, j + 1) if is_down else (i + 1, j)
-        weight = potentials.pairwise.weights[0 if is_down else 1]
-        bond = weight * (chances.cells[i, j] * chances.felt[m, n]).sum()
-        rise = mean_rise(potentials.lines, potentials.unary.in_field, chances, is_down, i, j) - bond
+        bond = weights[0 if is_down else 1] * (labels[i, j] * felt[m, n]).sum()
+        rise = mean_rise(potentials.lines, in_field, chances, is_down, i, j) - bond
         height = min(max(rise / temperature, -700.0), 700.0)
         share = 1.0 / (1.0 + math.exp(height))
         moved = max(moved, abs(share - lines[i, j]))
         lines[i, j] = share
     return moved
-
-
-@compiled_as_is
-def mean_cell_costs(
-    potentials: Potentials, lined: bool, chances: Chances, i: int, j: int, out: Any
-) -> None:
-    """Write what each label of a cell costs in the mean over all others."""
-    in_field, curvature, centre, table, row = potentials.unary
-    offsets, weights = potentials.pairwise.offsets, potentials.pairwise.weights
-    rows, columns = in_field.shape
-    for x in range(len(out)):
-        out[x] = curvature[i, j] * (x - centre[i, j]) ** 2 + table[row[i, j], x]
-    for q in range(len(weights)):
-        for sign in (1, -1):
-            m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
-            if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
-                weight = weights[q]
-                if q == 0 and lined:
-                    weight *= 1.0 - chances.down[i, min(j, n)]
-                elif q == 1 and lined:
-                    weight *= 1.0 - chances.across[min(i, m), j]
-                near = chances.felt[m, n]
-                for x in range(len(out)):
-                    out[x] += weight * near[x]

@@ -30,7 +30,6 @@ def swap_graph(
     ``nodes`` are their cells; ``node_of`` the node of each cell, -1 if it is none.
     """
     _, curvature, centre, table, row = unary
-    curvature, centre, row = curvature.reshape(-1), centre.reshape(-1), row.reshape(-1)
     rho, weights = bonds
     beside, cap, excess, sink = graph
     step = rho[beta - alpha] - rho[0]
@@ -50,7 +49,7 @@ def swap_graph(
 
 @compiled_as_is
 def swap_cycle(unary: Unary, bonds: Bonds, around: Neighbours, labels: Any) -> None:
-    """Trade every two labels that are there, and each for the next one; labels are flat.
+    """Trade every two labels that are there, and each for the next one; all cells in a row.
 
     Where one label only is there, it is offered all others.
     """

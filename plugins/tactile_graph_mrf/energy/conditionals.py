@@ -1,6 +1,7 @@
 """Kernels of the conditionals: what one cell's label, or one line, costs given all others.
 
-Samplers draw from them (Eq. 5.9, 5.10, 5.19); descents take the least.
+Samplers draw from them (Eq. 5.9, 5.10, 5.19); descents take the least. What is called for each
+cell or line takes arrays, not records: taking one out of a record costs more than its use.
 """
 
 from __future__ import annotations
@@ -9,9 +10,7 @@ import math
 from typing import Any
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_mrf.energy.layout import Layout
-from tactile_graph_mrf.energy.potentials import LineCliques, Pairwise, Unary
-from tactile_graph_mrf.energy.state import Sites
+from tactile_graph_mrf.energy.potentials import Pairwise
 from tactile_graph_mrf.energy.total import parted
 
 
@@ -38,64 +37,15 @@ def difference_costs(pairwise: Pairwise, beta: float, costs: Any) -> None:
 
 
 @compiled_as_is
-def tied_to(layout: Layout, offsets: Any, state: Sites, s: int, q: int) -> int:
-    """Return the other cell of a cell's pair clique, -1 where there is none or lines part them.
+def far_parted(across: Any, down: Any, offsets: Any, cell: int, other: int, q: int) -> bool:
+    """Return whether lines part a cell from the other one of a pair of orders 2 or 3.
 
-    The cell is that of row ``s`` of the layout, the clique column ``q`` of `Layout.near`.
+    ``q`` is the pair's column of `Layout.near`.
     """
-    other = layout.near[s, q]
-    if other < 0:
-        return -1
-    if q < 4:
-        return -1 if state.lines[layout.cut[s, q]] else other
-    columns = state.labels.shape[1]
-    base = other if q % 2 else layout.cells[s]
+    columns = across.shape[1]
+    base = other if q % 2 else cell
     i, j = base // columns, base % columns
-    cut = parted(state.across, state.down, i, j, offsets[q // 2, 0], offsets[q // 2, 1])
-    return -1 if cut else other
-
-
-@compiled_as_is
-def cell_parabola(
-    unary: Unary, offsets: Any, costs: Any, layout: Layout, state: Sites, s: int
-) -> tuple[float, float]:
-    """Return curvature and pull (curvature times centre) of the cost of a cell's label.
-
-    Only for quadratic smoothness, no line summed out, and Gaussian noise.
-    """
-    cell = layout.cells[s]
-    middle, sharpness = unary.centre.reshape(-1)[cell], unary.curvature.reshape(-1)[cell]
-    pull = sharpness * middle
-    one = costs.shape[1] // 2 + 1
-    flat = state.labels.reshape(-1)
-    for q in range(layout.near.shape[1]):
-        other = tied_to(layout, offsets, state, s, q)
-        if other >= 0:
-            weight = costs[q // 2, one]
-            sharpness += weight
-            pull += weight * flat[other]
-    return sharpness, pull
-
-
-@compiled_as_is
-def cell_costs(
-    unary: Unary, offsets: Any, costs: Any, layout: Layout, state: Sites, s: int, out: Any
-) -> None:
-    """Write what each label of a cell costs; ``costs`` are `difference_costs`."""
-    n_levels = len(out)
-    cell = layout.cells[s]
-    middle, sharpness = unary.centre.reshape(-1)[cell], unary.curvature.reshape(-1)[cell]
-    own = unary.table[unary.row.reshape(-1)[cell]]
-    for x in range(n_levels):
-        out[x] = sharpness * ((x - middle) * (x - middle)) + own[x]
-    flat = state.labels.reshape(-1)
-    for q in range(layout.near.shape[1]):
-        other = tied_to(layout, offsets, state, s, q)
-        if other >= 0:
-            first = n_levels - 1 - flat[other]
-            tie = costs[q // 2, first : first + n_levels]
-            for x in range(n_levels):
-                out[x] += tie[x]
+    return parted(across, down, i, j, offsets[q // 2, 0], offsets[q // 2, 1])
 
 
 @compiled_as_is
@@ -115,41 +65,36 @@ def least_of(costs: Any) -> float:
 
 @compiled_as_is
 def line_rise(
-    cliques: LineCliques, in_field: Any, offsets: Any, costs: Any, state: Sites, site: Any
+    pattern: Any, parallel: float, one: float, cost: float, site: Any, lines: Any, codes: Any
 ) -> float:
     """Return the energy with a line on less that with it off (Eq. 5.20 to 5.22).
 
-    ``site`` is its row of `Layout.sites`.
+    ``cost`` is that of the pair it parts, ``site`` its row of `Layout.sites`; ``codes`` hold
+    the pattern of lines on at each corner.
     """
-    flat, columns = state.labels.reshape(-1), state.labels.shape[1]
-    standing = site[7] == 1
-    last = costs.shape[1] // 2
-    rise = cliques.one - costs[0 if standing else 1, last + flat[site[1]] - flat[site[2]]]
+    rise = one - cost
     # Bits of `pattern_costs`: a vertical line is the upper one at its lower end, and so on.
-    bit = 1 if standing else 4
+    bit = 1 if site[7] == 1 else 4
     for end in range(3, 5):
         if site[end] >= 0:
-            code = state.codes[site[end]]
+            code = codes[site[end]]
             off = code & ~bit
-            rise += cliques.pattern[off | bit] - cliques.pattern[off]
+            rise += pattern[off | bit] - pattern[off]
         bit *= 2
     for beside in range(5, 7):
-        if site[beside] >= 0 and state.lines[site[beside]]:
-            rise += cliques.parallel
-    if len(offsets) > 2:
-        i, j = site[1] // columns, site[1] % columns
-        rise += far_rise(in_field, offsets, costs, state, standing, i, j)
-    return rise  # type: ignore[no-any-return]
+        if site[beside] >= 0 and lines[site[beside]]:
+            rise += parallel
+    return rise
 
 
 @compiled_as_is
 def far_rise(
-    in_field: Any, offsets: Any, costs: Any, state: Sites, standing: bool, i: int, j: int
+    in_field: Any, offsets: Any, costs: Any, labels: Any, across: Any, down: Any, site: Any
 ) -> float:
-    """Return what pairs of orders 2 and 3 add to `line_rise` of the line at (i, j)."""
-    labels, across, down = state.labels, state.across, state.down
+    """Return what pairs of orders 2 and 3 add to `line_rise`."""
     rows, columns = in_field.shape
-    lines = down if standing else across
+    i, j = site[1] // columns, site[1] % columns
+    lines = down if site[7] == 1 else across
     now = lines[i, j]
     rise = 0.0
     for a in range(max(i - 1, 0), i + 1):
@@ -171,12 +116,11 @@ def far_rise(
 
 
 @compiled_as_is
-def turn(state: Sites, site: Any, on: bool) -> None:
-    """Turn a line on or off, and in the patterns of the corners at its ends."""
-    state.lines[site[0]] = on
+def turn(site: Any, on: bool, lines: Any, codes: Any) -> None:
+    """Turn a line on or off, in ``lines`` and in the patterns of the corners at its ends."""
+    lines[site[0]] = on
     bit = 1 if site[7] == 1 else 4
     for end in range(3, 5):
         if site[end] >= 0:
-            code = state.codes[site[end]]
-            state.codes[site[end]] = (code | bit) if on else (code & ~bit)
+            codes[site[end]] = (codes[site[end]] | bit) if on else (codes[site[end]] & ~bit)
         bit *= 2

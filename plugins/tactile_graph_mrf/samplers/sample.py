@@ -49,7 +49,9 @@ def sample(
     Adds to ``sums``; writes the labels of the probes and the energy into ``seen``
     (samples, probes + 1).
     """
-    pairwise, labels = potentials.pairwise, state.labels
+    pairwise, in_field = potentials.pairwise, potentials.unary.in_field
+    labels, lines, across, down, _ = state
+    origin, label_sums, squares, on, probes = sums
     costs = np.empty((len(pairwise.weights), 2 * len(pairwise.bare) - 1))
     difference_costs(pairwise, beta, costs)
     n = len(layout.cells)
@@ -60,17 +62,17 @@ def sample(
             sweep_lines(potentials, costs, layout.sites, beta, uniforms[t, s, n:], state)
         for i in range(labels.shape[0]):
             for j in range(labels.shape[1]):
-                off = labels[i, j] - sums.origin[i, j]
-                sums.labels[i, j] += off
-                sums.squares[i, j] += off * off
+                off = labels[i, j] - origin[i, j]
+                label_sums[i, j] += off
+                squares[i, j] += off * off
         if pairwise.price >= 0.0:
-            add_chances(pairwise, beta, potentials.unary.in_field, labels, sums.on)
+            add_chances(pairwise, beta, in_field, labels, on)
         else:
-            for k in range(len(state.lines)):
-                sums.on[k] += state.lines[k]
-        for q in range(len(sums.probes)):
-            seen[t, q] = flat[sums.probes[q]]
-        seen[t, len(sums.probes)] = total(potentials, labels, state.across, state.down)
+            for k in range(len(lines)):
+                on[k] += lines[k]
+        for q in range(len(probes)):
+            seen[t, q] = flat[probes[q]]
+        seen[t, len(probes)] = total(potentials, labels, across, down)
 
 
 @compiled_as_is
@@ -79,6 +81,7 @@ def add_chances(pairwise: Pairwise, beta: float, in_field: Any, labels: Any, on:
 
     It is 1 / (1 + exp(beta (price - rho))), which spares the noise of drawing the line.
     """
+    price, bare = pairwise.price, pairwise.bare
     rows, columns = labels.shape
     n_across = (rows - 1) * columns
     for i in range(rows):
@@ -87,7 +90,7 @@ def add_chances(pairwise: Pairwise, beta: float, in_field: Any, labels: Any, on:
                 m, n = (i + 1, j) if way == 0 else (i, j + 1)
                 if m >= rows or n >= columns or not (in_field[i, j] and in_field[m, n]):
                     continue
-                height = beta * (pairwise.price - pairwise.bare[abs(labels[i, j] - labels[m, n])])
+                height = beta * (price - bare[abs(labels[i, j] - labels[m, n])])
                 k = i * columns + j if way == 0 else n_across + i * (columns - 1) + j
                 if height > 0.0:
                     chance = math.exp(-height)

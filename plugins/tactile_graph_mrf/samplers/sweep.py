@@ -8,9 +8,9 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_mrf.energy.conditionals import (
-    cell_costs,
-    cell_parabola,
     difference_costs,
+    far_parted,
+    far_rise,
     line_rise,
     turn,
 )
@@ -31,26 +31,46 @@ def sweep_cells(
     ``costs`` are `difference_costs` at this inverse temperature; ``gaussian`` is whether every
     conditional is a parabola.
     """
-    unary, offsets = potentials.unary, potentials.pairwise.offsets
-    flat = state.labels.reshape(-1)
+    _, curvature, centre, table, row = potentials.unary
+    offsets = potentials.pairwise.offsets
+    cells, near, cut, _, _ = layout
+    labels, lines, across, down, _ = state
+    flat, curvatures, centres = labels.reshape(-1), curvature.reshape(-1), centre.reshape(-1)
+    rows_of = row.reshape(-1)
     n_levels = costs.shape[1] // 2 + 1
     buffer, kept = np.empty(n_levels), np.empty(n_levels, np.int64)
     changed, certain = False, True
-    for s in range(len(layout.cells)):
-        cell = layout.cells[s]
-        now = flat[cell]
-        if gaussian:
-            sharpness, pull = cell_parabola(unary, offsets, costs, layout, state, s)
-            if sharpness > 0.0:
-                mean = pull / sharpness
-                label, sure = draw_parabola(sharpness, mean, n_levels, beta, uniforms[s])
+    for s in range(len(cells)):
+        cell = cells[s]
+        sharpness, middle = curvatures[cell], centres[cell]
+        pull = sharpness * middle
+        if not gaussian:
+            own = table[rows_of[cell]]
+            for x in range(n_levels):
+                buffer[x] = sharpness * ((x - middle) * (x - middle)) + own[x]
+        for q in range(near.shape[1]):
+            other = near[s, q]
+            if other < 0 or (q < 4 and lines[cut[s, q]]):
+                continue
+            if q >= 4 and far_parted(across, down, offsets, cell, other, q):
+                continue
+            if gaussian:
+                weight = costs[q // 2, n_levels]
+                sharpness += weight
+                pull += weight * flat[other]
             else:
-                label, sure = int(uniforms[s] * n_levels), False
-        else:
-            cell_costs(unary, offsets, costs, layout, state, s, buffer)
+                first = n_levels - 1 - flat[other]
+                tie = costs[q // 2, first : first + n_levels]
+                for x in range(n_levels):
+                    buffer[x] += tie[x]
+        if not gaussian:
             label, sure = draw_cost(buffer, kept, beta, uniforms[s])
+        elif sharpness > 0.0:
+            label, sure = draw_parabola(sharpness, pull / sharpness, n_levels, beta, uniforms[s])
+        else:
+            label, sure = int(uniforms[s] * n_levels), False
         certain = certain and sure
-        if label != now:
+        if label != flat[cell]:
             flat[cell] = label
             changed = True
     return changed, certain
@@ -62,15 +82,21 @@ def sweep_lines(
 ) -> tuple[bool, bool]:
     """Visit each line site once; return (whether any changed, whether none could)."""
     in_field, offsets = potentials.unary.in_field, potentials.pairwise.offsets
+    pattern, parallel, one = potentials.lines
+    labels, lines, across, down, codes = state
+    flat, last = labels.reshape(-1), costs.shape[1] // 2
     changed, certain = False, True
     for s in range(len(sites)):
         site = sites[s]
-        rise = line_rise(potentials.lines, in_field, offsets, costs, state, site)
-        was = state.lines[site[0]]
+        standing = site[7] == 1
+        cost = costs[0 if standing else 1, last + flat[site[1]] - flat[site[2]]]
+        rise = line_rise(pattern, parallel, one, cost, site, lines, codes)
+        if len(offsets) > 2:
+            rise += far_rise(in_field, offsets, costs, labels, across, down, site)
         on, sure = draw_line(rise, beta, uniforms[s])
         certain = certain and sure
-        if on != was:
-            turn(state, site, on)
+        if on != lines[site[0]]:
+            turn(site, on, lines, codes)
             changed = True
     return changed, certain
 
