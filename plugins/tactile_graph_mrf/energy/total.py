@@ -66,7 +66,13 @@ def total(potentials: Potentials, labels: Any, across: Any, down: Any) -> float:
             for j in range(max(-dj, 0), columns - max(dj, 0)):
                 if not (in_field[i, j] and in_field[i + di, j + dj]):
                     continue
-                if not parted(across, down, i, j, di, dj):
+                if k == 0:
+                    cut = down[i, j]
+                elif k == 1:
+                    cut = across[i, j]
+                else:
+                    cut = parted(across, down, i, j, di, dj)
+                if not cut:
                     pairs += smooth[abs(labels[i, j] - labels[i + di, j + dj])]
         energy += weights[k] * pairs
     return energy + line_energy(potentials.lines, in_field, across, down)
@@ -91,22 +97,25 @@ def parted(across: Any, down: Any, i: int, j: int, di: int, dj: int) -> bool:
 @compiled_as_is
 def line_energy(cliques: LineCliques, in_field: Any, across: Any, down: Any) -> float:
     """Return the sum over the cliques of lines; lines without a site must be off."""
+    pattern, parallel, one = cliques
     rows, columns = in_field.shape
     energy = 0.0
     count, beside = 0, 0
-    for i in range(rows):
+    for i in range(rows - 1):
         for j in range(columns):
-            if i + 1 < rows and across[i, j]:
+            if across[i, j]:
                 count += 1
                 beside += i + 2 < rows and across[i + 1, j]
-            if j + 1 < columns and down[i, j]:
+    for i in range(rows):
+        for j in range(columns - 1):
+            if down[i, j]:
                 count += 1
                 beside += j + 2 < columns and down[i, j + 1]
-            if i + 1 == rows or j + 1 == columns:
-                continue
+    for i in range(rows - 1):
+        for j in range(columns - 1):
             code = 1 * down[i, j] + 2 * down[i + 1, j] + 4 * across[i, j] + 8 * across[i, j + 1]
             if code:
                 above = in_field[i, j] and in_field[i, j + 1]
                 if above and in_field[i + 1, j] and in_field[i + 1, j + 1]:
-                    energy += cliques.pattern[code]
-    return energy + cliques.parallel * beside + cliques.one * count
+                    energy += pattern[code]
+    return energy + parallel * beside + one * count
