@@ -12,7 +12,7 @@ from typing import Any
 from tactile_graph.docstring import parameters
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.pipeline.declaration import RESERVED
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import adapter
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, type_name
@@ -166,7 +166,8 @@ class _Maker:
             "description": f"Settings of {name}: {signature.summary}",
             "additionalProperties": False,
             "properties": {
-                s.name: self._setting(name, s, meanings.get(s.name, "")) for s in signature.settings
+                s.name: self._setting(name, s, meanings.get(s.name, s.meaning))
+                for s in signature.settings
             },
         }
         return {**made, "required": required} if required else made

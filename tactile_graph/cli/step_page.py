@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import yaml
 
 from tactile_graph.docstring import parameters, sections
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import assignable, public_fields
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import Grid, Quantity
@@ -43,7 +43,7 @@ def step_page(registry: Registry, name: str) -> Iterator[RenderableType]:
     if signature.settings:
         rows = [
             (s.name, type_name(s.annotation), _default(s), ", ".join(ranges(s.annotation)),
-             meanings.get(s.name, ""))
+             meanings.get(s.name, s.meaning))
             for s in signature.settings
         ]  # fmt: skip
         yield from _table("settings", ("", "type", "default", "allowed", ""), rows)

@@ -7,7 +7,7 @@ from helpers_circles import arc_xy
 from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Circle
 from tactile_graph_fitters.circle.geometric import refined, slopes, step_of
-from tactile_graph_fitters.circle.principal import ONE_LINE
+from tactile_graph_fitters.circle.principal_axes import ONE_LINE
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval, plainly
 from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.principal import OK, into_frame
+from tactile_graph_fitters.circle.principal_axes import OK, into_frame
 from tactile_graph_fitters.ellipse.direct_ellipse import (
     FEW_PLACES,
     FLAT,

@@ -10,8 +10,8 @@ from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import packed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
-from tactile_graph_likelihood.single.information import information
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_likelihoods
+from tactile_graph_likelihood.single.information import Information, information
+from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.problem import problem_of
 from tactile_graph_likelihood.single.readings import readings_of
@@ -29,8 +29,6 @@ def test_twins_agree(shape):
     problem, p = problem_and_point(shape, 60.0, np.random.default_rng(2))
     expected = log_likelihood.reference(problem, p)
     assert log_likelihood.compiled(problem, p) == pytest.approx(expected, rel=1e-10)
-    many = log_likelihoods.compiled(problem, p[None])
-    assert many == pytest.approx([expected], rel=1e-10)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
@@ -44,8 +42,8 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
         problem.states[share < (0.3 if "fall" in estimated else 0.15)] = UNKNOWN
     p = np.append(p, noise.guess(1.3)[:, 0])
     n = len(p)
-    slope, matrix = np.empty(n), np.empty((n, n))
-    information.compiled(problem, p, slope, matrix)
+    slope, matrix = out = Information(np.empty(n), np.empty((n, n)))
+    information.compiled(problem, p, out)
     for k in range(n):
         up, down = p.copy(), p.copy()
         up[k] += 1e-4
@@ -64,9 +62,9 @@ def test_information_is_the_same_plain_and_compiled():
     problem, p = problem_and_point(SHAPES[2], 60.0, np.random.default_rng(2))
     found = []
     for which in (information.reference, information.compiled):
-        slope, matrix = np.empty(6), np.empty((6, 6))
-        which(problem, p, slope, matrix)
-        found.append(np.vstack([slope, matrix]))
+        out = Information(np.empty(6), np.empty((6, 6)))
+        which(problem, p, out)
+        found.append(np.vstack(out))
     np.testing.assert_allclose(*found, rtol=1e-6, atol=1e-6)
 
 
@@ -80,6 +78,6 @@ def test_the_truth_is_likelier_than_what_is_half_a_centimetre_off():
             [[0, 0, 0, 0], [0.5, 0, 0, 0], [0, -0.5, 0, 0], [0, 0, 0.5, 0], [0, 0, -0.5, 0]]
         )
         problem = problem_of(kind, corners, *readings[:3], NOISE.vector(1.3), np.zeros(9))
-        found = log_likelihoods.compiled(problem, points)
+        found = np.array([log_likelihood.compiled(problem, one) for one in points])
         ahead += found.argmax() == 0
     assert ahead >= 8
