@@ -129,7 +129,7 @@ class Model:
         problem = self._problem(readings, belief)
         table = self._table(problem)
         mode, _ = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)
-        return self._sampled(readings, problem, mode)
+        return self._sampled(readings, problem, table, mode)
 
     def likeliest(
         self, readings: Readings, before: Likeliest | None = None, start: Start = None
@@ -146,7 +146,8 @@ class Model:
 
     def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
         """Return the posterior around a mode."""
-        return self._sampled(readings, self._problem(readings, None), mode)
+        problem = self._problem(readings, None)
+        return self._sampled(readings, problem, self._table(problem), mode)
 
     def _find(
         self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
@@ -160,11 +161,13 @@ class Model:
         height, unsure = find.call(problem, table, begin, *attempts, p, root, height)
         return Mode(p, root, height), unsure
 
-    def _sampled(self, readings: Readings, problem: Problem, mode: Mode) -> Posterior:
+    def _sampled(
+        self, readings: Readings, problem: Problem, table: Values, mode: Mode
+    ) -> Posterior:
         if mode.height > -math.inf:
             large = problem.states.size > LARGE_PAD
             whole = covered_around.call(problem, mode.p) if large else None
-            table, worth = self._table(problem), self.precision**-2
+            worth = self.precision**-2
             sample = sample_around.call(problem, whole, table, BLOCK, worth, *mode)
             if len(sample.points):
                 return self._posterior_of(problem.kind, sample)

@@ -202,7 +202,7 @@ def test_a_fall_can_be_estimated_with_any_object(step):
     settings = {"shape": "rectangle"} if step is FitFootprint else {}
     slab = Rectangle(10.0, 10.0, 15.0, 9.0, 0.3)
     _, image = next(frames(1, 6, fall=0.5, shape=slab))
-    found = step(**settings, **SETTINGS, estimate=["fall", "lean"])(image)
+    found = made(step, **settings, **SETTINGS, estimate=["fall", "lean"])(image)
     assert len(found.posterior.mean) == 9
     assert 0.1 < found.posterior.mean[6] < 0.9
     assert np.abs(found.posterior.mean[7:]).max() < 0.6
