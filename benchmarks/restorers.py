@@ -3,8 +3,8 @@
 Run ``python benchmarks/restorers.py``; some minutes. Every result, ours or a peer's, is scored by
 the one energy of `tactile_graph_mrf.energy.model`: a truncated parabola, lambda 4, truncation 30,
 200 levels. Up to `PROVED` cells the least energy is bounded by tree-reweighted messages. The
-images: synthetic ones of 16 to 256 cells a side, the simulated pad, and frames of the bed mat and of the
-capacitive panel, whole and 16 by 16 cells of them. gco-wrapper (``pip install gco-wrapper``;
+images: synthetic ones of 16 to 256 cells a side, the simulated pad, and frames of the bed mat and
+of the capacitive panel, whole and 16 by 16 cells of them. gco-wrapper (``pip install gco-wrapper``;
 ``--gco`` names its folder, if not beside us) runs apart, for some costs abort the process; it is
 left out where it is missing. scikit-image's filters minimise something else and are a reference
 only. Times are processor time (all run in one thread), the least of a few runs, so that a machine

@@ -1,0 +1,232 @@
+"""A second opinion: pads simulated without a line of the project's own pad physics.
+
+Nothing here comes from `tactile_graph_pads`. Coverage is counted over points sown in each element;
+pressure is a function of those points; the force law, the divider, what the scan adds and what is
+broken are written anew from the thesis' text (chapter 2) and from what real pads are known to do.
+A pad draws what it is from a seeded generator, and every frame carries its truth.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Circle, Frame
+from tactile_graph.wires import TrueObject
+
+Values = NDArray[np.float64]
+Pressure = Callable[[Values, Values], Values]
+"""Of u and v, a point's place in the disc in units of its radius."""
+
+SUPPLY_V = 5.0
+BIAS_OHM = 33e3
+SOWN = 20
+"""Points along each side of an element; a disc's area comes out within a part in a thousand."""
+STUCK_OHM = 2e3
+DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
+"""Weight in grams and radius in cm of the discs of table 4.2."""
+
+
+def even(u: Values, v: Values) -> Values:
+    """The same pressure everywhere."""
+    return np.ones_like(u)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of pad and of what lies on it.
+
+    Lengths are in cm, loads in grams, voltages in volts.
+    """
+
+    rows: int = 16
+    columns: int = 16
+    element_cm: float = 1.0
+    gap_cm: float = 0.3
+    exponent: float = math.log(80.0) / math.log(20.0)
+    """Of R ~ 1 / F**exponent, through 80 kOhm at 100 g; the thesis' two points give 1.46."""
+    turn_on_g: float = 10.0
+    saturation_g: float = 10e3
+    noise_v: float = 0.2e-3
+    """Standard deviation of a reading."""
+    step_v: float = 0.0
+    """Of the converter; 0 where the mean of many samples has washed it out."""
+    offset_v: float = 0.0
+    """Largest drift of an element's zero."""
+    sigma: float = 0.5
+    """Of the logarithm of gains."""
+    fixed: float = 0.0
+    """Share of the gains' variance that stays from frame to frame."""
+    correlation_cells: float = 0.0
+    """Width over which gains are alike; 0 for none."""
+    line_sigma: float = 0.0
+    """Of a gain that all elements of a row share."""
+    voids: float = 0.15
+    strays: float = 0.0
+    """Share of all elements that read a load of their own."""
+    dead_rows: int = 0
+    dead_columns: int = 0
+    dead_elements: int = 0
+    stuck_elements: int = 0
+    foam_cells: float = 0.0
+    pressure: Pressure = even
+    discs: tuple[tuple[float, float], ...] = DISCS
+    over_edge: bool = False
+    """Whether discs may lie partly beyond the pad, their centre on it."""
+
+    @property
+    def pitch_cm(self) -> float:
+        """Distance of neighbouring elements' centres."""
+        return self.element_cm + self.gap_cm
+
+
+class Bench:
+    """One pad of a kind as built, on which discs are put down and read."""
+
+    def __init__(self, kind: Kind, rng: np.random.Generator) -> None:
+        self.kind, self.rng = kind, rng
+        shape = (kind.rows, kind.columns)
+        self.own = self._field()
+        self.lines = rng.normal(0.0, kind.line_sigma, (kind.rows, 1))
+        self.zero_v = kind.offset_v * rng.uniform(-1.0, 1.0, shape)
+        self.dead = np.zeros(shape, bool)
+        self.dead[rng.choice(kind.rows, kind.dead_rows, replace=False)] = True
+        self.dead[:, rng.choice(kind.columns, kind.dead_columns, replace=False)] = True
+        self.dead.flat[rng.choice(self.dead.size, kind.dead_elements, replace=False)] = True
+        self.stuck = np.zeros(shape, bool)
+        self.stuck.flat[rng.choice(self.dead.size, kind.stuck_elements, replace=False)] = True
+        sown = (np.arange(SOWN) + 0.5) / SOWN
+        along = np.arange(max(shape))[:, None] * kind.pitch_cm + sown * kind.element_cm
+        self.x = along[: kind.columns].ravel()
+        self.y = along[: kind.rows].ravel()
+
+    def _field(self) -> Values:
+        """Return standard normal numbers, alike over the width of correlation."""
+        shape, width = (self.kind.rows, self.kind.columns), self.kind.correlation_cells
+        white = self.rng.standard_normal(shape)
+        return blurred(white, width, unit_variance=True) if width else white
+
+    def frames(self, n: int) -> Iterator[Frame]:
+        """Yield frames of discs put down one after another."""
+        for index in range(n):
+            weight_g, radius_cm = self.kind.discs[index % len(self.kind.discs)]
+            disc = self._put_down(radius_cm)
+            volts = self._read(self._load_g(disc, weight_g))
+            truth = (TrueObject(disc, weight_g),)
+            pitch = self.kind.pitch_cm
+            yield Frame.of(volts, pitch, self._origin_cm, "volt", index=index, truth=truth)
+
+    @property
+    def _origin_cm(self) -> tuple[float, float]:
+        # Of a cell, its pitch wide; elements begin half a gap further in.
+        return (-self.kind.gap_cm / 2, -self.kind.gap_cm / 2)
+
+    def _put_down(self, radius_cm: float) -> Circle:
+        kind = self.kind
+        width, height = (n * kind.pitch_cm - kind.gap_cm for n in (kind.columns, kind.rows))
+        margin = 0.0 if kind.over_edge else radius_cm
+        x = self.rng.uniform(margin, width - margin)
+        y = self.rng.uniform(margin, height - margin)
+        return Circle(x, y, radius_cm)
+
+    def _load_g(self, disc: Circle, weight_g: float) -> Values:
+        kind, rng = self.kind, self.rng
+        u = (self.x[None, :] - disc.x_cm) / disc.radius_cm
+        v = (self.y[:, None] - disc.y_cm) / disc.radius_cm
+        u, v = np.broadcast_arrays(u, v)
+        pressed = np.where(u * u + v * v <= 1.0, np.maximum(kind.pressure(u, v), 0.0), 0.0)
+        share = pressed.reshape(kind.rows, SOWN, kind.columns, SOWN).mean(axis=(1, 3))
+        mixed = math.sqrt(kind.fixed) * self.own + math.sqrt(1.0 - kind.fixed) * self._field()
+        share = share * np.exp(kind.sigma * mixed + self.lines)
+        share[rng.random(share.shape) < kind.voids] = 0.0
+        if kind.foam_cells:
+            share = blurred(share, kind.foam_cells)
+        total = share.sum()
+        load = share * (weight_g / total) if total > 0.0 else share
+        stray = rng.random(load.shape) < kind.strays
+        load[stray] = rng.uniform(kind.turn_on_g, 20.0 * kind.turn_on_g, int(stray.sum()))
+        return load
+
+    def _read(self, load_g: Values) -> Values:
+        kind = self.kind
+        felt = np.minimum(load_g, kind.saturation_g)
+        conductance_s = np.zeros_like(felt)
+        on = felt >= kind.turn_on_g
+        conductance_s[on] = (felt[on] / 100.0) ** kind.exponent / 80e3
+        conductance_s[self.dead] = 0.0
+        conductance_s[self.stuck] = 1.0 / STUCK_OHM
+        volts = SUPPLY_V * conductance_s / (1.0 / BIAS_OHM + conductance_s.sum(axis=0))
+        volts += self.zero_v + kind.noise_v * self.rng.standard_normal(volts.shape)
+        return np.round(volts / kind.step_v) * kind.step_v if kind.step_v else volts
+
+
+def blurred(values: Values, width: float, unit_variance: bool = False) -> Values:
+    """Return values blurred by a Gaussian of ``width`` cells, borders reflected."""
+    reach = max(1, math.ceil(4 * width))
+    taps = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
+    taps /= taps.sum()
+    for axis in (0, 1):
+        padded = np.pad(
+            values, [(reach, reach) if a == axis else (0, 0) for a in (0, 1)], "reflect"
+        )
+        values = np.apply_along_axis(np.convolve, axis, padded, taps, "valid")
+    return values / float((taps**2).sum()) if unit_variance else values
+
+
+def leaning(u: Values, v: Values) -> Values:
+    """A face that leans: 1.7 times the mean pressure at one side, 0.3 at the other."""
+    return 1.0 + 0.7 * (0.8 * u + 0.6 * v)
+
+
+def round_face(u: Values, v: Values) -> Values:
+    """A ball's pressure, falling to nothing at the rim."""
+    return np.sqrt(np.maximum(1.0 - u * u - v * v, 0.0))
+
+
+def hollow(u: Values, v: Values) -> Values:
+    """A ring of half the radius inside: a cup put down."""
+    return (u * u + v * v >= 0.36).astype(float)
+
+
+BASE = Kind()
+SMALL = ((300.0, 1.6), (500.0, 2.0), (800.0, 2.4))
+
+KINDS: dict[str, Kind] = {
+    "noise 0": replace(BASE, noise_v=0.0),
+    "noise 0.2 mV": BASE,
+    "noise 1 mV": replace(BASE, noise_v=1e-3),
+    "noise 1.6 mV": replace(BASE, noise_v=1.6e-3),
+    "noise 3 mV": replace(BASE, noise_v=3e-3),
+    "noise 5 mV": replace(BASE, noise_v=5e-3),
+    "law 1/F": replace(BASE, exponent=1.0),
+    "law 1/F^2": replace(BASE, exponent=2.0),
+    "turn-on 2 g": replace(BASE, turn_on_g=2.0),
+    "turn-on 40 g": replace(BASE, turn_on_g=40.0),
+    "saturation 60 g": replace(BASE, saturation_g=60.0),
+    "gains 0.2": replace(BASE, sigma=0.2),
+    "gains 0.9": replace(BASE, sigma=0.9),
+    "gains fixed": replace(BASE, fixed=1.0),
+    "gains correlated": replace(BASE, correlation_cells=1.5),
+    "gains by row": replace(BASE, sigma=0.3, line_sigma=0.5),
+    "voids 0": replace(BASE, voids=0.0),
+    "voids 0.4": replace(BASE, voids=0.4),
+    "strays 1 %": replace(BASE, strays=0.01),
+    "strays 4 %": replace(BASE, strays=0.04),
+    "dead row": replace(BASE, dead_rows=1),
+    "dead column": replace(BASE, dead_columns=1),
+    "12 dead elements": replace(BASE, dead_elements=12),
+    "3 stuck elements": replace(BASE, stuck_elements=3),
+    "leaning face": replace(BASE, pressure=leaning),
+    "round face": replace(BASE, pressure=round_face),
+    "hollow face": replace(BASE, pressure=hollow),
+    "foam 0.6 cells": replace(BASE, foam_cells=0.6),
+    "small discs": replace(BASE, discs=SMALL),
+    "over the edge": replace(BASE, over_edge=True),
+    "drift 5 mV": replace(BASE, offset_v=5e-3),
+    "8 bits": replace(BASE, noise_v=1.6e-3, step_v=10.0 / 256),
+}
+"""Name -> kind; all but the one thing named are as in `BASE`."""
