@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
@@ -45,7 +45,7 @@ def hull_beneath_beyond(points: Points, *, rounding_ulps: Annotated[float, Ge(0)
     return hull_polygon(points.xy_cm, beneath_beyond_corners, rounding_ulps)
 
 
-@compiled_as_is
+@compiled_later
 def beneath_beyond_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     """Return the hull's corners, shape (K, 2); none if `turn` would not be exact."""
     if not in_range(xy):
@@ -81,7 +81,7 @@ def beneath_beyond_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.f
     return finished(ring, ulps)
 
 
-@compiled_as_is
+@compiled_later
 def _shuffled(n: int) -> NDArray[np.int64]:
     """Return 0 .. n - 1 in an order as good as random, always the same (Park-Miller numbers)."""
     order = np.arange(n)
@@ -93,13 +93,13 @@ def _shuffled(n: int) -> NDArray[np.int64]:
     return order
 
 
-@compiled_as_is
+@compiled_later
 def _sense(xy: NDArray[np.float64], edge: int, end: int, p: int) -> int:
     """Return -1 if p is beyond the edge, 1 if beneath it, 0 if on its line."""
     return turn(xy[edge, 0], xy[edge, 1], xy[end, 0], xy[end, 1], xy[p, 0], xy[p, 1])
 
 
-@compiled_as_is
+@compiled_later
 def _give(
     xy: NDArray[np.float64],
     p: int,
@@ -120,7 +120,7 @@ def _give(
             return
 
 
-@compiled_as_is
+@compiled_later
 def _add(
     xy: NDArray[np.float64],
     p: int,

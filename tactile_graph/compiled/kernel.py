@@ -2,8 +2,8 @@
 
 Most kernels are compiled before their first answer. Kernels of short pipelines, which plain code
 answers sooner than the compiler can even be imported, are plain at first and compiled once
-there is enough to do. What counts is the calls and the elements handed over, never the clock, so that
-a replay is answered by the same code. The environment variable ``TACTILE_GRAPH_KERNELS``
+there is enough to do. What counts is the calls and the elements handed over, never the clock, so
+that a replay is answered by the same code. The environment variable ``TACTILE_GRAPH_KERNELS``
 (``auto``, ``plain``, ``compiled``) decides otherwise.
 """
 

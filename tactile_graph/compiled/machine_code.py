@@ -21,8 +21,6 @@ from numba import types
 TRIED = ("0.68",)
 """Versions of numba whose inner working is known to fit."""
 
-OPTIONS = {"error_model": "numpy"}
-
 
 def whole() -> bool:
     """Return whether kernels are compiled whole below their entries."""
@@ -32,10 +30,10 @@ def whole() -> bool:
 def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
     """Return what runs the machine code of ``loops``; made at the first call, kept on disk."""
     if not whole():
-        return numba.njit(cache=True, **OPTIONS)(loops)  # type: ignore[no-any-return]
+        return numba.njit(cache=True, error_model="numpy")(loops)
     from tactile_graph.compiled.whole import entry_of
 
-    return entry_of(loops, OPTIONS)
+    return entry_of(loops)
 
 
 class Callee:
@@ -57,17 +55,17 @@ class Callee:
                 self._part = _part_of(self._loops)
             return types.Dispatcher(self._part)
         if self._alone is None:
-            self._alone = numba.njit(cache=True, **OPTIONS)(self._loops)
+            self._alone = numba.njit(cache=True, error_model="numpy")(self._loops)
         return types.Dispatcher(self._alone)
 
 
 def _under_way() -> bool:
-    from tactile_graph.compiled.whole import under_way
+    from tactile_graph.compiled.whole import entry_under_way
 
-    return under_way()
+    return entry_under_way()
 
 
 def _part_of(loops: Callable[..., Any]) -> Any:
     from tactile_graph.compiled.whole import part_of
 
-    return part_of(loops, OPTIONS)
+    return part_of(loops)

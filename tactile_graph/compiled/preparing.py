@@ -78,12 +78,17 @@ class Preparing:
     def at(self, function: object) -> None:
         """Note that ``function`` is compiled now."""
         self._done.add(id(function))
+        n = min(len(self._done), self._total)
+        self._say(f"{n} of {self._total} kernels")
+
+    def all_together(self) -> None:
+        """Note that the code of all is optimised and made into machine code."""
+        self._say(f"{self._total} kernels into one")
+
+    def _say(self, what: str) -> None:
         spent_s = self._spent_s + time.monotonic() - self._since
         if _tellers and spent_s > WORTH_A_LINE_S:
-            _tellers[-1](
-                f"compiling {self._name}, once on this machine: "
-                f"{min(len(self._done), self._total)} of {self._total} kernels, {spent_s:.0f} s"
-            )
+            _tellers[-1](f"compiling {self._name}, once on this machine: {what}, {spent_s:.0f} s")
 
 
 preparing = Preparing()

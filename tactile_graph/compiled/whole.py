@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import gc
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from numba import njit
@@ -16,15 +18,34 @@ from numba.core.registry import CPUDispatcher
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
 
-_entries_under_way = 0
+_entries = 0
 
 
-def under_way() -> bool:
+def entry_under_way() -> bool:
     """Return whether an entry is being compiled, so that kernels found on the way are its parts."""
-    return _entries_under_way > 0
+    return _entries > 0
 
 
-class Part(JITCodeLibrary):  # type: ignore[misc]
+@contextmanager
+def _under_way() -> Iterator[None]:
+    """Note that an entry is compiled, and spare the compiler the collection of garbage.
+
+    Its millions of small objects live until the end; searching them for garbage takes a fifth of
+    the time.
+    """
+    global _entries
+    collecting = gc.isenabled()
+    gc.disable()
+    _entries += 1
+    try:
+        yield
+    finally:
+        _entries -= 1
+        if collecting:
+            gc.enable()
+
+
+class Part(JITCodeLibrary):
     """The code of a kernel within others: neither optimised nor emitted, callees not taken in."""
 
     def add_llvm_module(self, ll_module: Any) -> None:
@@ -45,11 +66,14 @@ class Part(JITCodeLibrary):  # type: ignore[misc]
         return self._final_module
 
 
-class Entry(JITCodeLibrary):  # type: ignore[misc]
+class Entry(JITCodeLibrary):
     """The code of a kernel that Python calls, with all below it."""
+
+    _linking_libraries: list[CodeLibrary]
 
     def finalize(self) -> None:
         """Take all code below in, optimise and emit it."""
+        preparing.all_together()
         self._linking_libraries = callers_first(self._linking_libraries)
         super().finalize()
 
@@ -77,7 +101,7 @@ class _Key:
     """What numba's table of callable functions knows a part by."""
 
 
-class PartCompiler(Compiler):  # type: ignore[misc]
+class PartCompiler(Compiler):
     """From loops to a part."""
 
     def define_pipelines(self) -> Any:
@@ -96,7 +120,7 @@ class PartCompiler(Compiler):  # type: ignore[misc]
         return result._replace(entry_point=key)
 
 
-class EntryCompiler(Compiler):  # type: ignore[misc]
+class EntryCompiler(Compiler):
     """From loops to machine code that Python calls."""
 
     def define_pipelines(self) -> Any:
@@ -106,14 +130,9 @@ class EntryCompiler(Compiler):  # type: ignore[misc]
 
     def compile_extra(self, func: Callable[..., Any]) -> CompileResult:
         """Compile with all below, and hand the code the objects it raises errors with."""
-        global _entries_under_way
-        _entries_under_way += 1
-        try:
-            with preparing.of(func.__name__, Reach(func).n_kernels):
-                preparing.at(func)
-                result = super().compile_extra(func)
-        finally:
-            _entries_under_way -= 1
+        with _under_way(), preparing.of(func.__name__, Reach(func).n_kernels):
+            preparing.at(func)
+            result = super().compile_extra(func)
         for environment in result._find_referenced_environments():
             result.codegen.set_env(environment.env_name, environment)
         return result
@@ -125,7 +144,7 @@ def _into(state: Any, kind: type[JITCodeLibrary]) -> None:
     state.flags.no_cfunc_wrapper = True
 
 
-class PartDispatcher(CPUDispatcher):  # type: ignore[misc]
+class PartDispatcher(CPUDispatcher):
     """The parts made of one kernel, by the types of its arguments; never called from Python."""
 
     def compile(self, sig: Any) -> _Key:
@@ -134,10 +153,11 @@ class PartDispatcher(CPUDispatcher):  # type: ignore[misc]
         with global_compiler_lock, self._compiling_counter:
             if args not in self.overloads:
                 self.overloads[args] = self._compiler.compile(args, return_type)
-        return self.overloads[args].entry_point  # type: ignore[no-any-return]
+        key: _Key = self.overloads[args].entry_point
+        return key
 
 
-class EntryCache(FunctionCache):  # type: ignore[misc]
+class EntryCache(FunctionCache):
     """An entry's machine code on disk, outdated by a change of anything it is made of."""
 
     def __init__(self, loops: Callable[..., Any]) -> None:
@@ -147,14 +167,15 @@ class EntryCache(FunctionCache):  # type: ignore[misc]
         )
 
 
-def entry_of(loops: Callable[..., Any], options: dict[str, Any]) -> Callable[..., Any]:
+def entry_of(loops: Callable[..., Any]) -> Callable[..., Any]:
     """Return what runs the machine code of ``loops``."""
-    dispatcher = njit(pipeline_class=EntryCompiler, **options)(loops)
+    dispatcher: Any = njit(pipeline_class=EntryCompiler, error_model="numpy")(loops)
     dispatcher._cache = EntryCache(loops)
-    return dispatcher  # type: ignore[no-any-return]
+    called: Callable[..., Any] = dispatcher
+    return called
 
 
-def part_of(loops: Callable[..., Any], options: dict[str, Any]) -> PartDispatcher:
+def part_of(loops: Callable[..., Any]) -> PartDispatcher:
     """Return what makes parts of ``loops``."""
-    options = {"nopython": True, "boundscheck": None, **options}
+    options = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
     return PartDispatcher(loops, targetoptions=options, pipeline_class=PartCompiler)

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import misfit
 
 REACH_CELLS = 3
@@ -23,7 +23,7 @@ Owners: TypeAlias = NDArray[np.int32]
 Flags: TypeAlias = NDArray[np.bool_]
 
 
-@compiled_as_is
+@compiled_later
 def surveyed(
     owner: Owners, count: int, values: Reals, half: float
 ) -> tuple[Whole, Whole, Whole, Reals]:
@@ -52,7 +52,7 @@ def surveyed(
     return left, right, box, cuts
 
 
-@compiled_as_is
+@compiled_later
 def united(
     owner: Owners, values: Reals, known: Flags, group: Owners, left: Whole, right: Whole,
     rules: Reals,
@@ -67,7 +67,7 @@ def united(
     return misfit(owner, values, known, group, low, high, rules)
 
 
-@compiled_as_is
+@compiled_later
 def best_pair(
     owner: Owners, values: Reals, known: Flags, left: Whole, right: Whole, box: Whole,
     cuts: Reals, alive: Flags, cost: Reals, union: Reals, rules: Reals,
@@ -92,7 +92,7 @@ def best_pair(
     return one, two
 
 
-@compiled_as_is
+@compiled_later
 def best_three(
     owner: Owners, values: Reals, known: Flags, left: Whole, right: Whole,
     cuts: Reals, alive: Flags, cost: Reals, rules: Reals,
@@ -118,7 +118,7 @@ def best_three(
     return one, two, three
 
 
-@compiled_as_is
+@compiled_later
 def join(
     owner: Owners, one: int, other: int, left: Whole, right: Whole, box: Whole, cuts: Reals,
     alive: Flags,
@@ -140,7 +140,7 @@ def join(
     alive[other] = False
 
 
-@compiled_as_is
+@compiled_later
 def energy_of(cuts: Reals, alive: Flags, cost: Reals, hold: float) -> float:
     """Return the misfits of the groups left and the price of the cuts between them."""
     energy = 0.0

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import RIM_CELLS
 
 Reals: TypeAlias = NDArray[np.float64]
@@ -21,7 +21,7 @@ FLOOR = 2e-3
 """Readings below this share of the weak one count as it, where logarithms are taken."""
 
 
-@compiled_as_is
+@compiled_later
 def hull_terms(
     owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, floor: float
 ) -> Reals:
@@ -91,7 +91,7 @@ def hull_terms(
     return terms
 
 
-@compiled_as_is
+@compiled_later
 def hull_of(x: Reals, y: Reals, ends: int) -> tuple[Reals, Reals, int]:
     """Return the closed hull of the first and last cell of each row, and its number of points.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.basin_groups import DIAGONAL
 from tactile_graph_filters.parting.hull_terms import (
     AREA,
@@ -31,7 +31,7 @@ NO_SEAM = -1.0
 """Taken for the seam's logarithm where the two do not touch."""
 
 
-@compiled_as_is
+@compiled_later
 def log_odds(
     owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
     floor: float, both: Reals,
@@ -53,7 +53,7 @@ def log_odds(
     return odds
 
 
-@compiled_as_is
+@compiled_later
 def cut_terms(
     owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
     floor: float, both: Reals,
@@ -77,7 +77,7 @@ def cut_terms(
     return terms
 
 
-@compiled_as_is
+@compiled_later
 def seam(
     owner: Owners, one: int, two: int, values: Reals, full: float, floor: float
 ) -> tuple[float, float, float]:

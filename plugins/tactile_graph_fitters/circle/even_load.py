@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
 from tactile_graph_pads.coverage.ellipse import ellipse_areas
 
@@ -22,7 +22,7 @@ Usable = NDArray[np.bool_]
 Found = tuple[int, float, float, float, float, float, float, float, int, int]
 
 
-@compiled_as_is
+@compiled_later
 def start_of(loads: Values, usable: Usable, grid: Values, p: Values) -> int:
     """Write the disc with the load's moments, and its full load, into ``p``; return the touched.
 
@@ -50,7 +50,7 @@ def start_of(loads: Values, usable: Usable, grid: Values, p: Values) -> int:
     return count
 
 
-@compiled_as_is
+@compiled_later
 def equations(
     loads: Values,
     usable: Usable,
@@ -100,7 +100,7 @@ def equations(
     return cost, count
 
 
-@compiled_as_is
+@compiled_later
 def even_disc(loads: Values, usable: Usable, grid: Values, shows_from: float) -> Found:
     """Return the disc whose even load is nearest to an image's, by least squares.
 
@@ -156,7 +156,7 @@ def even_disc(loads: Values, usable: Usable, grid: Values, shows_from: float) ->
     return status, best[0], best[1], best[2], best[3], rms, centre, radius, count, rounds
 
 
-@compiled_as_is
+@compiled_later
 def _scatter(normal: Values, rms: float) -> tuple[float, float]:
     """Return standard deviations of centre and radius, by the inverse of the normal equations."""
     zero, unit, column = 0.0, np.zeros(4), np.zeros(4)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph_fitters.circle.principal import OK, Frame, into_frame
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 
@@ -28,7 +28,7 @@ NOTHING = 1e-29  # of the squared quadratics: what rounding leaves of them
 PLACES = 5  # an ellipse has five numbers
 
 
-@compiled_as_is
+@compiled_later
 def above(square: float, least: float) -> float:
     """Return a sum of squares, or 0 where it is but what rounding left of larger ones."""
     return square if square > least else 0.0
@@ -119,7 +119,7 @@ def quadratics(uv: Values) -> Quadratics:
     return scales, linear, (cos, sin, ww / n, rr / n), (zz / n, on_w, on_r, above(off, least) / n)
 
 
-@compiled_as_is
+@compiled_later
 def _left(
     uv: Values, by_u: float, by_v: float, linear: tuple[float, float, float, float, float],
     z: Values, w: Values, r: Values
@@ -141,7 +141,7 @@ def _left(
     return math.cos(turn), math.sin(turn)
 
 
-@compiled_as_is
+@compiled_later
 def least_bend(
     ww: float, rr: float, zz: float, on_w: float, on_r: float, off: float
 ) -> tuple[float, float]:
@@ -167,7 +167,7 @@ def least_bend(
     return by_w, by_r
 
 
-@compiled_as_is
+@compiled_later
 def direct_shape(uv: Values) -> tuple[int, float, float, float, float, float]:
     """Return a status, and centre (u, v), half axes and angle of the direct fit to framed points.
 
@@ -199,7 +199,7 @@ def direct_shape(uv: Values) -> tuple[int, float, float, float, float, float]:
     return OK, along * u, across * v, first, second, 0.5 * math.atan2(-b, c - a)
 
 
-@compiled_as_is
+@compiled_later
 def ellipse_frame(xy: Values) -> tuple[int, Values, Frame]:
     """Return what `into_frame` does, but that points at fewer than 5 places are refused."""
     status, uv, frame = into_frame(xy)
@@ -219,7 +219,7 @@ def ellipse_frame(xy: Values) -> tuple[int, Values, Frame]:
     return FEW_PLACES, uv, frame
 
 
-@compiled_as_is
+@compiled_later
 def in_pad(
     frame: Frame, u: float, v: float, a: float, b: float, angle: float, rms: float, rounds: int
 ) -> Found:
@@ -231,7 +231,7 @@ def in_pad(
     return OK, x, y, unit * a, unit * b, seen, unit * rms, rounds
 
 
-@compiled_as_is
+@compiled_later
 def direct_fit(xy: Values) -> Found:
     """Return the direct ellipse of points, shape (N, 2), in cm, and 0 rounds."""
     status, uv, frame = ellipse_frame(xy)

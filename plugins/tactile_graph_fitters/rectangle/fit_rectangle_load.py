@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt, Lt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
@@ -176,7 +176,7 @@ OK, ONE_LINE, NOT_SETTLED = range(3)
 Found = tuple[int, float, float, float, float, float, float, int]
 
 
-@compiled_as_is
+@compiled_later
 def likeliest(
     cells: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, cell: float
 ) -> Found:

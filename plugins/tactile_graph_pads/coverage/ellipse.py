@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 Area = NDArray[np.float64]
 
@@ -81,7 +81,7 @@ def _reference(
     return np.asarray(np.clip(below[1] - below[0], 0.0, element_cm**2))
 
 
-@compiled_as_is
+@compiled_later
 def primitive(x: float, radius: float) -> float:
     """Return the area under a half circle from its middle to x, |x| <= radius."""
     root = math.sqrt((radius - x) * (radius + x))
@@ -92,7 +92,7 @@ def primitive(x: float, radius: float) -> float:
     return 0.5 * (x * root + radius * radius * angle)
 
 
-@compiled_as_is
+@compiled_later
 def _line(h: float, A: float, B: float, m: float, k: float, stretch: float, line: Area) -> None:
     """Write a horizontal line's height, half length, start, end and the primitive at both."""
     line[0], line[1], line[2], line[3] = h, 0.0, A, A
@@ -104,7 +104,7 @@ def _line(h: float, A: float, B: float, m: float, k: float, stretch: float, line
         line[4], line[5] = primitive(line[2], A), primitive(line[3], A)
 
 
-@compiled_as_is
+@compiled_later
 def _below(
     line: Area, A: float, B: float, m: float, k: float, u: float, v: float, P0: float, P1: float
 ) -> float:
