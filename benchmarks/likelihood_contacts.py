@@ -37,6 +37,7 @@ from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
 from tactile_graph_likelihood.geometry.outlines import unknowns
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.fit_footprint import FitFootprint
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 from tactile_graph_likelihood.single.likely import Likely, likely
@@ -86,10 +87,11 @@ def to_panel(shape: object) -> tuple[float, float]:
 
 def fit_from(share: float, shape: str, estimate: list[str]) -> Callable[[Image], Likely]:
     """Return a fit to which readings below a share of the contact's largest are none at all."""
-    base = FitFootprint(
-        shape=shape, estimate=estimate, gap_cm=0.0, sigma=0.2, voids=1e-3, strays=1e-2,
-        smallest_cm=0.15, largest_cm=2.0,
-    ).model  # type: ignore[arg-type]  # fmt: skip
+    settings = FootprintSettings(
+        estimate=estimate, gap_cm=0.0, sigma=0.2, voids=1e-3, strays=1e-2, smallest_cm=0.15,
+        largest_cm=2.0,
+    )  # type: ignore[arg-type]  # fmt: skip
+    base = FitFootprint(shape=shape, settings=settings).model  # type: ignore[arg-type]
 
     def fit(image: Image) -> Likely:
         least = max(share * float(image.values.max()), SHOWS_FROM)
@@ -100,10 +102,10 @@ def fit_from(share: float, shape: str, estimate: list[str]) -> Callable[[Image],
 
 def by_order(image: Image) -> Likely:
     least = max(0.35 * float(image.values.max()), SHOWS_FROM)
-    step = FootprintByOrder(
-        shape="ellipse", gap_cm=0.0, sigma=0.2, voids=1e-3, foam_cm=0.3, touched_from=least,
-        smallest_cm=0.15, largest_cm=2.0, sliver=0.35,
-    )  # fmt: skip
+    settings = FootprintSettings(
+        gap_cm=0.0, sigma=0.2, voids=1e-3, foam_cm=0.3, smallest_cm=0.15, largest_cm=2.0
+    )
+    step = FootprintByOrder(shape="ellipse", settings=settings, touched_from=least, sliver=0.35)
     return step(image)
 
 
@@ -222,10 +224,11 @@ def learned(rows: list[Row]) -> None:
     """Print what `learned_noise` makes of either half of the recordings."""
     foam = float(np.median([r.said[DISC][2] for r in rows if DISC in r.said]))
     print(f"\nfoam, median of the contacts: {foam:.2f} cells; learned from one half's contacts:")
-    step = FitFootprint(
+    settings = FootprintSettings(
         gap_cm=0.0, sigma=0.2, voids=0.01, strays=1e-2, smallest_cm=0.15, largest_cm=2.0,
         foam_cm=foam * float(PITCH_CM[0]), shows_from=0.35,
     )  # fmt: skip
+    step = FitFootprint(settings=settings)
     for half in (0, 1):
         images = [
             r.image.with_values(r.image.values / r.image.values.max())

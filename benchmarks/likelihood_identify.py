@@ -13,6 +13,7 @@ import argparse
 import itertools
 import sys
 from collections import Counter, defaultdict
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -29,10 +30,12 @@ from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.identity import UNKNOWN
 from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
+from tactile_graph_likelihood.settings import ROUGHER
 from tactile_graph_sources.scene import load_scene
 from tactile_graph_thesis.measure.simulated_readings import as_database, known_from, simulated
 
 N = 25
+WHOLE = replace(ROUGHER, on_pad="whole")
 SHAPE_FEATURES = ["weight", "area_cm2", "axis_ratio", "compactness", "hu_1"]
 ALIKE: dict[str, Any] = {
     "in_turn": [
@@ -73,7 +76,7 @@ def run_all(scene: Any, pads: int, exact: bool) -> None:
         data = as_database(known)
         weight_area = Mahalanobis(database=data)
         shapes = Mahalanobis(database=data, features=SHAPE_FEATURES)
-        step = IdentifyFootprint(database=data, on_pad="whole", sizes=stated)
+        step = IdentifyFootprint(database=data, sizes=stated, settings=WHOLE)
         grams = load("circle-likelihood").runner(only=["grams"])
         for frame in frames:
             assert frame.truth is not None
@@ -123,7 +126,7 @@ def strangers(pads: int) -> None:
             rest = Known(known.where, known.features, known.quantity, others)
             data = as_database(rest)
             old = Mahalanobis(database=data)
-            step = IdentifyFootprint(database=data, on_pad="whole")
+            step = IdentifyFootprint(database=data, settings=WHOLE)
             for frame in frames:
                 assert frame.truth is not None
                 if frame.truth[0].name == stranger:
@@ -156,7 +159,7 @@ def pressed(objects: int, seed: int) -> None:
     discs = [it for it in things if it.shape == "disc"]
     steps = {
         pressure: IdentifyFootprint(
-            database=as_database(known), sizes=sizes, on_pad="whole", pressure=pressure
+            database=as_database(known), sizes=sizes, settings=replace(WHOLE, pressure=pressure)
         )
         for pressure in ("even", "any")
     }  # type: ignore[arg-type]

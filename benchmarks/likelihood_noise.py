@@ -13,6 +13,7 @@ import numpy as np
 
 from tactile_graph import Image, load
 from tactile_graph.compiled import warm_up
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 
@@ -34,7 +35,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=200)
     chosen = parser.parse_args()
     warm_up()
-    model = FootprintDisc(on_pad="whole").model
+    model = FootprintDisc(FootprintSettings(on_pad="whole")).model
     print(f"{'true':>13}", *(f"{f'{n} image' + 's' * (n > 1):>30}" for n in GROUPS))
     for sigma, voids in PADS:
         found: dict[int, list[tuple[float, float]]] = {n: [] for n in GROUPS}

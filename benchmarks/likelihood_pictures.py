@@ -21,6 +21,7 @@ from scipy.special import fdtr
 
 from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_likelihood.single.likely import LikelyCircle
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -110,7 +111,8 @@ def cloud(folder: Path, seed: int) -> None:
     del grams
     assert frame.truth is not None
     true = frame.truth[0].shape
-    posterior = FootprintDisc(on_pad="whole", precision=0.05, most_points=4096).model.posterior(
+    settings = FootprintSettings(on_pad="whole", precision=0.05, most_points=4096)
+    posterior = FootprintDisc(settings).model.posterior(
         load("circle-likelihood").runner(only=["grams"])(frame)["grams"]
     )
     figure, many = plt.subplots(1, 2, figsize=(10, 4.4), layout="constrained")
@@ -140,7 +142,7 @@ def against_bound(folder: Path, scenes: int, steps: int) -> None:
         source = load("circle-likelihood").with_source(
             "simulate", scene="discs", frames=scenes, sigma=sigma, voids=voids
         )
-        step = FootprintDisc(on_pad="whole", sigma=sigma, voids=voids)
+        step = FootprintDisc(FootprintSettings(on_pad="whole", sigma=sigma, voids=voids))
         grams = source.runner(only=["grams"])
         told = reader(
             "circle-likelihood", "circle", **{"circle.sigma": sigma, "circle.voids": voids}

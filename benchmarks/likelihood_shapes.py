@@ -17,6 +17,7 @@ import itertools
 import sys
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -32,9 +33,11 @@ from shape_confidence import frames
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Rectangle
+from tactile_graph_likelihood.settings import ROUGHER
 from tactile_graph_likelihood.single.choose_shape import ChooseShape
 from tactile_graph_pads.contact import spread
 
+WHOLE = replace(ROUGHER, on_pad="whole")
 FINE = 24
 Shape = Circle | Ellipse | Rectangle
 Load = np.ndarray[Any, np.dtype[np.float64]]
@@ -43,7 +46,7 @@ Answer = dict[str, float]
 
 
 def by_evidence(names: tuple[str, ...]) -> Callable[[Frame], Answer | None]:
-    step = ChooseShape(shapes=list(names), on_pad="whole")  # type: ignore[arg-type]
+    step = ChooseShape(shapes=list(names), settings=WHOLE)  # type: ignore[arg-type]
     run = load("circle-likelihood").runner(only=["grams"])
 
     def answer(frame: Frame) -> Answer | None:
@@ -161,7 +164,7 @@ def uneven(some: list[Frame], seed: int) -> None:
     """Print how often each setting of ``pressure`` names the shape, by how it presses."""
     print(f"\nThree shapes pressing unevenly, {len(some)} objects: named rightly, and stated")
     grams = load("circle-likelihood").runner(only=["grams"])
-    steps = {p: ChooseShape(on_pad="whole", pressure=p) for p in ("even", "any")}  # type: ignore[arg-type]
+    steps = {p: ChooseShape(settings=replace(WHOLE, pressure=p)) for p in ("even", "any")}  # type: ignore[arg-type]
     for name, face in FACES.items():
         rng = np.random.default_rng(seed)
         found: dict[str, list[tuple[bool, float]]] = {p: [] for p in steps}
@@ -185,7 +188,7 @@ def large_discs(scenes: int, seed: int) -> None:
     """Print how often a disc of table 4.2 stays one, how sure that is, and the centre's error."""
     print(f"\nDiscs of table 4.2, {scenes} of a kind: named rightly, stated, centre's error in cm")
     grams = load("circle-likelihood").runner(only=["grams"])
-    steps = {p: ChooseShape(on_pad="whole", pressure=p) for p in ("even", "any")}  # type: ignore[arg-type]
+    steps = {p: ChooseShape(settings=replace(WHOLE, pressure=p)) for p in ("even", "any")}  # type: ignore[arg-type]
     for name in ("as designed", *list(FACES)[1:]):
         found: dict[str, list[tuple[bool, float, float]]] = {p: [] for p in steps}
         for frame in discs_of(*KINDS[name], scenes, seed):
@@ -206,7 +209,7 @@ def times(some: list[Frame]) -> None:
     images = [image for f in some[:24] if (image := run(f).get("grams")) is not None]
 
     def cycled(names: list[Any]) -> Callable[[], object]:
-        step, turn = ChooseShape(shapes=names, on_pad="whole"), itertools.cycle(images)
+        step, turn = ChooseShape(shapes=names, settings=WHOLE), itertools.cycle(images)
         return lambda: step(next(turn))
 
     print("\nThe step alone on one frame (target for three: 3000 us)")

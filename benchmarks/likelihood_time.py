@@ -25,6 +25,7 @@ import likelihood_robustness
 from tactile_graph import Image, Pipeline, load
 from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.over_time.follow_footprint import Followed, FollowFootprint
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_pads.pad import load_pad
 
@@ -126,12 +127,12 @@ def moves(series: int) -> None:
             by = (cells * PITCH_CM * np.cos(way), cells * PITCH_CM * np.sin(way))
             places = [{**DISC, "place": [x, y]}, {**DISC, "place": [x + by[0], y + by[1]]}]
             scene = {"in_turn": [[p] for p in places], "hold": 3}
-            follow = FollowFootprint(on_pad="whole")
+            follow = FollowFootprint(settings=FootprintSettings(on_pad="whole"))
             images = grams_of(scene, PADS["thesis' pad"], 4, seed)
             for _, image in images[:3]:
                 follow(image, gap_s=0.1)
             noticed += follow(images[3][1], gap_s=0.1).moved
-            slid = FollowFootprint(on_pad="whole")
+            slid = FollowFootprint(settings=FootprintSettings(on_pad="whole"))
             for _, image in images[:3]:
                 slid(image, gap_s=0.1)
             frame, image = images[2]
@@ -157,12 +158,12 @@ def false_alarms(frames: int) -> None:
 
 
 def step_of(on: dict[str, Any], **settings: Any) -> FollowFootprint:
-    return FollowFootprint(pad=on, on_pad="whole", **settings)
+    return FollowFootprint(settings=FootprintSettings(pad=on, on_pad="whole"), **settings)
 
 
 def each_alone(on: dict[str, Any]) -> Callable[[], Any]:
     """Return a maker of the step that forgets all frames before."""
-    return lambda: FootprintDisc(pad=on, on_pad="whole")
+    return lambda: FootprintDisc(FootprintSettings(pad=on, on_pad="whole"))
 
 
 def main() -> None:

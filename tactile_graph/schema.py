@@ -166,7 +166,8 @@ class _Maker:
             "description": f"Settings of {name}: {signature.summary}",
             "additionalProperties": False,
             "properties": {
-                s.name: self._setting(name, s, meanings.get(s.name, "")) for s in signature.settings
+                s.name: self._setting(name, s, meanings.get(s.name, s.meaning))
+                for s in signature.settings
             },
         }
         return {**made, "required": required} if required else made

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactile_graph.steps.signature import read_signature
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import packed
@@ -34,3 +35,8 @@ def problem_and_point(shape, load_g, rng, noise=NOISE):
     prior[:6] = *readings.grid[:2], *size, 0.5, 20.0
     problem = problem_of(kind, corners, *readings[:3], noise.vector(1.3), prior)
     return problem._replace(estimated=noise.places, guess=noise.guess(1.3)), point
+
+
+def made(step, **settings):
+    """Return a step as a pipeline makes it: settings flat, the others by default."""
+    return step(**read_signature(step.__name__, step).arguments(settings))

@@ -43,7 +43,7 @@ def step_page(registry: Registry, name: str) -> Iterator[RenderableType]:
     if signature.settings:
         rows = [
             (s.name, type_name(s.annotation), _default(s), ", ".join(ranges(s.annotation)),
-             meanings.get(s.name, ""))
+             meanings.get(s.name, s.meaning))
             for s in signature.settings
         ]  # fmt: skip
         yield from _table("settings", ("", "type", "default", "allowed", ""), rows)

@@ -39,7 +39,7 @@ def open_source(
         injected[signature.rng] = np.random.default_rng(seed)
     if signature.report:
         injected[signature.report] = report
-    frames = signature.target(**settings, **injected)
+    frames = signature.target(**signature.arguments(settings), **injected)
     try:
         for frame in frames:
             if not isinstance(frame, Frame):

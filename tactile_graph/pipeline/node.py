@@ -109,10 +109,13 @@ class Node:
         signature = self.signature
         assert signature is not None, f"{self.name} is no step"
         if signature.kind is not Kind.CLASS:
-            return partial(signature.target, **self.settings) if self.settings else signature.target
+            settings = signature.arguments(self.settings)
+            return partial(signature.target, **settings) if settings else signature.target
         if self.callable is not None and not signature.stateful:
             return self.callable
-        made: Callable[..., Any] = signature.target(**self.settings, **injected)
+        made: Callable[..., Any] = signature.target(
+            **signature.arguments(self.settings), **injected
+        )
         return made
 
 

@@ -2,5 +2,6 @@
 
 from tactile_graph.steps.injected import Report, TimeGap
 from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.steps.spread import Spread
 
-__all__ = ["Grid", "Quantity", "Report", "TimeGap"]
+__all__ = ["Grid", "Quantity", "Report", "Spread", "TimeGap"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import inspect
 import types
 import typing
-from collections.abc import Callable, Generator, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
@@ -16,6 +16,7 @@ import numpy as np
 from tactile_graph.errors import PluginError, shown
 from tactile_graph.steps.injected import Report, is_time_gap
 from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.steps.spread import Record, Spread, spread
 
 REQUIRED: Any = inspect.Parameter.empty
 
@@ -51,17 +52,26 @@ class Port:
 
 @dataclass(frozen=True)
 class Setting:
-    """One setting of a step: a keyword-only parameter, or one of a class's ``__init__``."""
+    """One setting of a step: a keyword-only parameter, or one of a class's ``__init__``.
+
+    ``record`` is set where it is a field of a parameter that is spread.
+    """
 
     name: str
     annotation: Any
     default: Any = REQUIRED
     quantity: Quantity | None = None
+    record: Record | None = field(default=None, compare=False)
 
     @property
     def required(self) -> bool:
         """Whether a pipeline must give it."""
         return self.default is REQUIRED
+
+    @property
+    def meaning(self) -> str:
+        """What the docstring of the dataclass it is a field of says of it, else empty."""
+        return self.record.meaning(self.name) if self.record else ""
 
 
 @dataclass(frozen=True)
@@ -95,6 +105,17 @@ class Signature:
     def port(self, name: str) -> Port | None:
         """Return the port of that name, or None."""
         return next((p for p in self.ports if p.name == name), None)
+
+    def arguments(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Return settings as the target takes them: those that are spread in their dataclass."""
+        records = {s.name: s.record for s in self.settings if s.record is not None}
+        if not records:
+            return dict(values)
+        out = {n: v for n, v in values.items() if n not in records}
+        for record in {r.parameter: r for r in records.values()}.values():
+            its = {n: v for n, v in values.items() if n in records and records[n] is record}
+            out[record.parameter] = record.made(its)
+        return out
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -223,8 +244,14 @@ def _split(
             injected["report"] = p.name
         elif is_time_gap(metadata):
             injected["gap"] = p.name
+        elif (marker := next((m for m in metadata if isinstance(m, Spread)), None)) is not None:
+            record, found = spread(name, p, bare, marker)
+            settings += [Setting(n, a, d, _pick(a, Quantity), record) for n, a, d in found]
         else:
             settings.append(_setting(p, annotation))
+    names = [s.name for s in settings]
+    if twice := [n for n in names if names.count(n) > 1]:
+        raise PluginError(f"step {name!r}: it has two settings named {twice[0]!r}")
     return injected, tuple(settings)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from helpers_likelihood import made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
@@ -54,8 +55,8 @@ def near(found, true, pitch):
 @pytest.mark.parametrize(("geometry", "disc"), CASES, ids=["mat", "fingertip"])
 def test_an_outline_by_order_and_one_over_time_need_no_sizes(geometry, disc):
     pad = pad_of(geometry)
-    near(FootprintByOrder(pad=pad)(image_of(disc, geometry, 1)), disc, geometry.pitch_cm)
-    step = FollowFootprint(pad=pad)
+    near(made(FootprintByOrder, pad=pad)(image_of(disc, geometry, 1)), disc, geometry.pitch_cm)
+    step = made(FollowFootprint, pad=pad)
     for seed in range(3):
         found = step(image_of(disc, geometry, seed), gap_s=1.0)
         near(found.shape, disc, geometry.pitch_cm)
@@ -74,7 +75,7 @@ def test_an_object_is_identified_and_a_stranger_is_unknown_without_sizes(geometr
                                   for k, w in enumerate(weights)]}],
     }  # fmt: skip
     sizes = {"it": {"shape": "disc", "radius_cm": disc.radius_cm}}
-    step = IdentifyFootprint(database=data, sizes=sizes, pad=pad_of(geometry))
+    step = made(IdentifyFootprint, database=data, sizes=sizes, pad=pad_of(geometry))
     found = step(images[0])
     assert found.name == "it"
     near(found.object, disc, geometry.pitch_cm)

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE, drawn
+from helpers_likelihood import NOISE, drawn, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
 from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
-from tactile_graph_likelihood.several.frame_fits import FrameFits
 from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, chances, mixed
 from tactile_graph_likelihood.single.choose_shape import ChooseShape
+from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
@@ -46,7 +46,7 @@ def test_a_disc_that_presses_unevenly_is_still_a_disc(face):
     seen = [pressed(seed, face) for seed in range(16)]
     right, stated, off = {}, {}, {}
     for pressure in ("any", "even"):
-        found = [ChooseShape(on_pad="whole", pressure=pressure)(image) for image in seen]
+        found = [made(ChooseShape, on_pad="whole", pressure=pressure)(image) for image in seen]
         right[pressure] = np.mean([f.name == "disc" for f in found])
         stated[pressure] = np.mean([f.disc for f in found])
         off[pressure] = np.mean([math.hypot(f.shape.x_cm - 10.0, f.shape.y_cm - 9.5)
@@ -60,7 +60,7 @@ def test_a_disc_that_presses_unevenly_is_still_a_disc(face):
 
 def test_an_even_object_is_chosen_as_without_the_question_and_mostly_not_asked():
     rng, asked = np.random.default_rng(2), 0
-    steps = [ChooseShape(on_pad="whole", pressure=pressure) for pressure in ("any", "even")]
+    steps = [made(ChooseShape, on_pad="whole", pressure=pressure) for pressure in ("any", "even")]
     for k in range(20):
         shape = DISC_CM if k % 2 else Rectangle(10.0, 9.5, 13.0, 7.0, 0.4)
         image = drawn(shape, 60.0, rng)
@@ -119,7 +119,9 @@ def test_a_known_object_is_known_however_it_presses(face):
     data, sizes = database({"it": 3000.0, "other": 3600.0}, 6.4)
     named, off = {}, {}
     for pressure in ("any", "even"):
-        step = IdentifyFootprint(database=data, sizes=sizes, on_pad="whole", pressure=pressure)
+        step = made(
+            IdentifyFootprint, database=data, sizes=sizes, on_pad="whole", pressure=pressure
+        )
         found = []
         for seed in range(8):
             image = pressed(seed, face)
@@ -134,7 +136,7 @@ def test_a_known_object_is_known_however_it_presses(face):
 
 def test_an_object_of_known_weight_but_much_smaller_is_not_taken_for_a_ball():
     data, sizes = database({"it": 2000.0}, 6.4)
-    step = IdentifyFootprint(database=data, sizes=sizes, on_pad="whole")
+    step = made(IdentifyFootprint, database=data, sizes=sizes, on_pad="whole")
     for seed in range(5):
         image = drawn(Circle(10.0, 9.5, 4.8), 60.0, np.random.default_rng(seed))
         alike = image.with_values(image.values * (2000.0 / image.values.sum()))
@@ -144,7 +146,7 @@ def test_an_object_of_known_weight_but_much_smaller_is_not_taken_for_a_ball():
 def test_placements_of_a_ball_teach_its_true_radius():
     off = {}
     for pressure in ("any", "even"):
-        step = FollowFootprint(on_pad="whole", pressure=pressure)
+        step = made(FollowFootprint, on_pad="whole", pressure=pressure)
         for seed in range(8):
             disc = Circle(9.0 + 0.4 * seed, 9.5, 6.4)
             found = step(pressed(seed, "ball", disc), gap_s=100.0)
@@ -156,4 +158,4 @@ def test_placements_of_a_ball_teach_its_true_radius():
 def test_an_empty_frame_is_no_shape():
     empty = Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram")
     with pytest.raises(Exception, match="no element bears a load"):
-        ChooseShape(pressure="any")(empty)
+        made(ChooseShape, pressure="any")(empty)

@@ -5,15 +5,15 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
 
 from helpers_likelihood import GRID, NOISE, drawn
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
-from tactile_graph_likelihood.single.misfit import leaning_of
+from tactile_graph_likelihood.single.goodness_of_fit import standardised
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
 from tactile_graph_likelihood.single.readings import readings_of
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
@@ -185,6 +185,6 @@ def test_a_residual_that_shows_has_mean_0_and_variance_1(z):
     u = np.random.default_rng(7).standard_normal(400_000)
     normal = NormalDist()
     tail, density = normal.cdf(z), normal.pdf(z)
-    kept = [leaning_of.call(float(v), z, tail, density) for v in u[u > -z][:20_000]]
+    kept = [standardised.call(float(v), z, tail, density) for v in u[u > -z][:20_000]]
     assert abs(np.mean(kept)) < 0.03
     assert np.var(kept) == pytest.approx(1.0, abs=0.06)

@@ -6,17 +6,18 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Le
 
 from tactile_graph.errors import Degenerate
+from tactile_graph.steps import Spread
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Circle, Ellipse, Image, Mask, Polygon, Rectangle
 from tactile_graph_filters.readings.decouple import Decouple
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
+from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
 from tactile_graph_likelihood.single.fit_footprint import KINDS
-from tactile_graph_likelihood.single.footprint_of import Positive, Share, model_of
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, readings_of
@@ -31,17 +32,9 @@ class FootprintByOrder:
 
     Parameters
     ----------
-    shape, corners, strays, gap_cm, on_pad, smallest_cm, largest_cm, precision
+    shape, corners
         As in `fit_footprint`.
-    pad : str or mapping
-        Gap, unevenness and voids come from it, unless given here, and the circuit that volts are
-        freed of; its law is not used.
-    sigma : float, optional
-        Standard deviation of the logarithm of an element's gain, in load.
-    voids : float, optional
-        Share of covered elements that read nothing.
-    foam_cm : float, optional
-        Width over which foam spreads the load.
+    settings : FootprintSettings
     touched_from : float
         Readings below it count as untouched, in the image's unit; 0 for all above 0.
     sliver : float
@@ -49,6 +42,8 @@ class FootprintByOrder:
 
     Notes
     -----
+    Of the pad its law is not used, but the circuit that volts are freed of.
+
     Any strictly monotone change of the readings leaves the answer as it is. Volts of a circuit
     whose elements shadow each other are no such change of the load: an image in volts is decoupled
     first; another quantity is taken as it is. The likelihood is in `order_likelihood`; ``sliver``
@@ -66,29 +61,32 @@ class FootprintByOrder:
         *,
         shape: Literal["disc", "ellipse", "rectangle", "regular", "polygon"] = "disc",
         corners: Annotated[int, Ge(3), Le(12)] = 4,
-        pad: str | dict[str, Any] = "thesis",
-        sigma: Positive | None = None,
-        voids: Annotated[float, Ge(0), Lt(1)] | None = None,
-        strays: Share = 1e-3,
-        foam_cm: Annotated[float, Ge(0)] | None = None,
-        gap_cm: Annotated[float, Ge(0)] | None = None,
+        settings: Annotated[
+            FootprintSettings,
+            Spread(
+                "pad",
+                "sigma",
+                "voids",
+                "strays",
+                "foam_cm",
+                "gap_cm",
+                "on_pad",
+                "smallest_cm",
+                "largest_cm",
+                "precision",
+            ),
+        ] = DEFAULTS,
         touched_from: Annotated[float, Ge(0)] = 0.0,
         sliver: Share = 0.1,
-        on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive | None = None,
-        largest_cm: Positive | None = None,
-        precision: Annotated[float, Gt(0), Le(1)] = 0.15,
     ) -> None:
         kind = KINDS[shape]
-        self.model = model_of(
-            kind, corners if kind in (REGULAR, FREE) else 0, pad, sigma, voids, strays, foam_cm,
-            gap_cm, sliver, [], on_pad, smallest_cm, largest_cm, precision, 1024, 0,
-        )  # fmt: skip
+        sides = corners if kind in (REGULAR, FREE) else 0
+        self.model = replace(settings, shows_from=sliver).model(kind, sides)
         noise = replace(self.model.noise, least=TOUCH_LEAST)
         self._touch = [
             replace(self.model, noise=replace(noise, sigma=s), precision=0.3) for s in TOUCH_SIGMAS
         ]
-        self._touched_from, self._decouple = touched_from, Decouple(pad=pad)
+        self._touched_from, self._decouple = touched_from, Decouple(pad=settings.pad)
 
     def __call__(
         self,

@@ -18,17 +18,17 @@ theirs at a total rate, at which the next comes, tells where it is to be expecte
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
-from tactile_graph_likelihood.geometry.covered import Box, blurred, covered, window
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
-    FOAM,
     OFF,
     ON,
     SIGMA,
@@ -37,7 +37,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.shares import foam_margin
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 
 Order = NDArray[np.int64]
 
@@ -49,6 +49,32 @@ STRIDE = 0.5
 
 EARLY = 6.0
 """Standard deviations below the lightest element where loads begin to rise, at the earliest."""
+
+
+class OrderProblem(NamedTuple):
+    """What the posterior by touch and order depends on, beside the outline and t.
+
+    Parameters
+    ----------
+    kind, corners, grid, states, noise, prior
+        As in `problem.Problem`; the least load that shows is not looked at.
+    order : ndarray of int, shape (n, 2)
+        Row and column of the touched elements, those that read least first.
+    ends : ndarray of int, shape (n,)
+        For each of them the place after the last that reads the same.
+    hazards : ndarray
+        As `hazards.hazards` gives them.
+    """
+
+    kind: int
+    corners: int
+    grid: Values
+    states: States
+    noise: Values
+    prior: Values
+    order: Order
+    ends: Order
+    hazards: Values
 
 
 @compiled_as_is
@@ -82,7 +108,7 @@ def log_order(
     t : float
         Logarithm of a fully covered element's load over the least that is touched.
     table : ndarray
-        As `order_hazards.hazards` gives it.
+        As `hazards.hazards` gives it.
     levels : ndarray, shape (n,)
         Written: the logarithm of the load at which each is expected, in units of ``sigma``.
 
@@ -162,42 +188,26 @@ def log_touched(shares: Values, t: float, box: Box, states: States, noise: Value
 
 
 @compiled_as_is
-def order_log_likelihood(
-    kind: int,
-    corners: int,
-    p: Values,
-    grid: Values,
-    states: States,
-    order: Order,
-    ends: Order,
-    noise: Values,
-    table: Values,
-) -> float:
+def order_log_likelihood(problem: OrderProblem, p: Values) -> float:
     """Return the log likelihood of touch and order over that of a bare pad.
 
     Parameters
     ----------
-    kind, corners, grid, states, noise
-        As in `log_posterior`; the least load that shows is not looked at.
+    problem : OrderProblem
     p : ndarray, shape (K,)
         The outline's numbers, and t.
-    order : ndarray of int, shape (n, 2)
-        Row and column of the touched elements, those that read least first.
-    ends, table
-        As in `log_order`.
     """
-    rows, columns = states.shape
+    kind, corners, grid, noise = problem.kind, problem.corners, problem.grid, problem.noise
+    rows, columns = problem.states.shape
     box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
-    share = covered(kind, corners, p, grid, box)
-    if noise[FOAM] > 0.0:
-        share = blurred(share, noise[FOAM], box, rows, columns)
+    share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
     t = p[unknowns(kind, corners)]
-    along = shares_along(share, box, order)
-    levels = np.empty(order.shape[0])
-    return log_touched(share, t, box, states, noise) + log_order(
-        along, ends, noise[SIGMA], t, table, levels
+    along = shares_along(share, box, problem.order)
+    levels = np.empty(problem.order.shape[0])
+    return log_touched(share, t, box, problem.states, noise) + log_order(
+        along, problem.ends, noise[SIGMA], t, problem.hazards, levels
     )
 
 
@@ -213,30 +223,17 @@ def shares_along(share: Values, box: Box, order: Order) -> Values:
 
 
 @compiled_as_is
-def order_log_densities(
-    kind: int,
-    corners: int,
-    points: Values,
-    grid: Values,
-    states: States,
-    order: Order,
-    ends: Order,
-    noise: Values,
-    table: Values,
-    prior: Values,
-) -> Values:
+def order_log_densities(problem: OrderProblem, points: Values) -> Values:
     """Return `order_log_likelihood` plus the outline's log prior of many points, shape (N, K)."""
     out = np.empty(points.shape[0])
     for k in range(points.shape[0]):
-        out[k] = log_prior(kind, corners, points[k], prior)
+        out[k] = log_prior(problem.kind, problem.corners, points[k], problem.prior)
         if out[k] > -math.inf:
-            out[k] += order_log_likelihood(
-                kind, corners, points[k], grid, states, order, ends, noise, table
-            )
+            out[k] += order_log_likelihood(problem, points[k])
     return out
 
 
-def ranked(logs: Values, states: States) -> tuple[Order, Order]:
+def order_of(logs: Values, states: States) -> tuple[Order, Order]:
     """Return the touched elements, those that read least first, and where equal ones end."""
     cells = np.argwhere(states == ON)
     values = logs[states == ON]

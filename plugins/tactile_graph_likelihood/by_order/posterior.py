@@ -10,26 +10,31 @@ from functools import lru_cache
 import numpy as np
 
 from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.by_order.goodness_of_fit import order_goodness_of_fit
 from tactile_graph_likelihood.by_order.hazards import hazards
-from tactile_graph_likelihood.by_order.likelihood import order_log_densities, ranked
-from tactile_graph_likelihood.by_order.misfit import order_misfit
-from tactile_graph_likelihood.geometry.even_points import even_points
+from tactile_graph_likelihood.by_order.likelihood import OrderProblem, order_log_densities, order_of
 from tactile_graph_likelihood.geometry.outline_prior import TURN
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes, unknowns
+from tactile_graph_likelihood.single.even_points import even_points
+from tactile_graph_likelihood.single.importance import (
+    FEWEST,
+    FREEDOM,
+    KEPT,
+    WIDER,
+    temper,
+    weigh,
+    weighted_moments,
+)
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.sampling import FREEDOM, flatten, spread_of, weigh
 
 ROUND = 32  # points
 WIDE_ROUND = 128  # of outlines with an angle or corners: a void at an end looks like the end
 MOST = 1024
-WIDER = 1.3  # a proposal's variance over the posterior's
 FIRST = 3.0  # the first one's over that of the start
 APART = 0.15  # of a pitch: standard deviation that the first adds to every length
 SPREAD = 2.0  # of ln of the share that shows, before a frame is read
-KEPT = 0.02  # of the proposal before, added to the next: it stays invertible
-FEWEST = 3.0  # equal weights per unknown, below which weights are flattened
 
 
 def order_posterior(
@@ -56,14 +61,16 @@ def order_posterior(
     first = unknowns.call(model.kind, model.corners)
     pitch = float(readings.grid[2])
     noise, middle = model.noise.vector(pitch), -math.log(model.noise.least)
-    prior = model._prior(readings)
+    prior = model.prior_vector(readings)
     if (turned := period.call(model.kind, model.corners)) > 0.0:
         prior[TURN] = start.mean[2 + sizes.call(model.kind)]
-    order, ends = ranked(readings.logs, readings.states)
-    read = readings.grid, readings.states, order, ends, noise, hazards(noise)
+    problem = OrderProblem(
+        model.kind, model.corners, readings.grid, readings.states, noise, prior,
+        *order_of(readings.logs, readings.states), hazards(noise),
+    )  # fmt: skip
 
     def density(points: Values) -> Values:
-        found = order_log_densities.call(model.kind, model.corners, points, *read, prior)
+        found = order_log_densities.call(problem, points)
         off = (points[:, first] - middle) / SPREAD
         return np.asarray(found - 0.5 * off * off)
 
@@ -77,9 +84,8 @@ def order_posterior(
         k = 2 + sizes.call(model.kind)
         floor[k] /= max(float(start.mean[2:k].max()), pitch) ** 2
     found = _sampled(model, readings, density, centre, spread + np.diag(floor), enough)
-    seen = order_misfit.call(model.kind, model.corners, found.mean, *read)
-    surprise, neighbours, lean, fall = seen
-    return replace(found, surprise=surprise, neighbours=neighbours, lean=lean, fall=fall)
+    fit = order_goodness_of_fit.call(problem, found.mean)
+    return replace(found, **fit._asdict())
 
 
 def _sampled(
@@ -112,12 +118,12 @@ def _sampled(
         evidence, equal = weigh.call(logs_p, logs_q, shares, turn + 1, count, weights)
         if equal <= 0.0:
             raise Degenerate(f"{readings.touched} touched elements: no such outline explains them")
-        spread_of.call(points, weights, count, mean, matrix)
+        weighted_moments.call(points, weights, count, mean, matrix)
         if equal >= worth:
             break
-        flatten.call(weights, count, FEWEST * n, flat)
+        temper.call(weights, count, FEWEST * n, flat)
         aim, wide = np.empty(n), np.empty((n, n))
-        spread_of.call(points, flat, count, aim, wide)
+        weighted_moments.call(points, flat, count, aim, wide)
         spread = WIDER * wide + KEPT * spread
     top = points[int(np.argmax(logs_p[:count]))].copy()
     return Posterior(

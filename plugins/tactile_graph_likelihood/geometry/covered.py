@@ -1,10 +1,8 @@
-"""How much of each element of a window an outline covers: exact, or blurred as by foam."""
+"""How much of each element of a window an outline covers, exactly."""
 
 from __future__ import annotations
 
 import math
-
-import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.disc_areas import disc_areas
@@ -24,8 +22,6 @@ Box = tuple[int, int, int, int]
 """First row, first column, rows and columns of a window of elements."""
 
 SLIVER = 1e-12  # of an element: rounding, not coverage
-FOAM_REACH = 3.5  # widths of the blur
-SQRT_HALF = math.sqrt(0.5)
 
 
 @compiled_as_is
@@ -111,39 +107,3 @@ def _covered(kind: int, corners: int, p: Values, grid: Values, element: float, b
             else:
                 areas[i, j] = share if share > SLIVER else 0.0
     return areas
-
-
-@compiled_as_is
-def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> Values:
-    """Return coverage as foam of a width (standard deviation, in cells) passes it on.
-
-    As `tactile_graph_pads.contact.spread` does: each element takes what falls on its cell, and
-    nothing leaves the pad of ``rows`` x ``columns``. The window must reach 3.5 widths further than
-    the outline.
-    """
-    reach = math.ceil(FOAM_REACH * width) + 1
-    weights = np.empty(reach + 1)
-    for k in range(reach + 1):
-        far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
-        weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
-    turned = _blurred_down(shares, weights, box[0], rows)
-    return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
-
-
-@compiled_as_is
-def _blurred_down(shares: Values, weights: Values, first: int, size: int) -> Values:
-    """Blur along the first axis; weights of a source add up to 1 on a pad of ``size`` lines."""
-    lines, across = shares.shape
-    reach = weights.shape[0] - 1
-    out = np.zeros((lines, across))
-    for i in range(lines):
-        kept = 0.0
-        for k in range(-reach, reach + 1):
-            if 0 <= first + i + k < size:
-                kept += weights[abs(k)]
-        for k in range(-reach, reach + 1):
-            if 0 <= i + k < lines:
-                weight = weights[abs(k)] / kept
-                for j in range(across):
-                    out[i + k, j] += weight * shares[i, j]
-    return out

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Lt
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import Quantity
+from tactile_graph.steps import Quantity, Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
 from tactile_graph_likelihood.known.known_footprints import (
@@ -20,7 +20,7 @@ from tactile_graph_likelihood.known.known_footprints import (
     weight_of,
 )
 from tactile_graph_likelihood.known.known_sizes import KnownSizes
-from tactile_graph_likelihood.several.frame_fits import FrameFits
+from tactile_graph_likelihood.settings import ROUGHER, FootprintSettings, Positive
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     FIRST,
@@ -31,7 +31,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.element_terms import SPAN
-from tactile_graph_likelihood.single.footprint_of import Positive, model_of
+from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.noise import level_of
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -83,13 +83,7 @@ class IdentifyFootprint:
         Probability, before a frame is read, that it is none of them.
     learned_level_v : float
         Voltage from which an element counted as touched when the objects were learned.
-    pressure : "any" or "even"
-        Whether objects may press unevenly, as in `fit_footprint`. Looked at where an even face
-        leaves such a pattern over, then of all objects, the unknown one too.
-    smallest_cm, largest_cm : float, optional
-        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
-    pad, on_pad, precision
-        As in `fit_footprint`.
+    settings : FootprintSettings
 
     Raises
     ------
@@ -105,7 +99,8 @@ class IdentifyFootprint:
     its sizes as prior, times the density of the weight's logarithm by its readings (Student's t).
     The load's scale is log-uniform within an outline's evidence, and takes the weight's place:
     the weight's density is divided by that of the scale. The unknown object is a disc, ellipse or
-    rectangle of any size and weight.
+    rectangle of any size and weight. Where a likely object with an even face leaves a pattern of
+    pressure over, all are looked at under other pressures, the unknown one too.
     """
 
     stateless = True
@@ -117,25 +112,18 @@ class IdentifyFootprint:
         sizes: dict[str, dict[str, Any]] = {},  # noqa: B006 - settings are never changed
         unknown: Annotated[float, Ge(0), Lt(1)] = 0.05,
         learned_level_v: Positive = 0.01,
-        pad: str | dict[str, Any] = "thesis",
-        on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive | None = None,
-        largest_cm: Positive | None = None,
-        precision: Annotated[float, Gt(0), Le(1)] = 0.2,
-        pressure: Literal["any", "even"] = "any",
+        settings: Annotated[
+            FootprintSettings,
+            Spread("pad", "on_pad", "smallest_cm", "largest_cm", "precision", "pressure"),
+        ] = ROUGHER,
     ) -> None:
-        from tactile_graph_pads.pad import load_pad
-
-        pad_record = load_pad(pad)
-        self._even = model_of(
-            DISC, 0, pad, None, None, 1e-3, None, None, None, [], on_pad, smallest_cm, largest_cm,
-            precision, 1024, 0,
-        )  # fmt: skip
+        pad = settings.known_pad
+        self._even = settings.model(DISC)
         self._models: dict[tuple[int, int], AnyPressure] = {}
         self._free = [self._of(kind, 0) for kind in FREE_KINDS]
-        self._others = self._free[0].others if pressure == "any" else {}
-        self._level = level_of(pad_record, learned_level_v)
-        self._objects = known_footprints(database, sizes, self._even, pad_record, self._level)
+        self._others = self._free[0].others if settings.pressure == "any" else {}
+        self._level = level_of(pad, learned_level_v)
+        self._objects = known_footprints(database, sizes, self._even, pad, self._level)
         self._log_unknown = math.log(max(unknown, 1e-300))
         self._log_known = math.log((1.0 - unknown) / len(self._objects))
 

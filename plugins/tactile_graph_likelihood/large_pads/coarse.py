@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.large_pads.largest_piece import largest_piece
-from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, solid, typical_load
+from tactile_graph_likelihood.large_pads.solid import solid, typical_load
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
@@ -21,7 +21,7 @@ from tactile_graph_likelihood.single.element_terms import (
     States,
 )
 from tactile_graph_likelihood.single.problem import Places, Problem
-from tactile_graph_likelihood.single.start import moments
+from tactile_graph_likelihood.single.search import moments
 
 ACROSS, NARROW = 13.0, 5.0  # blocks that the touched region is long, and broad, at least
 WIDE = 3.6  # standard deviations in a width: rectangles have 3.5, discs 4
@@ -40,31 +40,41 @@ def block_of(grid: Values, logs: Values, states: States) -> int:
     return max(1, int(min(long / ACROSS, broad / NARROW)))
 
 
+class Blocks(NamedTuple):
+    """The same question about an image in blocks, how many elements wide they are, and the load.
+
+    Of a small object a block is 1; the typical log load is NaN if not known.
+    """
+
+    problem: Problem
+    block: int
+    load: float
+
+
 @compiled_as_is
-def coarsened(problem: Problem) -> tuple[Problem, int, float]:
-    """Return an image's blocks, how many elements wide they are, and the typical log load.
+def coarsened(problem: Problem) -> Blocks:
+    """Return a large image in blocks.
 
     A block reads which share of its elements is touched by something solid: whatever their gains
-    are, and however far off strays are. Of a small object the block is 1, and of a small pad the
-    problem the given one; the load is NaN if not known.
+    are, and however far off strays are.
     """
     grid, logs, states = problem.grid, problem.logs, problem.states
-    if states.size <= LARGE_PAD:
-        return problem, 1, math.nan
     typical = typical_load(logs, states)
     if math.isnan(typical):
-        return problem, 1, typical
+        return Blocks(problem, 1, typical)
     body = solid(logs, states, typical, problem.noise[SIGMA])
     block = block_of(grid, logs, body)
     if block == 1:
-        return _read(problem, grid, logs, body, problem.noise, problem.estimated), 1, typical
+        rough = _read(problem, grid, logs, body, problem.noise, problem.estimated)
+        return Blocks(rough, 1, typical)
     blocks, shares = _blocks(body, block)
     noise = np.zeros(problem.noise.shape)
     noise[SIGMA], noise[VOIDS], noise[STRAYS] = UNEVEN, VOID, STRAY
     noise[LEAST] = math.log(SHOWS)
     wide = grid.copy()
     wide[2], wide[3] = block * grid[2], block * grid[2] - (grid[2] - grid[3])
-    return _read(problem, wide, shares, blocks, noise, problem.estimated[:0]), block, typical
+    rough = _read(problem, wide, shares, blocks, noise, problem.estimated[:0])
+    return Blocks(rough, block, typical)
 
 
 @compiled_as_is
@@ -109,3 +119,56 @@ def _blocks(body: States, block: int) -> tuple[States, Values]:
                 states[i, j] = ON
                 logs[i, j] = math.log(on[i, j] / known[i, j])
     return states, logs
+
+
+@compiled_as_is
+def largest_piece(states: States, reach: int) -> States:
+    """Return states in which only the piece with the most touched elements reads a load.
+
+    Parameters
+    ----------
+    states : ndarray of uint8, shape (rows, columns)
+        As in `element_terms`.
+    reach : int
+        How many rows or columns apart neighbours in a piece may be. Elements of which nothing is
+        known join what they touch.
+    """
+    rows, columns = states.shape
+    piece = np.zeros(states.shape, np.int64)
+    stack = np.empty(states.size, np.int64)
+    pieces, best, most = 0, 0, 0
+    for row in range(rows):
+        for column in range(columns):
+            if states[row, column] == ON and piece[row, column] == 0:
+                pieces += 1
+                count = _fill(states, reach, row, column, pieces, piece, stack)
+                if count > most:
+                    best, most = pieces, count
+    out = states.copy()
+    for i in range(rows):
+        for j in range(columns):
+            if states[i, j] == ON and piece[i, j] != best:
+                out[i, j] = OFF
+    return out
+
+
+@compiled_as_is
+def _fill(
+    states: States, reach: int, row: int, column: int, label: int, piece: Places, stack: Places
+) -> int:
+    """Write a label on all of a piece; return how many of its elements are touched."""
+    rows, columns = states.shape
+    count, waiting, stack[0] = 0, 1, row * columns + column
+    piece[row, column] = label
+    while waiting > 0:
+        waiting -= 1
+        row, column = stack[waiting] // columns, stack[waiting] % columns
+        if states[row, column] == ON:
+            count += 1
+        for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+            for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+                if piece[i, j] == 0 and states[i, j] != OFF:
+                    piece[i, j] = label
+                    stack[waiting] = i * columns + j
+                    waiting += 1
+    return count

@@ -13,10 +13,10 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, SIGMA, STRAYS, States
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 
-LARGE_PAD = 1024  # elements; on smaller ones a moment's trim does
-DENSE, LOOSE = 5, 3  # touched neighbours, of 8, of an element inside, and of one at an edge
-FEWEST = 8  # elements inside, for a typical load
+DENSE, LOOSE = 5, 3  # touched neighbours, of 8, of an element amid others, and of one at an edge
+FEWEST = 8  # such elements, for a typical load
 LIGHT = 3.0  # deviations of ln gain below the typical load: no element that is covered
 SAMPLE = 1024  # loads for a median
 BINS = 128

@@ -7,15 +7,15 @@ import math
 from dataclasses import replace
 from typing import Annotated, Any, Literal, NamedTuple
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Le, Lt
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import TimeGap
+from tactile_graph.steps import Spread, TimeGap
 from tactile_graph_likelihood.known.known_sizes import KnownSizes, sizes_of
 from tactile_graph_likelihood.over_time.at_rest import AtRest
+from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Load, Positive
 from tactile_graph_likelihood.single.any_pressure import AnyPressure, asked_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
-from tactile_graph_likelihood.single.footprint_of import Load, Positive, model_of
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, readings_of
@@ -57,11 +57,8 @@ class FollowFootprint:
     Parameters
     ----------
     shape : "disc", "ellipse" or "rectangle"
-    pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself.
-    sigma : float, optional
-        Standard deviation of the logarithm of an element's gain, which stays while the object
-        lies still; the pad's own if not given.
+    settings : FootprintSettings
+        Its sigma stays while the object lies still.
     frame_sigma : float, optional
         Standard deviation of the logarithm of a load between frames; the pad's repeatability
         over its force exponent, and at least 0.02, if not given.
@@ -72,12 +69,6 @@ class FollowFootprint:
     same_object : float
         Probability that what is put down next is the same object: its sizes are then known. 0
         begins anew with each move.
-    smallest_cm, largest_cm : float, optional
-        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
-    pressure : "any" or "even"
-        Whether the object may press unevenly, as in `fit_footprint`.
-    on_pad, precision
-        As in `fit_footprint`.
 
     Notes
     -----
@@ -93,31 +84,23 @@ class FollowFootprint:
         self,
         *,
         shape: Literal["disc", "ellipse", "rectangle"] = "disc",
-        pad: str | dict[str, Any] = "thesis",
-        sigma: Positive | None = None,
+        settings: Annotated[
+            FootprintSettings,
+            Spread("pad", "sigma", "on_pad", "smallest_cm", "largest_cm", "precision", "pressure"),
+        ] = DEFAULTS,
         frame_sigma: Positive | None = None,
         fixed: Annotated[float, Ge(0), Le(1)] | None = None,
         rest_s: Positive = 60.0,
         same_object: Annotated[float, Ge(0), Lt(1)] = 0.5,
-        on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive | None = None,
-        largest_cm: Positive | None = None,
-        precision: Annotated[float, Gt(0), Le(1)] = 0.15,
-        pressure: Literal["any", "even"] = "any",
     ) -> None:
-        from tactile_graph_pads.pad import load_pad
-
-        known = load_pad(pad)
-        self._sigma = known.unevenness.sigma if sigma is None else sigma
-        scatter = known.law.repeatability / known.law.power
+        pad = settings.known_pad
+        self._sigma = pad.unevenness.sigma if settings.sigma is None else settings.sigma
+        scatter = pad.law.repeatability / pad.law.power
         self._frame_sigma = max(scatter, LEAST_SCATTER) if frame_sigma is None else frame_sigma
-        self._fixed = known.unevenness.fixed if fixed is None else fixed
+        self._fixed = pad.unevenness.fixed if fixed is None else fixed
         self._rest_s, self._same = rest_s, same_object
-        self._model = model_of(
-            KINDS[shape], 0, pad, self._sigma, None, 1e-3, None, None, None, [], on_pad,
-            smallest_cm, largest_cm, precision, 1024, 0,
-        )  # fmt: skip
-        noise, self._any = self._model.noise, pressure == "any"
+        self._model = replace(settings, sigma=self._sigma).model(KINDS[shape])
+        noise, self._any = self._model.noise, settings.pressure == "any"
         self._least = math.log(noise.least) if noise.least > 0.0 else -700.0
         self._resting: AtRest | None = None
         self._posterior: Posterior | None = None

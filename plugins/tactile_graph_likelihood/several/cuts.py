@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, gain
+from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem, Outlines, gain
 from tactile_graph_likelihood.single.element_terms import ON, States
-from tactile_graph_likelihood.single.start import first_outline
+from tactile_graph_likelihood.single.search import THINNEST, outline_of_moments
 
 Labels = NDArray[np.int64]
 
@@ -42,21 +42,17 @@ def ellipse_of(a: Values, grid: Values, p: Values) -> None:
     found[3] = (a[3] / n - (a[1] / n) ** 2 + OWN) * pitch * pitch
     found[4] = (a[4] / n - a[1] * a[2] / (n * n)) * pitch * pitch
     found[5] = (a[5] / n - (a[2] / n) ** 2 + OWN) * pitch * pitch
-    first_outline(ELLIPSE, 0, found, 0.0, p)
+    outline_of_moments(ELLIPSE, 0, found, 0.0, THINNEST, p)
 
 
 @compiled_as_is
-def cuts(
-    piece: States, grid: Values, logs: Values, noise: Values, least: int, sides: States
-) -> tuple[Values, float]:
+def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, float]:
     """Propose cuts of a piece: at each of 12 angles the fullest halves, and the narrowest neck.
 
     Parameters
     ----------
-    piece : ndarray of uint8, shape (rows, columns)
-        States in which only the piece's elements are on.
-    grid, logs, noise
-        As in `log_posterior.log_likelihood`.
+    problem : JointProblem
+        In its states only the piece's elements are on; nothing lies beside.
     least : int
         Elements on either side.
     sides : ndarray of uint8, shape (24, rows, columns)
@@ -68,6 +64,7 @@ def cuts(
         What the two ellipses with the halves' moments add to the log likelihood, shape (24,), -inf
         where there is no cut; and what the piece's one ellipse does.
     """
+    piece, grid, logs = problem.states, problem.grid, problem.logs
     rows, cols = piece.shape
     r, c = np.nonzero(piece == ON)
     n = r.shape[0]
@@ -77,7 +74,8 @@ def cuts(
     found = np.full(2 * ANGLES, -math.inf)
     sums, place = np.zeros((n + 1, 7)), np.empty(n, np.int64)
     kinds, corners = np.full(2, ELLIPSE), np.zeros(2, np.int64)
-    points, bare = np.zeros((2, WIDTH)), np.zeros((rows, cols))
+    points = np.zeros((2, WIDTH))
+    halves = Outlines(kinds, corners, points)
     for t in range(ANGLES):
         angle = math.pi * (t + 0.5) / ANGLES
         along = c * math.cos(angle) + r * math.sin(angle)
@@ -116,11 +114,11 @@ def cuts(
                 continue
             ellipse_of(sums[k], grid, points[0])
             ellipse_of(sums[n] - sums[k], grid, points[1])
-            found[2 * t + way] = gain(kinds, corners, points, bare, bare, grid, logs, piece, noise)
+            found[2 * t + way] = gain(problem, halves)
             for i in range(n):
                 sides[2 * t + way, r[i], c[i]] = 1 if place[i] < k else 2
     ellipse_of(sums[n], grid, points[0])
-    whole = gain(kinds[:1], corners[:1], points[:1], bare, bare, grid, logs, piece, noise)
+    whole = gain(problem, Outlines(kinds[:1], corners[:1], points[:1]))
     return found, whole
 
 

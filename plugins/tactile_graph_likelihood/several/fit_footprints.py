@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from annotated_types import Ge, Gt, Le, Lt, MinLen
+from annotated_types import Ge, Le, MinLen
 
+from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
+from tactile_graph_likelihood.settings import FootprintSettings, Load, Positive
 from tactile_graph_likelihood.several.posteriors import posteriors, started
 from tactile_graph_likelihood.several.search import Search
-from tactile_graph_likelihood.single.footprint_of import Load, Positive, Share
 from tactile_graph_likelihood.single.likely import Likely, likely
-from tactile_graph_likelihood.single.noise import noise_of
 from tactile_graph_likelihood.single.posterior import UNLIKELY
 from tactile_graph_likelihood.single.readings import readings_of
 
@@ -46,6 +47,27 @@ class Footprints(NamedTuple):
     """Whether the frame looks like the model's."""
 
 
+@dataclass(frozen=True)
+class SeveralSettings(FootprintSettings):
+    """The settings of several outlines: their sizes have a range in any case.
+
+    Parameters
+    ----------
+    on_pad : "whole" or "partly"
+        Whether all outlines lie wholly on the pad, or their centres only.
+    smallest_cm, largest_cm : float
+        Range of radii and half sides; of a regular polygon, what its sides keep from its centre
+        is no less.
+    """
+
+    on_pad: Literal["whole", "partly"] = "whole"
+    smallest_cm: Positive = 1.0
+    largest_cm: Positive = 12.0
+
+
+SEVERAL = SeveralSettings()
+
+
 class FitFootprints:
     """Return the outlines of all objects on the pad, their number and kinds by evidence.
 
@@ -61,26 +83,7 @@ class FitFootprints:
         Objects at most.
     more : float
         Log odds of a number of objects over one less, before anything is read.
-    pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself: gap, unevenness, foam and the least load
-        that shows come from it, unless given here.
-    sigma : float, optional
-        Standard deviation of the logarithm of an element's gain.
-    voids : float, optional
-        Share of covered elements that read nothing.
-    strays : float
-        Probability that a reading has nothing to do with any object.
-    foam_cm : float, optional
-        Width over which foam spreads the load.
-    gap_cm : float, optional
-        Distance of neighbouring elements' edges.
-    shows_from : float, optional
-        Readings below it count as nothing, in the image's unit.
-    on_pad : "whole" or "partly"
-        Whether all outlines lie wholly on the pad, or their centres only.
-    smallest_cm, largest_cm : float
-        Range of radii and half sides; of a regular polygon, what its sides keep from its centre
-        is no less.
+    settings : SeveralSettings
 
     Notes
     -----
@@ -95,32 +98,27 @@ class FitFootprints:
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "rectangle", "ellipse", "triangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
         more: float = 3.0,
-        pad: str | dict[str, Any] = "thesis",
-        sigma: Positive | None = None,
-        voids: Annotated[float, Ge(0), Lt(1)] | None = None,
-        strays: Share = 1e-3,
-        foam_cm: Annotated[float, Ge(0)] | None = None,
-        gap_cm: Annotated[float, Ge(0)] | None = None,
-        shows_from: Annotated[float, Ge(0)] | None = None,
-        on_pad: Literal["whole", "partly"] = "whole",
-        smallest_cm: Annotated[float, Gt(0)] = 1.0,
-        largest_cm: Annotated[float, Gt(0)] = 12.0,
+        settings: Annotated[
+            SeveralSettings,
+            Spread(
+                "pad",
+                "sigma",
+                "voids",
+                "strays",
+                "foam_cm",
+                "gap_cm",
+                "shows_from",
+                "on_pad",
+                "smallest_cm",
+                "largest_cm",
+            ),
+        ] = SEVERAL,
     ) -> None:
-        from tactile_graph_pads.pad import load_pad
-
-        if smallest_cm >= largest_cm:
-            raise ValueError(
-                f"smallest_cm: must be below largest_cm, got {smallest_cm:g} and {largest_cm:g}"
-            )
-        known = load_pad(pad)
-        self.noise = noise_of(
-            known, sigma=sigma, voids=voids, strays=strays, foam_cm=foam_cm, least=shows_from
-        )
-        self.gap_cm = known.geometry.gap_cm if gap_cm is None else gap_cm
+        self.noise, self.gap_cm = settings.noise, settings.gap
         self.kinds = [KINDS[k] for k in dict.fromkeys(kinds)]
         self.most, self.more = most, more
-        self.sizes = smallest_cm, largest_cm
-        self.whole = on_pad == "whole"
+        self.sizes = settings.smallest_cm, settings.largest_cm
+        self.whole = settings.on_pad == "whole"
 
     def __call__(
         self, image: Load, starts: Sequence[Circle | Ellipse | Rectangle | Polygon] = ()
@@ -156,7 +154,7 @@ class FitFootprints:
         )
 
     def search(self, image: Load) -> Search:
-        """Return the search of an image, not yet begun."""
+        """Return the search of an image, not yet run."""
         readings = readings_of(image, self.gap_cm, self.noise.least)
         prior = np.zeros(9)
         prior[:2] = readings.grid[:2]

@@ -1,22 +1,21 @@
 """The likelihood of several outlines at once: their loads add up, then elements read the sum.
 
-Outlines are rows of a table: `kinds` and `corners` as in `outlines`, and `points`, shape (K, 6),
-each row an outline's numbers, the logarithm of its load and zeros. Other outlines that stay as
-they are enter by the load and the coverage that they bring to each element.
+Other outlines that stay as they are enter by the load and the coverage that they bring to each
+element.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, blurred, covered, window
+from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
 from tactile_graph_likelihood.single.element_terms import (
-    FOAM,
     LEAST,
     ON,
     ROOT_TWO_PI,
@@ -28,10 +27,10 @@ from tactile_graph_likelihood.single.element_terms import (
     on_level,
     terms,
 )
-from tactile_graph_likelihood.single.information import SLIVER, STEP, steps_of
+from tactile_graph_likelihood.single.information import SLIVER, STEP, Information, steps_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
-from tactile_graph_likelihood.single.shares import foam_margin
 
 WIDTH = 6
 """Columns of a table of points."""
@@ -46,36 +45,62 @@ deviation of the logarithm of an outline's load."""
 DENSITY = 1.0 / ROOT_TWO_PI
 
 
-@compiled_as_is
-def share_of(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int, cols: int
-) -> Values:
-    """Return the coverage of a window, blurred if there is foam."""
-    shares = covered(kind, corners, p, grid, box)
-    return blurred(shares, noise[FOAM], box, rows, cols) if noise[FOAM] > 0.0 else shares
+class Outlines(NamedTuple):
+    """Outlines as rows of a table.
+
+    ``kinds`` and ``corners`` are as in `outlines`, shape (N,); ``points``, shape (N, 6), hold an
+    outline's numbers, the logarithm of its load, and zeros.
+    """
+
+    kinds: Places
+    corners: Places
+    points: Values
+
+
+class JointProblem(NamedTuple):
+    """What the posterior of outlines depends on, beside others that stay as they are.
+
+    ``grid``, ``logs``, ``states`` and ``noise`` are as in `Problem`; ``prior``, shape (11,), has
+    `MIDDLE` and `SPREAD` too; ``load`` and ``share``, shape (rows, columns), are the load and
+    the coverage that the others bring to each element: zeros for none.
+    """
+
+    grid: Values
+    logs: Values
+    states: States
+    noise: Values
+    prior: Values
+    load: Values
+    share: Values
+
+
+class Coverage(NamedTuple):
+    """What outlines bring to each element, all (…, rows, columns).
+
+    ``expected`` and ``total`` are load and coverage with those of the others; ``own`` is the
+    coverage of each outline, ``rise`` its slope along each number of its point.
+    """
+
+    expected: Values
+    total: Values
+    own: Values
+    rise: Values
 
 
 @compiled_as_is
-def add_outline(
-    kind: int,
-    corners: int,
-    p: Values,
-    grid: Values,
-    noise: Values,
-    load: Values,
-    share: Values,
-) -> None:
-    """Add what an outline brings to each element to ``load`` and ``share``, (rows, columns)."""
-    rows, cols = load.shape
+def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
+    """Add what one of some outlines brings to each element to what the others do."""
+    kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
+    grid, noise, (rows, cols) = problem.grid, problem.noise, problem.load.shape
     box = window(kind, corners, p, grid, rows, cols, foam_margin(grid, noise))
     if box[2] <= 0 or box[3] <= 0:
         return
-    own = share_of(kind, corners, p, grid, noise, box, rows, cols)
+    own = shares_of(kind, corners, p, grid, noise, box, rows, cols)
     scale = math.exp(p[unknowns(kind, corners)])
     for i in range(box[2]):
         for j in range(box[3]):
-            load[box[0] + i, box[1] + j] += scale * own[i, j]
-            share[box[0] + i, box[1] + j] += own[i, j]
+            problem.load[box[0] + i, box[1] + j] += scale * own[i, j]
+            problem.share[box[0] + i, box[1] + j] += own[i, j]
 
 
 @compiled_as_is
@@ -104,13 +129,13 @@ def smallest(kind: int, corners: int, prior: Values) -> float:
 
 
 @compiled_as_is
-def log_rest_of(
-    kinds: Places, corners: Places, points: Values, noise: Values, prior: Values
-) -> float:
+def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
     """Return the log prior density of all outlines and their loads, -inf where it is zero.
 
     The angle of each may be any, as that of one of its equal descriptions.
     """
+    kinds, corners, points = outlines
+    noise, prior = problem.noise, problem.prior
     total = 0.0
     loose = prior.copy()
     for k in range(kinds.shape[0]):
@@ -126,28 +151,10 @@ def log_rest_of(
 
 
 @compiled_as_is
-def gain(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-) -> float:
-    """Return what outlines add to the log likelihood of an image where others already lie.
-
-    Parameters
-    ----------
-    kinds, corners, points
-        The outlines, as above.
-    load, share : ndarray, shape (rows, columns)
-        Load and coverage that the others bring to each element; zeros for none.
-    grid, logs, states, noise
-        As in `log_posterior.log_likelihood`.
-    """
+def gain(problem: JointProblem, outlines: Outlines) -> float:
+    """Return what outlines add to the log likelihood of an image where others already lie."""
+    kinds, corners, points = outlines
+    grid, logs, states, noise = problem.grid, problem.logs, problem.states, problem.noise
     rows, cols = states.shape
     margin = foam_margin(grid, noise)
     r0, c0, r1, c1 = rows, cols, 0, 0
@@ -158,14 +165,15 @@ def gain(
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    expected, total = load[r0:r1, c0:c1].copy(), share[r0:r1, c0:c1].copy()
+    expected = problem.load[r0:r1, c0:c1].copy()
+    total = problem.share[r0:r1, c0:c1].copy()
     before = terms(expected, r0, c0, logs, states, noise) - overlap(total)
     for k in range(kinds.shape[0]):
         kind, n = kinds[k], corners[k]
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        own = share_of(kind, n, points[k], grid, noise, box, rows, cols)
+        own = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
         scale = math.exp(points[k, unknowns(kind, n)])
         for i in range(box[2]):
             for j in range(box[3]):
@@ -175,41 +183,31 @@ def gain(
 
 
 @compiled_as_is
-def slopes(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    slope: Values,
-    matrix: Values,
-) -> None:
-    """Write the slope of `gain` and its information, shape (6 K,) and (6 K, 6 K).
+def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
+    """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N).
 
     Places of numbers that an outline does not have get a one on the diagonal. As in
-    `climb.information`; an element under several outlines couples them.
+    `information.information`; an element under several outlines couples them.
     """
+    kinds, corners, points = outlines
+    grid, noise, states = problem.grid, problem.noise, problem.states
     rows, cols = states.shape
     count = kinds.shape[0]
-    expected, total = load.copy(), share.copy()
+    expected, total = problem.load.copy(), problem.share.copy()
     own = np.zeros((count, rows, cols))
     rise = np.zeros((count * WIDTH, rows, cols))
-    slope[:] = 0.0
-    matrix[:] = 0.0
+    out.slope[:] = 0.0
+    out.matrix[:] = 0.0
     at = np.empty(WIDTH)
     for k in range(count):
         kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
         for m in range(first + 1, WIDTH):
-            matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
+            out.matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
         margin = foam_margin(grid, noise) + grid[2] * STEP
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        here = share_of(kind, n, points[k], grid, noise, box, rows, cols)
+        here = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
         scale = math.exp(points[k, first])
         r, c = box[0], box[1]
         for i in range(box[2]):
@@ -221,30 +219,23 @@ def slopes(
         at[:] = points[k]
         for m in range(first):
             at[m] += steps[m]
-            moved = share_of(kind, n, at, grid, noise, box, rows, cols)
+            moved = shares_of(kind, n, at, grid, noise, box, rows, cols)
             at[m] = points[k, m]
             for i in range(box[2]):
                 for j in range(box[3]):
                     rise[k * WIDTH + m, r + i, c + j] = (moved[i, j] - here[i, j]) / steps[m]
-    _sum_up(kinds, corners, points, expected, total, own, rise, logs, states, noise, slope, matrix)
+    _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 
 @compiled_as_is
 def _sum_up(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    expected: Values,
-    total: Values,
-    own: Values,
-    rise: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    slope: Values,
-    matrix: Values,
+    problem: JointProblem, outlines: Outlines, coverage: Coverage, out: Information
 ) -> None:
     """Add each element's part to slope and information."""
+    kinds, corners, points = outlines
+    expected, total, own, rise = coverage
+    logs, states, noise = problem.logs, problem.states, problem.noise
+    slope, matrix = out
     rows, cols = states.shape
     sigma, present, level = noise[SIGMA], 1.0 - noise[VOIDS], on_level(noise)
     size = slope.shape[0]

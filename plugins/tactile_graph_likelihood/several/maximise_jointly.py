@@ -1,4 +1,4 @@
-"""Several outlines brought to their joint top, and how much evidence lies there."""
+"""Outlines brought to their joint mode, the evidence there, and one fitted to a piece."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     SPREAD,
     WIDTH,
+    JointProblem,
+    Outlines,
     gain,
     lightest,
     log_rest_of,
@@ -21,30 +23,25 @@ from tactile_graph_likelihood.several.joint_posterior import (
     smallest,
 )
 from tactile_graph_likelihood.single.element_terms import STRAYS, States
-from tactile_graph_likelihood.single.information import STEP, steps_of
-from tactile_graph_likelihood.single.problem import Places
+from tactile_graph_likelihood.single.information import STEP, Information, steps_of
+from tactile_graph_likelihood.single.problem import Places, problem_of
+from tactile_graph_likelihood.single.search import likeliest_start
 
 HALVINGS = 6
 LOOSE, GAP = 0.01, 6.0
-"""Information, per squared pitch, that is added to each number's own: for a climb, to keep it
-finite; for the mass, since an edge that lies in a gap may slide, but no farther than the gap."""
-SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft climb
+"""Information, per squared pitch, that is added to each number's own: to keep steps finite;
+for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
+SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft search
 NO_STRAYS = 1e-12
+ROUNDS, ENOUGH = 25, 0.2
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
 @compiled_as_is
-def add_rest(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    grid: Values,
-    prior: Values,
-    loose: float,
-    slope: Values,
-    matrix: Values,
-) -> None:
+def add_rest(problem: JointProblem, outlines: Outlines, loose: float, out: Information) -> None:
     """Add what is known beforehand, and a little that keeps the information invertible."""
+    kinds, corners, points = outlines
+    grid, prior, (slope, matrix) = problem.grid, problem.prior, out
     for k in range(kinds.shape[0]):
         kind, first, at = kinds[k], unknowns(kinds[k], corners[k]), k * WIDTH
         for m in range(2, 2 + sizes(kind)):
@@ -67,45 +64,35 @@ def _pulled_in(kind: int, corners: int, p: Values, noise: Values, prior: Values)
 
 
 @compiled_as_is
-def climbed_together(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    prior: Values,
-    most: int,
-    enough: float,
-) -> float:
+def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enough: float) -> float:
     """Bring outlines, in place, to the top of their log posterior given others; return it.
 
     Parameters
     ----------
-    kinds, corners, points, load, share, grid, logs, states, noise
-        As in `several_posterior.gain`.
-    prior : ndarray, shape (9,)
-        As in `outline_prior`.
+    problem : JointProblem
+    outlines : Outlines
+        Written.
     most : int
         Rounds.
     enough : float
         Gain in log posterior still promised, below which the search ends.
     """
+    kinds, corners, points = outlines
+    noise, prior = problem.noise, problem.prior
     size = kinds.shape[0] * WIDTH
-    slope, step = np.empty(size), np.empty(size)
-    matrix, root = np.empty((size, size)), np.empty((size, size))
+    step, root = np.empty(size), np.empty((size, size))
+    out = Information(np.empty(size), np.empty((size, size)))
+    slope, matrix = out
     for k in range(kinds.shape[0]):
         _pulled_in(kinds[k], corners[k], points[k], noise, prior)
     trial = points.copy()
-    now = log_rest_of(kinds, corners, points, noise, prior)
-    now += gain(kinds, corners, points, load, share, grid, logs, states, noise)
+    tried = Outlines(kinds, corners, trial)
+    now = log_rest_of(problem, outlines)
+    now += gain(problem, outlines)
     damping = 0.0
     for _ in range(most):
-        slopes(kinds, corners, points, load, share, grid, logs, states, noise, slope, matrix)
-        add_rest(kinds, corners, points, grid, prior, LOOSE, slope, matrix)
+        slopes(problem, outlines, out)
+        add_rest(problem, outlines, LOOSE, out)
         for k in range(size):
             matrix[k, k] *= 1.0 + damping
         if not cholesky(matrix, root):
@@ -122,9 +109,9 @@ def climbed_together(
                 for m in range(WIDTH):
                     trial[k, m] = points[k, m] + part * step[k * WIDTH + m]
                 _pulled_in(kinds[k], corners[k], trial[k], noise, prior)
-            new = log_rest_of(kinds, corners, trial, noise, prior)
+            new = log_rest_of(problem, tried)
             if new > -math.inf:
-                new += gain(kinds, corners, trial, load, share, grid, logs, states, noise)
+                new += gain(problem, tried)
             if new > now:
                 break
             part *= 0.4
@@ -142,53 +129,33 @@ def climbed_together(
 
 
 @compiled_as_is
-def climbed_softly(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    prior: Values,
-    most: int,
-) -> None:
+def maximise_softly(problem: JointProblem, outlines: Outlines, most: int) -> None:
     """Do the same with elements that feel a little beyond their edge, and with no strays.
 
     Otherwise a touched element that no outline covers would not pull at all.
     """
-    soft, strict = grid.copy(), noise.copy()
-    soft[4], soft[5] = SOFT, grid[2]
+    soft, strict = problem.grid.copy(), problem.noise.copy()
+    soft[4], soft[5] = SOFT, problem.grid[2]
     strict[STRAYS] = NO_STRAYS
-    climbed_together(
-        kinds, corners, points, load, share, soft, logs, states, strict, prior, most, 0.5
+    softened = JointProblem(
+        soft, problem.logs, problem.states, strict, problem.prior, problem.load, problem.share
     )
+    maximise_jointly(softened, outlines, most, 0.5)
 
 
 @compiled_as_is
-def log_mass(
-    kinds: Places,
-    corners: Places,
-    points: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    prior: Values,
-    matrix: Values,
-) -> float:
-    """Return the log evidence around a top by Laplace's method; write the information there."""
+def laplace_evidence(problem: JointProblem, outlines: Outlines, matrix: Values) -> float:
+    """Return the log evidence around a mode by Laplace's method; write the information there."""
+    kinds, corners, points = outlines
+    noise, prior = problem.noise, problem.prior
     slope, root = np.empty(matrix.shape[0]), np.empty(matrix.shape)
-    total = log_rest_of(kinds, corners, points, noise, prior)
+    out = Information(slope, matrix)
+    total = log_rest_of(problem, outlines)
     if total == -math.inf:
         return total
-    total += gain(kinds, corners, points, load, share, grid, logs, states, noise)
-    slopes(kinds, corners, points, load, share, grid, logs, states, noise, slope, matrix)
-    add_rest(kinds, corners, points, grid, prior, GAP, slope, matrix)
+    total += gain(problem, outlines)
+    slopes(problem, outlines, out)
+    add_rest(problem, outlines, GAP, out)
     if not cholesky(matrix, root):
         return -math.inf
     for k in range(kinds.shape[0]):
@@ -218,3 +185,66 @@ def _log_of_part(fall: float) -> float:
     if fall < -5.0:
         return 0.0
     return 0.5 * fall * fall + math.log(0.5 * math.erfc(fall * math.sqrt(0.5)))
+
+
+@compiled_as_is
+def fit_piece(
+    problem: JointProblem, kind: int, corners: int, piece: States, table: Values, tries: int
+) -> tuple[Values, float]:
+    """Return an outline's point, shape (6,), and its log posterior given others.
+
+    Parameters
+    ----------
+    problem : JointProblem
+        Its states are what the outline has to explain in the end.
+    kind, corners : int
+        Of the outline.
+    piece : ndarray of uint8, shape (rows, columns)
+        States of the elements, in which only the piece's own are on: where the search begins.
+    table, tries : ndarray, shape (N, 6), and int
+        As in `search.likeliest_start`.
+    """
+    first = unknowns(kind, corners)
+    start = np.zeros(first + 1)
+    alone = problem_of(
+        kind, corners, problem.grid, problem.logs, piece, problem.noise, problem.prior
+    )
+    likeliest_start(alone, table, tries, start)
+    one = Outlines(np.empty(1, np.int64), np.empty(1, np.int64), np.zeros((1, WIDTH)))
+    one.kinds[0], one.corners[0] = kind, corners
+    one.points[0, : first + 1] = start
+    bare = np.zeros(piece.shape)
+    by_itself = JointProblem(
+        problem.grid, problem.logs, piece, problem.noise, problem.prior, bare, bare
+    )
+    maximise_softly(by_itself, one, ROUNDS)
+    top = maximise_jointly(problem, one, ROUNDS, ENOUGH)
+    return one.points[0].copy(), top
+
+
+@compiled_as_is
+def piece_states(states: States, labels: Places, own: int, around: States) -> None:
+    """Write states in which only one piece's elements are on.
+
+    Parameters
+    ----------
+    states : ndarray of uint8
+        Of the whole image.
+    labels : ndarray of int64, the same shape
+        Which piece each touched element belongs to.
+    own : int
+        The piece.
+    around : ndarray of uint8
+        Written: other pieces' elements are unknown next to the piece's own, off elsewhere.
+    """
+    rows, cols = states.shape
+    for i in range(rows):
+        for j in range(cols):
+            around[i, j] = states[i, j]
+            if states[i, j] != 1 or labels[i, j] == own:
+                continue
+            near = False
+            for y in range(max(i - 1, 0), min(i + 2, rows)):
+                for x in range(max(j - 1, 0), min(j + 2, cols)):
+                    near = near or (states[y, x] == 1 and labels[y, x] == own)
+            around[i, j] = 2 if near else 0

@@ -9,8 +9,9 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
-from tactile_graph_likelihood.several.pieces import piece_states
-from tactile_graph_likelihood.several.scene import Beside, Found, Scene, joined
+from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.maximise_jointly import piece_states
+from tactile_graph_likelihood.several.scene import Configuration, Scene, joined
 from tactile_graph_likelihood.single.element_terms import States
 from tactile_graph_likelihood.single.problem import Places
 
@@ -43,23 +44,24 @@ class Parts(Scene):
         super().__init__(*args, **kwargs)
         two = [k for k in self.kinds if k[0] in (ELLIPSE, RECTANGLE)]
         self.rough = two if len(two) == 2 else self.kinds
-        self.kept: dict[bytes, Found] = {}
+        self.kept: dict[bytes, Configuration] = {}
 
     def labelled(self, mask: Places) -> States:
         """Return states in which only a mask's elements are on; others unknown nearby, else off."""
-        around = np.empty_like(self.states)
-        piece_states.call(self.states, mask, 1, around)
+        around = np.empty_like(self.problem.states)
+        piece_states.call(self.problem.states, mask, 1, around)
         return around
 
-    def single(self, mask: Places) -> Found:
+    def single(self, mask: Places) -> Configuration:
         """Return the outline with the most evidence that explains a piece by itself."""
         key = mask.tobytes()
         if key in self.kept:
             return self.kept[key]
         piece = self.labelled(mask)
+        alone = self.problem._replace(states=piece)
         best = None
         for kind, corners in self.rough:
-            here = self.one(kind, corners, piece, self.bare, self.bare, piece)
+            here = self.one(kind, corners, piece, alone)
             if best is None or here.log_evidence > best.log_evidence:
                 best = here
         assert best is not None
@@ -68,11 +70,11 @@ class Parts(Scene):
 
     def halves(self, mask: Places, most: int = CUTS) -> list[tuple[Places, Places]]:
         """Return the best straight cuts of a piece, each as two masks."""
-        piece = self.labelled(mask)
         if (mask == 1).sum() < 2 * LEAST_PIECE:
             return []
+        piece = self.problem._replace(states=self.labelled(mask))
         sides = np.zeros((2 * ANGLES, *mask.shape), np.uint8)
-        good, whole = cuts.call(piece, self.grid, self.logs, self.noise, LEAST_PIECE, sides)
+        good, whole = cuts.call(piece, LEAST_PIECE, sides)
         out: list[tuple[Places, Places]] = []
         least = max(good.max() - WORSE, whole - NO_GAIN)
         for t in np.argsort(-good, kind="stable"):
@@ -84,8 +86,8 @@ class Parts(Scene):
         return out
 
     def paired(
-        self, mask: Places, beside: Beside, worth: float
-    ) -> tuple[Found, Places, Places] | None:
+        self, mask: Places, beside: JointProblem, worth: float
+    ) -> tuple[Configuration, Places, Places] | None:
         """Return the best two outlines, either side of a straight cut, that explain a piece.
 
         They are looked at closely only if their evidence comes near ``worth``.
@@ -98,21 +100,22 @@ class Parts(Scene):
         for pair, a, b in tried[:2]:
             if pair.log_evidence < max(worth, tried[0][0].log_evidence) - CLOSE:
                 continue
-            close = self.closer(pair, (a, b), beside)
-            if best is None or close.log_evidence > best[0].log_evidence:
-                best = close, a, b
+            refined = self.refined(pair, (a, b), beside)
+            if best is None or refined.log_evidence > best[0].log_evidence:
+                best = refined, a, b
         return best or (tried[0] if tried else None)
 
-    def closer(self, pair: Found, masks: tuple[Places, Places], beside: Beside) -> Found:
+    def refined(
+        self, pair: Configuration, masks: tuple[Places, Places], beside: JointProblem
+    ) -> Configuration:
         """Return two outlines, each replaced by the best kind beside the other."""
         for k in (0, 1):
-            load, share = beside.load.copy(), beside.share.copy()
-            self.add(pair, 1 - k, load, share)
+            beside_both = self.beside(pair, (k,), beside)
             piece = self.labelled(masks[k])
             for kind, corners in self.kinds:
                 if kind == pair.kinds[k] and kind in (ELLIPSE, RECTANGLE):
                     continue
-                other = self.one(kind, corners, piece, load, share, beside.states)
+                other = self.one(kind, corners, piece, beside_both)
                 if other.log_evidence == -math.inf:
                     continue
                 two = [other, pair.only(1 - k)]
@@ -121,26 +124,26 @@ class Parts(Scene):
                     pair = made
         return pair
 
-    def grown(self, mask: Places, room: int) -> Found:
+    def outlines_of(self, mask: Places, room: int) -> Configuration:
         """Return the outlines that explain a piece best, cut in two again and again."""
         alone = self.single(mask)
         if room < 2:
             return alone
-        beside = Beside(self.bare, self.bare, self.labelled(mask))
+        beside = self.problem._replace(states=self.labelled(mask))
         best = self.paired(mask, beside, alone.log_evidence)
         if best is None or best[0].log_evidence < alone.log_evidence - SLACK:
             return alone
         pair, a, b = best
-        first = self.grown(a, room - 1)
-        second = self.grown(b, room - first.count)
+        first = self.outlines_of(a, room - 1)
+        second = self.outlines_of(b, room - first.count)
         if first.count + second.count > 2:
             more = self.settled(joined([first, second]), beside)
             if more.log_evidence > pair.log_evidence:
                 pair = more
         return pair if pair.log_evidence > alone.log_evidence else alone
 
-    def begun(self, spare: int = SPARE) -> Found:
-        """Return the outlines of all pieces that nothing connects, brought to their joint top."""
+    def from_pieces(self, spare: int = SPARE) -> Configuration:
+        """Return the outlines of all pieces that nothing connects, brought to their joint mode."""
         labels = components.call(self.on, 1)
         sizes = np.bincount(labels.ravel())[1:]
         large = [k + 1 for k in np.argsort(-sizes, kind="stable") if sizes[k] >= LEAST_PIECE]
@@ -151,9 +154,9 @@ class Parts(Scene):
         room = self.most + spare - len(large)
         parts = []
         for k in large:
-            parts.append(self.grown((labels == k).astype(np.int64), 1 + room))
+            parts.append(self.outlines_of((labels == k).astype(np.int64), 1 + room))
             room -= parts[-1].count - 1
-        return self.climbed(joined(parts))
+        return self.maximised(joined(parts))
 
 
 def nearest(labels: Places, lost: int, large: list[int]) -> int:

@@ -8,16 +8,25 @@ from functools import cache
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.even_points import even_points
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, add_outline
-from tactile_graph_likelihood.several.maximise_jointly import climbed_together, log_mass
-from tactile_graph_likelihood.several.pieces import fitted
-from tactile_graph_likelihood.several.sampling import sampled_beside
+from tactile_graph_likelihood.several.joint_posterior import (
+    WIDTH,
+    JointProblem,
+    Outlines,
+    add_outline,
+)
+from tactile_graph_likelihood.several.maximise_jointly import (
+    fit_piece,
+    laplace_evidence,
+    maximise_jointly,
+)
+from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON, States
+from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.problem import Places
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.start import LIGHT_EDGE
+from tactile_graph_likelihood.single.sample import Plan
+from tactile_graph_likelihood.single.search import LIGHT_EDGE
 
 FEWEST_POINTS, UNSURE = 3.0, -3.0
 """Equal weights that an evidence needs, and what is added to Laplace's where there are fewer."""
@@ -26,7 +35,7 @@ BLOCK, POINTS, WORTH = 48, 192, 40.0
 """Points of a block, points at most, and equal weights enough, of a posterior beside others."""
 
 TRIES = 16
-"""Outlines tried around a piece's moments before the climb."""
+"""Outlines tried around a piece's moments before the search."""
 
 ALIKE = 0.05
 """Outlines whose numbers differ by less share what sampling adds to Laplace's evidence."""
@@ -36,8 +45,8 @@ LOADS = 1.5
 
 
 @dataclass(frozen=True)
-class Found:
-    """Outlines, and the log evidence around them; arrays as in `several_posterior`."""
+class Configuration:
+    """Outlines on a pad, and the log evidence around them; arrays as in `Outlines`."""
 
     kinds: Places
     corners: Places
@@ -50,14 +59,14 @@ class Found:
         return len(self.kinds)
 
     @property
-    def arrays(self) -> tuple[Places, Places, Values]:
-        """Their kinds, corners and points."""
-        return self.kinds, self.corners, self.points
+    def outlines(self) -> Outlines:
+        """Them as the kernels take them."""
+        return Outlines(self.kinds, self.corners, self.points)
 
-    def only(self, k: int) -> Found:
+    def only(self, k: int) -> Configuration:
         """Return one of them by itself."""
         at = slice(k, k + 1)
-        return Found(self.kinds[at], self.corners[at], self.points[at], 0.0)
+        return Configuration(self.kinds[at], self.corners[at], self.points[at], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,22 +80,13 @@ class Sampled:
     over_laplace: float
 
 
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """What other outlines bring to each element, and the states left to explain."""
-
-    load: Values
-    share: Values
-    states: States
-
-
 class Scene:
     """One image, and what it says of any outlines on the pad.
 
     Parameters
     ----------
     readings : Readings
-    noise : ndarray, shape (5,)
+    noise : ndarray, shape (8,)
         As in `element_terms`.
     kinds : list of (int, int)
         Kinds of outlines and their corners, all alike likely beforehand.
@@ -107,98 +107,73 @@ class Scene:
         most: int,
         more: float = 3.0,
     ) -> None:
-        self.grid, self.logs, self.states, _ = readings
-        self.noise, self.kinds, self.most, self.more = noise, kinds, most, more
-        middle = float(np.median(self.logs[self.states == ON])) + LIGHT_EDGE
-        self.prior = np.append(prior, [middle, LOADS])
-        self.on = self.states == ON
-        self.bare = np.zeros(self.states.shape)
-        self.nothing = Beside(self.bare, self.bare, self.states)
+        self.kinds, self.most, self.more = kinds, most, more
+        self.on = readings.states == ON
+        middle = float(np.median(readings.logs[self.on])) + LIGHT_EDGE
+        bare = np.zeros(self.on.shape)
+        self.problem = JointProblem(
+            *readings[:3], noise, np.append(prior, [middle, LOADS]), bare, bare
+        )
         self.table = _table(WIDTH)
         self.tries = 0
         self.corrections: dict[tuple[float, ...], float] = {}
 
-    def add(self, found: Found, k: int, load: Values, share: Values) -> None:
-        """Add what one of some outlines brings to the elements."""
-        add_outline.call(
-            int(found.kinds[k]), int(found.corners[k]), found.points[k], self.grid, self.noise,
-            load, share,
-        )  # fmt: skip
-
-    def beside(self, found: Found, left_out: tuple[int, ...]) -> Beside:
-        """Return what all but some outlines bring to the elements."""
-        load, share = np.zeros(self.on.shape), np.zeros(self.on.shape)
+    def beside(
+        self, found: Configuration, left_out: tuple[int, ...], others: JointProblem | None = None
+    ) -> JointProblem:
+        """Return the problem beside all but some outlines, and beside what others bring."""
+        before = others or self.problem
+        problem = before._replace(load=before.load.copy(), share=before.share.copy())
         for k in range(found.count):
             if k not in left_out:
-                self.add(found, k, load, share)
-        return Beside(load, share, self.states)
+                add_outline.call(problem, found.outlines, k)
+        return problem
 
-    def weighed(
-        self, kinds: Places, corners: Places, points: Values, beside: Beside | None = None
-    ) -> Found:
-        """Return outlines with their log evidence beside others; climbs no further."""
-        count = len(kinds)
-        at = beside or self.nothing
-        mass = log_mass.call(
-            kinds, corners, points, at.load, at.share, self.grid, self.logs, at.states,
-            self.noise, self.prior, np.empty((count * WIDTH, count * WIDTH)),
-        )  # fmt: skip
-        mass += math.lgamma(count + 1.0) + count * (self.more - math.log(len(self.kinds)))
-        return Found(kinds, corners, points, mass)
+    def weighed(self, outlines: Outlines, beside: JointProblem | None = None) -> Configuration:
+        """Return outlines with their log evidence beside others, where they are."""
+        count = len(outlines.kinds)
+        matrix = np.empty((count * WIDTH, count * WIDTH))
+        log = laplace_evidence.call(beside or self.problem, outlines, matrix)
+        log += math.lgamma(count + 1.0) + count * (self.more - math.log(len(self.kinds)))
+        return Configuration(*outlines, log)
 
-    def settled(self, found: Found, beside: Beside, most: int = 15, enough: float = 0.3) -> Found:
-        """Return outlines brought to their joint top beside others, with their own evidence."""
-        points = found.points.copy()
-        climbed_together.call(
-            found.kinds, found.corners, points, beside.load, beside.share, self.grid, self.logs,
-            beside.states, self.noise, self.prior, most, enough,
-        )  # fmt: skip
-        return self.weighed(found.kinds, found.corners, points, beside)
+    def settled(
+        self, found: Configuration, beside: JointProblem, most: int = 15, enough: float = 0.3
+    ) -> Configuration:
+        """Return outlines brought to their joint mode beside others, with their own evidence."""
+        outlines = found.outlines._replace(points=found.points.copy())
+        maximise_jointly.call(beside, outlines, most, enough)
+        return self.weighed(outlines, beside)
 
-    def climbed(self, found: Found, enough: float = 0.1) -> Found:
-        """Return all outlines brought to their joint top."""
-        return self.settled(found, self.nothing, 15, enough)
+    def maximised(self, found: Configuration, enough: float = 0.1) -> Configuration:
+        """Return all outlines brought to their joint mode."""
+        return self.settled(found, self.problem, 15, enough)
 
-    def one(
-        self, kind: int, corners: int, piece: States, load: Values, share: Values, states: States
-    ) -> Found:
+    def one(self, kind: int, corners: int, piece: States, beside: JointProblem) -> Configuration:
         """Return one kind of outline fitted to a piece beside others, with its own evidence."""
         self.tries += 1
-        p, top = fitted.call(
-            kind, corners, self.grid, self.logs, piece, load, share, states, self.noise,
-            self.prior, self.table, TRIES,
-        )  # fmt: skip
-        kinds, sides = np.array([kind]), np.array([corners])
+        p, top = fit_piece.call(beside, kind, corners, piece, self.table, TRIES)
+        outline = Outlines(np.array([kind]), np.array([corners]), p[None])
         if top == -math.inf:
-            return Found(kinds, sides, p[None], top)
-        mass = log_mass.call(
-            kinds, sides, p[None], load, share, self.grid, self.logs, states, self.noise,
-            self.prior, np.empty((WIDTH, WIDTH)),
-        )  # fmt: skip
-        return Found(kinds, sides, p[None], mass + self.more - math.log(len(self.kinds)))
+            return Configuration(*outline, top)
+        log = laplace_evidence.call(beside, outline, np.empty((WIDTH, WIDTH)))
+        return Configuration(*outline, log + self.more - math.log(len(self.kinds)))
 
-    def sampled(self, found: Found, k: int) -> Sampled:
+    def sampled(self, found: Configuration, k: int) -> Sampled:
         """Return the posterior of one outline beside the others, and its evidence."""
-        beside = self.beside(found, (k,))
-        kinds, corners = found.kinds[k : k + 1], found.corners[k : k + 1]
+        beside, outline = self.beside(found, (k,)), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
-        mass = log_mass.call(
-            kinds, corners, found.points[k : k + 1], beside.load, beside.share, self.grid,
-            self.logs, self.states, self.noise, self.prior, matrix,
-        )  # fmt: skip
-        n = unknowns.call(int(kinds[0]), int(corners[0])) + 1
-        covariance = np.linalg.inv(matrix[:n, :n])
-        table = _table(n)
-        points, weights = np.empty((len(table), n)), np.empty(len(table))
-        used, evidence, equal, _ = sampled_beside.call(
-            kinds, corners, found.points[k, :n].copy(), covariance, beside.load, beside.share,
-            self.grid, self.logs, self.states, self.noise, self.prior, table, BLOCK, WORTH,
-            points, weights,
-        )  # fmt: skip
-        over = evidence - mass if equal >= FEWEST_POINTS else UNSURE
+        log = laplace_evidence.call(beside, outline, matrix)
+        n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
+        plan = Plan(_table(n), BLOCK, WORTH)
+        points, weights = np.empty((POINTS, n)), np.empty(POINTS)
+        used, evidence, equal = sample_beside.call(
+            beside, outline, np.linalg.inv(matrix[:n, :n]), plan, points, weights
+        )
+        over = evidence - log if equal >= FEWEST_POINTS else UNSURE
         return Sampled(points[:used], weights[:used], evidence, equal, over)
 
-    def corrected(self, found: Found) -> Found:
+    def corrected(self, found: Configuration) -> Configuration:
         """Return outlines with their evidence by sampling each beside the others."""
         total = found.log_evidence
         for k in range(found.count):
@@ -216,9 +191,9 @@ def _table(n: int) -> Values:
     return table
 
 
-def joined(parts: list[Found]) -> Found:
+def joined(parts: list[Configuration]) -> Configuration:
     """Return the outlines of several lists in one, with no evidence yet."""
-    return Found(
+    return Configuration(
         np.concatenate([p.kinds for p in parts]),
         np.concatenate([p.corners for p in parts]),
         np.concatenate([p.points for p in parts]),

@@ -12,11 +12,11 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
+from tactile_graph_likelihood.single.importance import weighted_moments
 from tactile_graph_likelihood.single.model import Model, Start
 from tactile_graph_likelihood.single.noise import FALL_GUESSED, GUESSED_FOAM
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, readings_of
-from tactile_graph_likelihood.single.sampling import spread_of
 
 LEAN, ROUND = 0.15, 0.15
 """Probability, before a frame is read, that a face leans; that its load falls to the rim, be it
@@ -102,10 +102,10 @@ class AnyPressure:
         try:
             if belief is not None:
                 return model.posterior_of(readings, begin, belief)
-            top = model.top_of(readings, start=begin)
+            top = model.likeliest(readings, start=begin)
             if top.evidence < even.log_evidence - HOPELESS:
                 return None
-            return model.around(readings, top)
+            return model.posterior_around(readings, top.mode)
         except Degenerate:
             return None
 
@@ -176,7 +176,7 @@ def mixed(its: Mapping[str, Posterior], before: Mapping[str, float]) -> Posterio
     points = np.concatenate([_turned_to(best, one, n) for one in every])
     weights = np.concatenate([s * one.weights for s, one in zip(shares, every, strict=True)])
     mean, covariance = np.empty(n), np.empty((n, n))
-    spread_of.call(points, weights, len(points), mean, covariance)
+    weighted_moments.call(points, weights, len(points), mean, covariance)
     return replace(
         best, points=points, weights=weights, mean=mean, covariance=covariance,
         most_likely=best.most_likely[:n], log_evidence=log_evidence,

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
-from annotated_types import Gt, Le, Len
+from annotated_types import Len
 
 from tactile_graph.errors import Degenerate
+from tactile_graph.steps import Spread
 from tactile_graph_likelihood.geometry.outlines import REGULAR
-from tactile_graph_likelihood.several.frame_fits import FrameFits
+from tactile_graph_likelihood.settings import ROUGHER, FootprintSettings, Load
 from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, chances
 from tactile_graph_likelihood.single.fit_footprint import KINDS
-from tactile_graph_likelihood.single.footprint_of import Load, Part, Positive, model_of
+from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.readings import readings_of
 
@@ -42,28 +43,16 @@ class ChooseShape:
     shapes : list
         The shapes to choose from, equally likely beforehand. ``polygon`` is a regular one of 3, 5
         or 6 corners.
-    pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself.
-    estimate : list
-        What of sigma, voids and foam is estimated with the object.
-    on_pad : "whole" or "partly"
-        Whether the whole outline lies on the pad, or its centre only.
-    smallest_cm, largest_cm : float, optional
-        Range of radii and half sizes: the evidence of a shape with two falls as it widens. 0.4
-        pitches and the pad's diagonal if not given.
-    precision : float
-        As in `fit_footprint`.
-
-    pressure : "any" or "even"
-        Whether the object may press unevenly, as in `fit_footprint`: a ball's or a leaning
-        disc's load else passes for an ellipse's. Looked at where a likely shape with an even face
-        leaves such a pattern over, then of all shapes.
+    settings : FootprintSettings
 
     Notes
     -----
     By Bayes' rule over the shapes' evidence, the frame's likelihood averaged over the prior, with
     ``pressure: any`` over pressures too, equally likely beforehand with each shape. A shape that
-    explains nothing has probability 0. See `fit_footprint` for the model.
+    explains nothing has probability 0. See `fit_footprint` for the model. The evidence of a shape
+    with two sizes falls as their range widens. A ball's or a leaning disc's load passes for an
+    ellipse's where all presses evenly: where a likely shape with an even face leaves such a pattern
+    over, all are looked at under other pressures.
     """
 
     stateless = True
@@ -72,23 +61,19 @@ class ChooseShape:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
-        pad: str | dict[str, Any] = "thesis",
-        estimate: list[Part] = [],  # noqa: B006 - settings are never changed
-        on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive | None = None,
-        largest_cm: Positive | None = None,
-        precision: Annotated[float, Gt(0), Le(1)] = 0.2,
-        pressure: Literal["any", "even"] = "any",
+        settings: Annotated[
+            FootprintSettings,
+            Spread(
+                "pad", "estimate", "on_pad", "smallest_cm", "largest_cm", "precision", "pressure"
+            ),
+        ] = ROUGHER,
     ) -> None:
         self._outlines = [
-            (name, AnyPressure(model_of(
-                REGULAR if n else KINDS[name], n, pad, None, None, 1e-3, None, None, None,
-                estimate, on_pad, smallest_cm, largest_cm, precision, 1024, 0,
-            )))
+            (name, AnyPressure(settings.model(REGULAR if n else KINDS[name], n)))
             for name in dict.fromkeys(shapes)
             for n in (CORNERS if name == "polygon" else (0,))
-        ]  # fmt: skip
-        self._others = self._outlines[0][1].others if pressure == "any" else {}
+        ]
+        self._others = self._outlines[0][1].others if settings.pressure == "any" else {}
 
     def __call__(self, image: Load) -> Chosen:
         """Return the choice.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Le
 
+from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, FREE, RECTANGLE, REGULAR
-from tactile_graph_likelihood.single.any_pressure import AnyPressure
-from tactile_graph_likelihood.single.footprint_of import Load, Part, Positive, Share, model_of
+from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Load
 from tactile_graph_likelihood.single.likely import Likely, likely
 
 KINDS = {
@@ -30,36 +30,7 @@ class FitFootprint:
         ``regular`` is a regular polygon, ``polygon`` any convex one.
     corners : int
         Of a polygon.
-    pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself: gap, unevenness, foam and the least load
-        that shows come from it, unless given here.
-    sigma : float, optional
-        Standard deviation of the logarithm of an element's gain.
-    voids : float, optional
-        Share of covered elements that read nothing.
-    strays : float
-        Probability that a reading has nothing to do with the object.
-    foam_cm : float, optional
-        Width over which foam spreads the load.
-    gap_cm : float, optional
-        Distance of neighbouring elements' edges.
-    shows_from : float, optional
-        Readings below it count as nothing, in the image's unit.
-    estimate : list
-        What of sigma, voids, foam and the pressure's fall and lean is estimated with the object.
-    pressure : "any" or "even"
-        Whether the object may press unevenly: leaning, less towards its rim, or through foam.
-        Looked at where an even face leaves that pattern over, and weighed by the evidence.
-    on_pad : "whole" or "partly"
-        Whether the whole outline lies on the pad, or its centre only. Free polygons are whole.
-    smallest_cm, largest_cm : float, optional
-        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
-    precision : float
-        Error of the mean, over the posterior's own standard deviation, at which sampling ends.
-    most_points : int
-        Where it ends at the latest.
-    seed : int
-        Shifts the points at which the posterior is looked at.
+    settings : FootprintSettings
 
     Notes
     -----
@@ -85,30 +56,12 @@ class FitFootprint:
         *,
         shape: Literal["disc", "ellipse", "rectangle", "regular", "polygon"] = "disc",
         corners: Annotated[int, Ge(3), Le(12)] = 4,
-        pad: str | dict[str, Any] = "thesis",
-        sigma: Positive | None = None,
-        voids: Annotated[float, Ge(0), Lt(1)] | None = None,
-        strays: Share = 1e-3,
-        foam_cm: Annotated[float, Ge(0)] | None = None,
-        gap_cm: Annotated[float, Ge(0)] | None = None,
-        shows_from: Annotated[float, Ge(0)] | None = None,
-        estimate: list[Part] = [],  # noqa: B006 - settings are never changed
-        pressure: Literal["any", "even"] = "any",
-        on_pad: Literal["whole", "partly"] = "partly",
-        smallest_cm: Positive | None = None,
-        largest_cm: Positive | None = None,
-        precision: Annotated[float, Gt(0), Le(1)] = 0.15,
-        most_points: Annotated[int, Ge(32)] = 1024,
-        seed: Annotated[int, Ge(0)] = 0,
+        settings: Annotated[FootprintSettings, Spread()] = DEFAULTS,
     ) -> None:
         kind = KINDS[shape]
-        self.model = model_of(
-            kind, corners if kind in (REGULAR, FREE) else 0, pad, sigma, voids, strays, foam_cm,
-            gap_cm, shows_from, estimate, on_pad, smallest_cm, largest_cm, precision,
-            most_points, seed,
-        )  # fmt: skip
-        model = AnyPressure(self.model) if pressure == "any" else self.model
-        self.posterior = model.posterior
+        sides = corners if kind in (REGULAR, FREE) else 0
+        self.model = settings.model(kind, sides)
+        self.posterior = settings.asked_model(kind, sides).posterior
 
     def __call__(
         self, image: Load, start: Circle | Ellipse | Rectangle | Polygon | None = None

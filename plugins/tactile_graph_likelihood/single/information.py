@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
-from tactile_graph_likelihood.geometry.pressure import is_even
 from tactile_graph_likelihood.single.element_terms import (
     FOAM,
     LEAST,
@@ -20,15 +20,22 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     on_level,
 )
+from tactile_graph_likelihood.single.load_shares import foam_margin, is_even, shares_of
 from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.problem import Places, Problem
-from tactile_graph_likelihood.single.shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.problem import Problem
 
 STEP = 0.02  # of a pitch: over which coverage is differenced
 FOAM_STEP = 0.005
 PRESSURE_STEP = 0.01
 SLIVER = 0.1  # covered less, an element's slope is no guide to how far the outline may go
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
+
+
+class Information(NamedTuple):
+    """A log density's slope along a point's numbers, (K,), and the information on them, (K, K)."""
+
+    slope: Values
+    matrix: Values
 
 
 @compiled_as_is
@@ -69,7 +76,7 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
 
 
 @compiled_as_is
-def _score(on: bool, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
+def score_of(on: bool, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
     """Return what an element's reading says of the logarithm mu of its expected load.
 
     Returns
@@ -91,12 +98,13 @@ def _score(on: bool, log: float, mu: float, noise: Values, level: float) -> tupl
 
 
 @compiled_as_is
-def _add_noise_slopes(
-    on: bool, score: tuple[float, ...], first: int, noise: Values, estimated: Places,
-    slope: Values, matrix: Values,
-) -> None:  # fmt: skip
+def add_noise_slopes(
+    on: bool, score: tuple[float, ...], problem: Problem, noise: Values, out: Information
+) -> None:
     """Add what an element's reading says of the sigma and the voids that are estimated."""
     voids, chance, u, tail = noise[VOIDS], score[2], score[3], score[4]
+    first, estimated = unknowns(problem.kind, problem.corners), problem.estimated
+    slope, matrix = out.slope, out.matrix
     for k in range(estimated.shape[0]):
         m = first + 1 + k
         if estimated[k] == SIGMA:
@@ -109,14 +117,14 @@ def _add_noise_slopes(
 
 
 @compiled_as_is
-def information(problem: Problem, p: Values, slope: Values, matrix: Values) -> None:
+def information(problem: Problem, p: Values, out: Information) -> None:
     """Write the slope of the log likelihood at a point, and an information matrix.
 
     Parameters
     ----------
     problem, p
         As in `log_posterior.log_likelihood`.
-    slope, matrix : ndarray, shape (K,) and (K, K)
+    out : Information
         Written.
 
     Notes
@@ -126,7 +134,7 @@ def information(problem: Problem, p: Values, slope: Values, matrix: Values) -> N
     squared score: positive whatever was read. Coverage is differenced over 0.02 of a pitch.
     """
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
-    first = unknowns(kind, corners)
+    first, slope, matrix = unknowns(kind, corners), out.slope, out.matrix
     rows, columns = problem.states.shape
     noise = noise_at(problem, p)
     margin = foam_margin(grid, noise) + grid[2] * STEP
@@ -147,8 +155,8 @@ def information(problem: Problem, p: Values, slope: Values, matrix: Values) -> N
                 continue
             mu = p[first] if its == 1.0 else math.log(its) + p[first]
             on = state == ON
-            score = _score(on, problem.logs[box[0] + i, box[1] + j], mu, noise, level)
-            _add_noise_slopes(on, score, first, noise, estimated, slope, matrix)
+            score = score_of(on, problem.logs[box[0] + i, box[1] + j], mu, noise, level)
+            add_noise_slopes(on, score, problem, noise, out)
             edge = its < 1.0 or not plain
             for k in range(first):
                 along[k] = rise[k, i, j] / max(its, SLIVER)
@@ -157,7 +165,7 @@ def information(problem: Problem, p: Values, slope: Values, matrix: Values) -> N
                 along[first + 1 + k] = rise[first + 1 + k, i, j] / its
                 edge = edge or along[first + 1 + k] != 0.0
             if edge:
-                _add_outer(score, along, slope, matrix)
+                add_outer(score, along, out)
             else:
                 slope[first] += score[0]
                 matrix[first, first] += score[1]
@@ -167,18 +175,19 @@ def information(problem: Problem, p: Values, slope: Values, matrix: Values) -> N
 
 
 @compiled_as_is
-def _add_outer(score: tuple[float, ...], along: Values, slope: Values, matrix: Values) -> None:
+def add_outer(score: tuple[float, ...], along: Values, out: Information) -> None:
     """Add an element's slope and information along all numbers."""
     for k in range(along.shape[0]):
-        slope[k] += score[0] * along[k]
+        out.slope[k] += score[0] * along[k]
         for m in range(k + 1):
-            matrix[k, m] += score[1] * along[k] * along[m]
+            out.matrix[k, m] += score[1] * along[k] * along[m]
 
 
 @compiled_as_is
-def add_prior(problem: Problem, p: Values, slope: Values, matrix: Values) -> None:
+def add_prior(problem: Problem, p: Values, out: Information) -> None:
     """Add what the priors say to a slope and an information matrix."""
     first, guess = unknowns(problem.kind, problem.corners), problem.guess
+    slope, matrix = out.slope, out.matrix
     for k in range(2, 2 + sizes(problem.kind)):
         slope[k] -= 1.0 / p[k]
     for k in range(guess.shape[0]):

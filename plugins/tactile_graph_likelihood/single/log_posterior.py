@@ -16,8 +16,8 @@ from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import FALL, SPAN, VOIDS, terms
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 from tactile_graph_likelihood.single.problem import Problem
-from tactile_graph_likelihood.single.shares import foam_margin, shares_of
 
 LN_TWO_PI = math.log(2.0 * math.pi)
 

@@ -1,89 +1,91 @@
-"""The most likely outline, by scoring steps: slopes of coverage, information of the readings."""
+"""The mode of the posterior, by scoring steps: slopes of coverage, information of the readings."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
 from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
-from tactile_graph_likelihood.large_pads.rim_information import information_at
-from tactile_graph_likelihood.large_pads.rim_likelihood import likelihood_at
-from tactile_graph_likelihood.single.covered_whole import Inside, settle
-from tactile_graph_likelihood.single.information import STEP, add_prior, steps_of
+from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
+from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
+from tactile_graph_likelihood.single.element_terms import STRAYS
+from tactile_graph_likelihood.single.evaluate import information_at, log_likelihood_at
+from tactile_graph_likelihood.single.information import STEP, Information, add_prior, steps_of
 from tactile_graph_likelihood.single.log_posterior import log_rest
-from tactile_graph_likelihood.single.problem import Problem, believed
+from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
 
+ROUNDS, HALVINGS = 25, 6
 TIED = 0.01  # information, per squared pitch, that every length has: readings may leave one free
+ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second search end
+SOFT = 0.05  # share of its load that an element takes from its surroundings in the first search
+NO_STRAYS = 1e-12
+
+
+class Mode(NamedTuple):
+    """A most likely point, shape (K,), the lower root of the information there, and its height.
+
+    The height is the log posterior, -inf where no outline is possible.
+    """
+
+    p: Values
+    root: Values
+    height: float
 
 
 @compiled_as_is
-def climbed(
-    problem: Problem, inside: Inside, p: Values, most: int, enough: float, stride: float,
-    root: Values,
-) -> tuple[float, int]:  # fmt: skip
+def maximise(
+    problem: Problem, whole: CoveredWhole | None, p: Values, root: Values, enough: float,
+    stride: float,
+) -> float:  # fmt: skip
     """Bring a point, in place, to the top of the log posterior.
 
     Parameters
     ----------
-    problem, p
-        As in `log_posterior`; the prior's `TURN` is not looked at.
-    inside : Inside
-        As in `rim_likelihood.likelihood_at`; written.
-    most : int
-        Rounds.
+    problem, whole, p
+        As in `evaluate.log_likelihood_at`; the prior's `TURN` is not looked at, and ``whole`` is
+        kept up with the point.
+    root : ndarray, shape (K, K)
+        Written: the lower root of the information at the top.
     enough : float
         Gain in log posterior still promised, below which the search ends.
     stride : float
         Pitches that an edge moves at most in a round.
-    root : ndarray, shape (K, K)
-        Written: the lower root of the information at the top.
 
     Returns
     -------
-    (float, int)
-        The log posterior there and the rounds made; -inf if no round found a finite one.
+    float
+        The log posterior there; -inf if no round found a finite one.
     """
-    n, first = p.shape[0], unknowns(problem.kind, problem.corners)
-    slope, step, trial = np.empty(n), np.empty(n), np.empty(n)
-    matrix = np.empty((n, n))
-    kind, corners, grid, prior = problem.kind, problem.corners, problem.grid, problem.prior
+    n = p.shape[0]
+    step, trial = np.empty(n), np.empty(n)
+    out = Information(np.empty(n), np.empty((n, n)))
+    kind, corners, prior = problem.kind, problem.corners, problem.prior
     loose = prior.copy()
-    near = believed(problem, loose)
+    near = with_prior(problem, loose)
     turn = 2 + sizes(kind) if period(kind, corners) > 0.0 else -1
     pulled_in(kind, corners, p, prior)
     if turn >= 0:
         loose[TURN] = p[turn]
-    settle(problem, inside, p)
-    now = log_rest(near, p) + likelihood_at(problem, inside, p)
+    keep_current(problem, whole, p)
+    now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
     damping = 0.0
-    for rounds in range(1, most + 1):
-        settle(problem, inside, p)
-        information_at(problem, inside, p, slope, matrix)
-        add_prior(problem, p, slope, matrix)
-        widths = steps_of(kind, corners, p, grid)
-        for k in range(n):
-            scale = 1.0 if k >= first else TIED / (widths[k] / STEP) ** 2
-            matrix[k, k] = matrix[k, k] * (1.0 + damping) + scale
-        if not cholesky(matrix, root):
-            return now, rounds
-        solved(root, slope, step)
-        promised = 0.0
-        for k in range(n):
-            promised += slope[k] * step[k]
-        if promised < enough:
-            return now, rounds
-        share, better = 1.0, False
-        if stride < math.inf:
-            moved = 0.0
-            for k in range(first):
-                moved += abs(step[k]) * STEP / widths[k]
-            share = stride / max(moved, stride)
-        whole = share
-        for _ in range(6):
+    for _ in range(ROUNDS):
+        keep_current(problem, whole, p)
+        information_at(problem, whole, p, out)
+        add_prior(problem, p, out)
+        widths = steps_of(kind, corners, p, problem.grid)
+        _damp(out.matrix, widths, damping)
+        if not cholesky(out.matrix, root):
+            return now
+        solved(root, out.slope, step)
+        if _promised(out.slope, step) < enough:
+            return now
+        first = share = _share_of_step(step, widths, stride)
+        for _ in range(HALVINGS):
             for k in range(n):
                 trial[k] = p[k] + share * step[k]
             pulled_in(kind, corners, trial, prior)
@@ -91,20 +93,65 @@ def climbed(
                 loose[TURN] = trial[turn]
             new = log_rest(near, trial)
             if new > -math.inf:
-                new += likelihood_at(problem, inside, trial)
+                new += log_likelihood_at(problem, whole, trial)
             if new > now:
-                better = True
                 break
             share *= 0.4
-        if not better:
+        if not new > now:
             if damping > 50.0:
-                return now, rounds
+                return now
             damping = max(1.0, 10.0 * damping)
             continue
-        gained = new - now
-        now = new
+        gained, now = new - now, new
         p[:] = trial
-        damping = 0.0 if share == whole else 0.3
+        damping = 0.0 if share == first else 0.3
         if gained < 0.5 * enough:
-            return now, rounds
-    return now, most
+            return now
+    return now
+
+
+@compiled_as_is
+def _damp(matrix: Values, widths: Values, damping: float) -> None:
+    """Add to an information what keeps steps short, and invertible what readings leave free."""
+    for k in range(matrix.shape[0]):
+        scale = 1.0 if k >= widths.shape[0] else TIED / (widths[k] / STEP) ** 2
+        matrix[k, k] = matrix[k, k] * (1.0 + damping) + scale
+
+
+@compiled_as_is
+def _promised(slope: Values, step: Values) -> float:
+    """Return the gain that a step promises."""
+    promised = 0.0
+    for k in range(step.shape[0]):
+        promised += slope[k] * step[k]
+    return promised
+
+
+@compiled_as_is
+def _share_of_step(step: Values, widths: Values, stride: float) -> float:
+    """Return the part of a step that moves edges no farther than a stride."""
+    if stride == math.inf:
+        return 1.0
+    moved = 0.0
+    for k in range(widths.shape[0]):
+        moved += abs(step[k]) * STEP / widths[k]
+    return stride / max(moved, stride)
+
+
+@compiled_as_is
+def maximise_softly_first(problem: Problem, p: Values, root: Values) -> float:
+    """Maximise with elements that feel a little beyond their edge, then with the true ones.
+
+    Otherwise a touched element that is not covered would not pull at all.
+    """
+    maximise(softened(problem), None, p, root, ROUGH, math.inf)
+    return maximise(problem, None, p, root, ENOUGH, math.inf)
+
+
+@compiled_as_is
+def softened(problem: Problem) -> Problem:
+    """Return the problem with elements that feel a little beyond their edge, and no strays."""
+    soft, strict = problem.grid.copy(), problem.noise.copy()
+    soft[4], soft[5] = SOFT, problem.grid[2]
+    strict[STRAYS] = NO_STRAYS
+    return with_elements(problem, soft, strict)

@@ -11,7 +11,6 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Shape
-from tactile_graph_likelihood.geometry.even_points import even_points
 from tactile_graph_likelihood.geometry.outlines import (
     ELLIPSE,
     FREE,
@@ -22,16 +21,19 @@ from tactile_graph_likelihood.geometry.outlines import (
     unknowns,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
-from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, least_shown, silenced
-from tactile_graph_likelihood.single.around import Found, log_volume, spread_out
+from tactile_graph_likelihood.large_pads.covered_whole import covered_around
+from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad
+from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
+from tactile_graph_likelihood.single.even_points import even_points
+from tactile_graph_likelihood.single.importance import weighted_moments
+from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import Places, Problem
+from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
-from tactile_graph_likelihood.single.sampling import spread_of
-from tactile_graph_likelihood.single.search import ATTEMPTS, searched, topped
-from tactile_graph_likelihood.single.start import moments
+from tactile_graph_likelihood.single.sample import Plan, Sample, log_volume, sample_around
+from tactile_graph_likelihood.single.search import ATTEMPTS, find_mode, moments
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
@@ -43,18 +45,15 @@ Start = Shape | Values | None
 NO_START = np.zeros(0)
 
 
-class Top(NamedTuple):
-    """A most likely outline, not yet looked around.
+class Likeliest(NamedTuple):
+    """A most likely outline whose posterior is not yet sampled.
 
-    ``evidence`` is the log evidence if the posterior were normal around it, ``height`` the log
-    posterior there, -inf where no outline is possible; ``root`` the root of the information;
-    ``unsure`` whether another attempt may do better.
+    ``evidence`` is the log evidence if the posterior were normal around it; ``unsure`` says whether
+    another attempt may do better.
     """
 
+    mode: Mode
     evidence: float
-    height: float
-    p: Values
-    root: Values
     unsure: bool
 
 
@@ -128,35 +127,47 @@ class Model:
     ) -> Posterior:
         """Return the same from readings."""
         problem = self._problem(readings, belief)
-        begin = self._begin(start, problem)
         table = self._table(problem)
-        found = searched.call(problem, table, BLOCK, self.precision**-2, begin)
-        return self._answer(readings, problem.kind, found)
+        mode, _ = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)
+        return self._sampled(readings, problem, mode)
 
-    def top_of(self, readings: Readings, before: Top | None = None, start: Start = None) -> Top:
+    def likeliest(
+        self, readings: Readings, before: Likeliest | None = None, start: Start = None
+    ) -> Likeliest:
         """Return the most likely outline, by one attempt, or two more after an earlier one."""
         problem = self._problem(readings, None)
-        table = self._table(problem)
-        if before is None:
-            n = table.shape[1]
-            before = Top(-math.inf, -math.inf, np.zeros(n), np.zeros((n, n)), True)
-            attempts = 0, 1
-        else:
-            attempts = 1, ATTEMPTS
-        p, root = before.p.copy(), before.root.copy()
+        attempts, known = ((0, 1), None) if before is None else ((1, ATTEMPTS), before.mode)
         begin = self._begin(start, problem)
-        height, unsure = topped.call(problem, table, begin, attempts, before.height, p, root)
-        possible = height > -math.inf
-        evidence = height + log_volume.call(problem.kind, p, root) if possible else height
-        return Top(evidence, height, p, root, unsure)
+        mode, unsure = self._find(problem, self._table(problem), begin, attempts, known)
+        evidence = mode.height
+        if evidence > -math.inf:
+            evidence += log_volume.call(problem.kind, mode.p, mode.root)
+        return Likeliest(mode, evidence, unsure)
 
-    def around(self, readings: Readings, top: Top) -> Posterior:
-        """Return the posterior around a top that is possible."""
-        problem = self._problem(readings, None)
-        found = spread_out.call(
-            problem, self._table(problem), BLOCK, self.precision**-2, top.p, top.root, top.height
+    def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
+        """Return the posterior around a mode."""
+        return self._sampled(readings, self._problem(readings, None), mode)
+
+    def _find(
+        self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
+        known: Mode | None,
+    ) -> tuple[Mode, bool]:  # fmt: skip
+        n = table.shape[1]
+        best = Mode(np.zeros(n), np.zeros((n, n)), -math.inf) if known is None else known
+        find = find_mode if problem.states.size <= LARGE_PAD else find_mode_on_large_pad
+        return find.call(problem, table, begin, attempts, best)
+
+    def _sampled(self, readings: Readings, problem: Problem, mode: Mode) -> Posterior:
+        if mode.height > -math.inf:
+            large = problem.states.size > LARGE_PAD
+            whole = covered_around.call(problem, mode.p) if large else None
+            plan = Plan(self._table(problem), BLOCK, self.precision**-2)
+            sample = sample_around.call(problem, whole, plan, mode)
+            if len(sample.points):
+                return self._posterior_of(problem.kind, sample)
+        raise Degenerate(
+            f"{readings.touched} touched elements: no such outline on the pad explains them"
         )
-        return self._answer(readings, problem.kind, found)
 
     def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
@@ -169,20 +180,17 @@ class Model:
             noise, states = _quiet(readings, noise)
         return Problem(
             kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
-            self._prior(readings), mean, precision,
+            self.prior_vector(readings), mean, precision,
         )  # fmt: skip
 
-    def _answer(self, readings: Readings, kind: int, found: Found) -> Posterior:
-        if found.used == 0:
-            raise Degenerate(
-                f"{readings.touched} touched elements: no such outline on the pad explains them"
-            )
-        top, mean, covariance = found.likeliest, found.mean, found.covariance
+    def _posterior_of(self, kind: int, sample: Sample) -> Posterior:
+        top, mean, covariance = sample.likeliest, sample.mean, sample.covariance
         if kind == OVAL:
-            top, mean, covariance = _as_ellipses(top, found.points, found.weights)
+            top, mean, covariance = _as_ellipses(top, sample.points, sample.weights)
         return Posterior(
-            self.kind, self.corners, mean, covariance, found.points, found.weights, top,
-            found.evidence, found.equal, found.surprise, found.alike, found.lean, found.fall,
+            self.kind, self.corners, mean, covariance, sample.points, sample.weights, top,
+            sample.log_evidence, sample.equal_points, sample.fit.surprise, sample.fit.neighbours,
+            sample.fit.lean, sample.fit.fall,
         )  # fmt: skip
 
     def range_cm(self, readings: Readings) -> tuple[float, float]:
@@ -192,7 +200,8 @@ class Model:
             return smallest, self.largest_cm
         return smallest, max(math.hypot(*readings.size_cm), 2.0 * smallest)
 
-    def _prior(self, readings: Readings) -> Values:
+    def prior_vector(self, readings: Readings) -> Values:
+        """Return the prior as the kernels take it, see `outline_prior`."""
         width, height = readings.size_cm
         return np.array(
             [
@@ -257,7 +266,7 @@ def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, 
     """Turn weighted ovals into ellipses in place; return the top as one, mean and covariance."""
     to_ellipses.call(points, weights)
     mean, covariance = np.empty(points.shape[1]), np.empty((points.shape[1],) * 2)
-    spread_of.call(points, weights, len(points), mean, covariance)
+    weighted_moments.call(points, weights, len(points), mean, covariance)
     top = as_ellipse.call(top)
     quarters = round((top[4] - mean[4]) / (0.5 * math.pi))
     top[4] -= quarters * 0.5 * math.pi

@@ -58,7 +58,7 @@ class Posterior:
     equal_points : float
         How many equally weighted points the weights are worth.
     surprise, neighbours, lean, fall : float
-        The numbers of `misfit`.
+        As in `GoodnessOfFit`.
     pressures : dict of str to float
         How likely the pressure is even, leaning, falling to the rim, or spread by foam, of what
         was looked at.

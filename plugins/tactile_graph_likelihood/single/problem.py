@@ -13,6 +13,9 @@ from tactile_graph_likelihood.single.element_terms import States
 
 Places = NDArray[np.int64]
 
+LARGE_PAD = 1024
+"""Elements of a pad beyond which strays are many, and an outline may hold most of them whole."""
+
 
 class Problem(NamedTuple):
     """What is asked, what was read, and what is taken for granted.
@@ -23,7 +26,7 @@ class Problem(NamedTuple):
         Of the outline, as in `outlines`.
     grid : ndarray, shape (6,)
         Left and top edge of the first element, pitch and side of an element, in cm; two numbers
-        by which a climb softens edges, zero otherwise.
+        by which a search softens edges, zero otherwise.
     logs, states : ndarray, shape (rows, columns)
         The image, as in `element_terms`.
     noise : ndarray, shape (8,)
@@ -53,7 +56,7 @@ class Problem(NamedTuple):
 
 
 @compiled_as_is
-def read_by(problem: Problem, grid: Values, noise: Values) -> Problem:
+def with_elements(problem: Problem, grid: Values, noise: Values) -> Problem:
     """Return the same problem for another reach of the elements, and other noise."""
     return Problem(
         problem.kind, problem.corners, grid, problem.logs, problem.states, noise,
@@ -62,7 +65,7 @@ def read_by(problem: Problem, grid: Values, noise: Values) -> Problem:
 
 
 @compiled_as_is
-def believed(problem: Problem, prior: Values) -> Problem:
+def with_prior(problem: Problem, prior: Values) -> Problem:
     """Return the same problem with another prior."""
     return Problem(
         problem.kind, problem.corners, problem.grid, problem.logs, problem.states, problem.noise,

@@ -11,8 +11,9 @@ from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.large_pads.solid import LARGE_PAD, typical_load
+from tactile_graph_likelihood.large_pads.solid import typical_load
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 
 FAINT = 0.015
 """Share of a loaded element's reading below which another counts as nothing. A column of a divider
@@ -27,7 +28,7 @@ class Readings(NamedTuple):
     """What an image says, and where its elements lie.
 
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
-    zeros (a climb's own); ``logs`` and ``states`` are as in `element_terms`.
+    zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`.
     """
 
     grid: Values

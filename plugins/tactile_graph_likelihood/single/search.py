@@ -1,4 +1,7 @@
-"""From an image's numbers to the posterior of one outline, in one compiled call."""
+"""From an image to the mode of the posterior: where the search begins, and its attempts.
+
+It begins with an outline that has the moments of the touched elements.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,28 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
-from tactile_graph_likelihood.large_pads.coarse import coarsened, in_one_piece
-from tactile_graph_likelihood.large_pads.rim_misfit import surprise_at
-from tactile_graph_likelihood.large_pads.solid import LARGE_PAD
-from tactile_graph_likelihood.single.around import Found, spread_out
-from tactile_graph_likelihood.single.covered_whole import inside_of, settle
-from tactile_graph_likelihood.single.element_terms import VOIDS
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    ELLIPSE,
+    OVAL,
+    RECTANGLE,
+    REGULAR,
+    Values,
+    period,
+    sizes,
+    unknowns,
+)
+from tactile_graph_likelihood.geometry.oval import to_oval
+from tactile_graph_likelihood.single.element_terms import ON, States
+from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
-from tactile_graph_likelihood.single.maximise_from import climbed_from, climbed_twice
-from tactile_graph_likelihood.single.problem import Problem, believed
-from tactile_graph_likelihood.single.start import THINNEST, moments, outline_of_moments, turns
+from tactile_graph_likelihood.single.maximise import Mode, maximise_softly_first
+from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem, with_prior
 
+STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
+TRIMS = 8
+THINNEST = 0.05  # variance across an outline over the mean one: touched elements may be a line
+LIGHT_EDGE = 0.25  # ln of a full element's load over the mean, whose edge is partly covered
 ATTEMPTS = 3
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR = -1.5  # surprise from which on there is no further attempt
@@ -29,33 +42,150 @@ PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 
 
 @compiled_as_is
-def begun(problem: Problem, table: Values, tries: int, p: Values) -> None:
-    """Write the likeliest of a few outlines around the touched elements' moments into ``p``."""
-    kind, corners, grid, guess = problem.kind, problem.corners, problem.grid, problem.guess
-    found = moments(grid, problem.logs, problem.states)
+def moments(grid: Values, logs: Values, states: States) -> Values:
+    """Return count, mean x and y, variances xx, xy and yy, and mean log load of what is touched.
+
+    The variances count each element with its own extent; y runs down. Elements further from the
+    mean than any of an outline's are left out, until none is: strays, far away on a large pad.
+    """
+    found = np.zeros(7)
+    _moments_within(grid, logs, states, math.inf, found)
+    for _ in range(TRIMS):
+        count = found[0]
+        if not _moments_within(grid, logs, states, STRAY, found) or found[0] == count:
+            break
+    return found
+
+
+@compiled_as_is
+def _moments_within(grid: Values, logs: Values, states: States, far: float, out: Values) -> bool:
+    """Write the moments of what lies within a squared distance by moments; False if nothing."""
+    pitch, half = grid[2], 0.5 * grid[3]
+    left, top, area = grid[0] + half, grid[1] + half, pitch * pitch
+    mean_x, mean_y = (out[1] - left) / pitch, (out[2] - top) / pitch
+    det = max(out[3] * out[5] - out[4] * out[4], 1e-12 * area * area) / area
+    a, b, c = out[5] / det, -2.0 * out[4] / det, out[3] / det
+    count = x = y = xx = xy = yy = log = 0.0
+    for i in range(states.shape[0]):
+        v = i - mean_y
+        for j in range(states.shape[1]):
+            if states[i, j] != ON:
+                continue
+            u = j - mean_x
+            if far < math.inf and a * u * u + b * u * v + c * v * v > far:
+                continue
+            count += 1.0
+            x += j
+            y += i
+            xx += j * j
+            xy += i * j
+            yy += i * i
+            log += logs[i, j]
+    if count == 0.0:
+        return False
+    x, y, own = x / count, y / count, 1.0 / 12.0
+    out[0], out[6] = count, log / count
+    out[1], out[2] = left + pitch * x, top + pitch * y
+    out[3] = (xx / count - x * x + own) * area
+    out[4] = (xy / count - x * y) * area
+    out[5] = (yy / count - y * y + own) * area
+    return True
+
+
+@compiled_as_is
+def outline_of_moments(
+    kind: int, corners: int, found: Values, turn: float, thinnest: float, p: Values
+) -> None:
+    """Write an outline with given moments, and the load's logarithm, into ``p``.
+
+    Parameters
+    ----------
+    kind, corners : int
+        Of the outline, as in `outlines`.
+    found : ndarray, shape (7,)
+        As `moments` gives it.
+    turn : float
+        Angle in radians by which the outline is turned from where the moments have it.
+    thinnest : float
+        Least variance across, over the mean of the two.
+    p : ndarray, shape (K,)
+        Written, up to the load.
+    """
+    xx, xy, yy = found[3], found[4], found[5]
+    p[0], p[1] = found[1], found[2]
+    middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+    major, minor = middle + off, max(middle - off, thinnest * middle)
+    angle = 0.5 * math.atan2(-2.0 * xy, xx - yy) + turn
+    last = 3
+    if kind == DISC:
+        p[2] = math.sqrt(4.0 * middle)
+    elif kind in (ELLIPSE, OVAL, RECTANGLE):
+        spread = 3.0 if kind == RECTANGLE else 4.0
+        along, across = math.cos(turn) ** 2, math.sin(turn) ** 2
+        p[2] = math.sqrt(spread * (major * along + minor * across))
+        p[3] = math.sqrt(spread * (major * across + minor * along))
+        p[4] = angle
+        if kind == OVAL:
+            to_oval(p)
+        last = 5
+    else:
+        # the variance along any axis of a regular polygon, over that of its corners' circle
+        step = 2.0 * math.pi / corners
+        radius = math.sqrt(12.0 * middle / (2.0 + math.cos(step)))
+        if kind == REGULAR:
+            p[2], p[3] = radius, angle
+            last = 4
+        else:
+            for k in range(corners):
+                along = radius * math.sqrt(major / middle) * math.cos(turn + k * step)
+                across = radius * math.sqrt(minor / middle) * math.sin(turn + k * step)
+                cos, sin = math.cos(angle - turn), -math.sin(angle - turn)
+                p[2 * k] = found[1] + along * cos - across * sin
+                p[2 * k + 1] = found[2] + along * sin + across * cos
+            last = 2 * corners
+    p[last] = found[6] + LIGHT_EDGE
+
+
+@compiled_as_is
+def angles_to_try(kind: int, corners: int) -> int:
+    """Return how many angles, over a period, are worth a try."""
+    if kind == RECTANGLE:
+        return 6
+    return 4 if kind == REGULAR else 1
+
+
+@compiled_as_is
+def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> None:
+    """Write the likeliest of a few outlines around the touched elements' moments.
+
+    Parameters
+    ----------
+    problem : Problem
+    table : ndarray, shape (N, K)
+        By how much they are off, as in `sample.Plan`.
+    tries : int
+        How many, beside the moments' own at a few angles.
+    p : ndarray, shape (K,)
+        Written.
+    """
+    kind, corners, guess = problem.kind, problem.corners, problem.guess
+    found = moments(problem.grid, problem.logs, problem.states)
     first = unknowns(kind, corners)
     for k in range(guess.shape[0]):
         p[first + 1 + k] = guess[k, 0]
     best, trial = -math.inf, p.copy()
     loose = problem.prior.copy()
-    near = believed(problem, loose)
+    near = with_prior(problem, loose)
     thinnest = THINNEST if problem.states.size <= LARGE_PAD else 0.0
-    n, pitch = sizes(kind), grid[2]
-    ways = turns(kind, corners)
+    ways = angles_to_try(kind, corners)
     for t in range(ways + tries):
         turn = (t % ways) * period(kind, corners) / ways
         outline_of_moments(kind, corners, found, turn, thinnest, trial)
         if t >= ways:
-            for k in range(first):
-                if 2 <= k < 2 + n:
-                    trial[k] *= math.exp(SIZE_OFF * (table[t, k] - 0.5))
-                elif period(kind, corners) > 0.0 and k == 2 + n:
-                    trial[k] += TURN_OFF * table[t, k]
-                else:
-                    trial[k] += PLACE_OFF * pitch * table[t, k]
+            _vary(problem, table[t], trial)
         pulled_in(kind, corners, trial, problem.prior)
         if period(kind, corners) > 0.0:
-            loose[TURN] = trial[2 + n]
+            loose[TURN] = trial[2 + sizes(kind)]
         here = log_rest(near, trial)
         if here > -math.inf:
             here += log_likelihood(problem, trial)
@@ -65,117 +195,51 @@ def begun(problem: Problem, table: Values, tries: int, p: Values) -> None:
 
 
 @compiled_as_is
-def _begun_large(
-    problem: Problem, rough: Problem, block: int, load: float, start: Values, table: Values,
-    tries: int, p: Values,
-) -> None:  # fmt: skip
-    """Write where a climb on a large pad begins into ``p``: near the top, if blocks show it.
-
-    Parameters
-    ----------
-    problem, start, table, p
-        As in `topped`.
-    rough, block, load
-        As `coarse.coarsened` gives them.
-    tries : int
-        As in `begun`.
-    """
-    first = unknowns(problem.kind, problem.corners)
-    given = start.shape[0] == p.shape[0]
-    if given:
-        p[:] = start
-    if block == 1:
-        if not given:
-            begun(rough, table, tries, p)
-        return
-    at, root = np.zeros(first + 1), np.zeros((first + 1, first + 1))
-    if given:
-        at[:first], at[first] = start[:first], math.log(1.0 - problem.noise[VOIDS])
-    else:
-        begun(rough, table, tries, at)
-        for k in range(problem.guess.shape[0]):
-            p[first + 1 + k] = problem.guess[k, 0]
-    climbed_twice(rough, math.inf, at, root)
-    at[first] = load
-    if given:
-        moved = p.copy()
-        moved[: first + 1] = at
-        if log_likelihood(problem, p) > log_likelihood(problem, moved):
-            return
-    p[: first + 1] = at
+def _vary(problem: Problem, off: Values, p: Values) -> None:
+    """Move an outline, in place, by a point of Student's t."""
+    kind, corners, n = problem.kind, problem.corners, sizes(problem.kind)
+    for k in range(unknowns(kind, corners)):
+        if 2 <= k < 2 + n:
+            p[k] *= math.exp(SIZE_OFF * (off[k] - 0.5))
+        elif period(kind, corners) > 0.0 and k == 2 + n:
+            p[k] += TURN_OFF * off[k]
+        else:
+            p[k] += PLACE_OFF * problem.grid[2] * off[k]
 
 
 @compiled_as_is
-def topped(
-    problem: Problem, table: Values, start: Values, attempts: tuple[int, int], top: float,
-    p: Values, root: Values,
-) -> tuple[float, bool]:  # fmt: skip
-    """Write the most likely outline and the root of its information, after some attempts.
+def find_mode(
+    problem: Problem, table: Values, start: Values, attempts: tuple[int, int], best: Mode
+) -> tuple[Mode, bool]:
+    """Return the most likely outline after some attempts, and whether another is worth its time.
 
     Parameters
     ----------
     problem : Problem
+        Of at most 1024 elements.
     table : ndarray, shape (N, K)
-        As in `sampling.sampled`.
+        As in `sample.Plan`.
     start : ndarray, shape (0,) or (K,)
         Where to begin; empty for the touched elements' moments.
     attempts : (int, int)
         The first, from 0, and one past the last.
-    top : float
-        Log posterior of what earlier attempts found, -inf if this is the first.
-    p, root : ndarray, shape (K,) and (K, K)
-        What they found; written where something better is.
-
-    Returns
-    -------
-    (float, bool)
-        Log posterior there, -inf where no outline is possible; whether another attempt is worth
-        its time.
+    best : Mode
+        What earlier attempts found; of the height -inf if this is the first.
     """
-    n = p.shape[0]
+    n = best.p.shape[0]
+    p, root, height = best.p.copy(), best.root.copy(), best.height
     trial, its_root = np.zeros(n), np.zeros((n, n))
-    large = problem.states.size > LARGE_PAD
-    rough, block, load = coarsened(problem)
     for attempt in range(attempts[0], attempts[1]):
-        given = start if attempt == 0 else start[:0]
-        if large:
-            seen = in_one_piece(rough) if attempt == 0 else rough
-            _begun_large(problem, seen, block, load, given, table, attempt * TRIES, trial)
-        elif given.shape[0] == n:
-            trial[:] = given
+        if attempt == 0 and start.shape[0] == n:
+            trial[:] = start
         else:
-            begun(problem, table, attempt * TRIES, trial)
-        here = climbed_from(problem, block, trial, its_root)
-        again = attempt > 0 and abs(here - top) < SAME
-        if here > top:
-            top = here
+            likeliest_start(problem, table, attempt * TRIES, trial)
+        here = maximise_softly_first(problem, trial, its_root)
+        again = attempt > 0 and abs(here - height) < SAME
+        if here > height:
+            height = here
             p[:] = trial
             root[:] = its_root
-        if top > -math.inf:
-            inside = inside_of(problem, p)
-            settle(problem, inside, p)
-            if surprise_at(problem, inside, p) > POOR or again:
-                return top, False
-    return top, attempts[1] < ATTEMPTS
-
-
-@compiled_as_is
-def searched(problem: Problem, table: Values, block: int, worth: float, start: Values) -> Found:
-    """Return the posterior of one outline.
-
-    Parameters
-    ----------
-    problem : Problem
-    table, block, worth
-        As in `sampling.sampled`.
-    start : ndarray, shape (0,) or (K,)
-        Where to begin; empty for the touched elements' moments.
-    """
-    n = unknowns(problem.kind, problem.corners) + 1 + problem.estimated.shape[0]
-    p, root = np.zeros(n), np.zeros((n, n))
-    top, _ = topped(problem, table, start, (0, ATTEMPTS), -math.inf, p, root)
-    if top == -math.inf:
-        return Found(
-            0, p, np.empty((0, n)), np.empty(0), p, root, top, 0.0, top, 0.0, 0.0, 0.0, 0.0
-        )  # fmt: skip
-    return spread_out(problem, table, block, worth, p, root, top)
+        if height > -math.inf and (goodness_of_fit(problem, p).surprise > POOR or again):
+            return Mode(p, root, height), False
+    return Mode(p, root, height), attempts[1] < ATTEMPTS

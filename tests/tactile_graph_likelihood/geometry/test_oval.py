@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from helpers_likelihood import GRID, NOISE, drawn
+from helpers_likelihood import GRID, NOISE, drawn, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered, window
@@ -76,10 +76,13 @@ def test_sizes_follow_the_pad_unless_given():
 
     image = Image(np.ones((64, 32)), (0.5, 0.5), (0.0, 0.0), "gram")
     readings = readings_of(image, 0.1, 0.5)
-    low, high = FootprintDisc().model.range_cm(readings)
+    low, high = made(FootprintDisc).model.range_cm(readings)
     assert low == pytest.approx(0.2)
     assert high == pytest.approx(math.hypot(31.9, 15.9))
-    assert FootprintDisc(smallest_cm=1.0, largest_cm=40.0).model.range_cm(readings) == (1.0, 40.0)
+    assert made(FootprintDisc, smallest_cm=1.0, largest_cm=40.0).model.range_cm(readings) == (
+        1.0,
+        40.0,
+    )
 
 
 def test_readings_far_away_do_not_lead_the_search_astray():

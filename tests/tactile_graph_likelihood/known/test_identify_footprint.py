@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE, drawn
+from helpers_likelihood import NOISE, drawn, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import DataError, Degenerate, UsageError
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
@@ -49,11 +49,11 @@ def weighing(image, grams):
 
 
 def test_sizes_of_the_sample_come_from_its_touched_elements():
-    for it in IdentifyFootprint()._objects:
+    for it in made(IdentifyFootprint)._objects:
         if it.name in TRUE:
             ((_, _, sizes),) = it.outlines
             assert sizes.mean == pytest.approx(np.array(TRUE[it.name]), rel=0.03)
-    pentagon = next(o for o in IdentifyFootprint()._objects if o.name == "PENTAGON")
+    pentagon = next(o for o in made(IdentifyFootprint)._objects if o.name == "PENTAGON")
     five = next(s for _, n, s in pentagon.outlines if n == 5)
     assert five.mean[0] == pytest.approx(4.0, rel=0.04)
 
@@ -96,7 +96,7 @@ def test_equal_weight_and_area_but_another_shape_is_told_apart():
         "slab": {"shape": "rectangle", "length_cm": 10.2, "breadth_cm": 6.1},
         "oval": {"shape": "ellipse", "semi_major_cm": 5.9, "semi_minor_cm": 3.4},
     }
-    step, rng, right = IdentifyFootprint(database=data, sizes=sizes, on_pad="whole"), None, 0
+    step, rng, right = made(IdentifyFootprint, database=data, sizes=sizes, on_pad="whole"), None, 0
     rng = np.random.default_rng(2)
     outlines = {
         "puck": Circle(10.0, 9.5, 4.5),
@@ -114,7 +114,8 @@ def test_equal_weight_and_area_but_another_shape_is_told_apart():
 
 
 def test_weight_tells_equal_shapes_apart_and_a_stranger_is_unknown():
-    step = IdentifyFootprint(
+    step = made(
+        IdentifyFootprint,
         database=database({"light": 2000.0, "heavy": 2100.0}),
         sizes={n: {"shape": "disc", "radius_cm": 5.5} for n in ("light", "heavy")},
         on_pad="whole",
@@ -141,21 +142,21 @@ def test_the_density_of_a_weight_is_one():
 
 def test_what_cannot_be_used_is_refused_in_words():
     with pytest.raises(UsageError, match="no object named 'Disk I' is known"):
-        IdentifyFootprint(sizes={"Disk I": {"shape": "disc", "radius_cm": 1.0}})
+        made(IdentifyFootprint, sizes={"Disk I": {"shape": "disc", "radius_cm": 1.0}})
     with pytest.raises(DataError, match="has two sizes, but semi_major_cm and semi_minor_cm"):
-        IdentifyFootprint(database=database({"slab": 2000.0}, "rectangle"))
+        made(IdentifyFootprint, database=database({"slab": 2000.0}, "rectangle"))
     with pytest.raises(DataError, match="was learned without a shape"):
-        IdentifyFootprint(database=database({"thing": 2000.0}, ""))
+        made(IdentifyFootprint, database=database({"thing": 2000.0}, ""))
     corners = {"shape": "polygon", "corners_cm": [[0, 0], [3, 0], [0, 3]]}
     with pytest.raises(UsageError, match="needs sides and radius_cm"):
-        IdentifyFootprint(database=database({"a": 2000.0}), sizes={"a": corners})
+        made(IdentifyFootprint, database=database({"a": 2000.0}), sizes={"a": corners})
     with pytest.raises(DataError, match="learned in kilopascal; they are needed in gram"):
-        IdentifyFootprint(database=database({"a": 2000.0}, quantity="kilopascal"))
+        made(IdentifyFootprint, database=database({"a": 2000.0}, quantity="kilopascal"))
     empty = Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram")
     with pytest.raises(Degenerate, match="no element bears a load"):
-        IdentifyFootprint()(empty)
+        made(IdentifyFootprint)(empty)
 
 
 def test_all_objects_of_the_sample_are_taken():
-    names = tuple(o.name for o in IdentifyFootprint()._objects)
+    names = tuple(o.name for o in made(IdentifyFootprint)._objects)
     assert names == load_known(None, ["weight"]).names

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers_likelihood import drawn
+from helpers_likelihood import drawn, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
@@ -26,7 +26,7 @@ def noisy(image, rng, scatter=0.034):
 
 def test_frames_at_rest_do_not_sharpen_what_gains_blur():
     rng = np.random.default_rng(1)
-    image, step = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng), FollowFootprint(on_pad="whole")
+    image, step = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng), made(FollowFootprint, on_pad="whole")
     found = [step(noisy(image, rng), gap_s=0.1) for _ in range(8)]
     assert [f.frames for f in found] == list(range(1, 9))
     assert [f.moved for f in found] == [True] + [False] * 7
@@ -38,7 +38,7 @@ def test_where_readings_scatter_error_and_deviation_fall_with_frames():
     for seed in range(6):
         rng = np.random.default_rng(seed)
         image = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng, 0.1, 0.02)
-        step = FollowFootprint(on_pad="whole", sigma=0.1, frame_sigma=0.4)
+        step = made(FollowFootprint, on_pad="whole", sigma=0.1, frame_sigma=0.4)
         found = [step(noisy(image, rng, 0.4), gap_s=0.1) for _ in range(12)]
         assert found[-1].frames == 12
         off = [np.hypot(f.shape.x_cm - 10.0, f.shape.y_cm - 9.5) for f in (found[0], found[-1])]
@@ -52,7 +52,7 @@ def test_where_readings_scatter_error_and_deviation_fall_with_frames():
 def test_a_move_by_half_a_cell_is_noticed_with_its_first_frame():
     for seed in range(6):
         rng = np.random.default_rng(seed)
-        step = FollowFootprint(on_pad="whole")
+        step = made(FollowFootprint, on_pad="whole")
         image = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng)
         for _ in range(3):
             step(noisy(image, rng), gap_s=0.1)
@@ -64,7 +64,7 @@ def test_a_move_by_half_a_cell_is_noticed_with_its_first_frame():
 
 def test_a_slide_that_keeps_the_gains_is_noticed_too():
     for seed in range(4):
-        step = FollowFootprint(on_pad="whole")
+        step = made(FollowFootprint, on_pad="whole")
         first = drawn(Circle(10.0, 9.5, 5.5), 60.0, np.random.default_rng(seed))
         slid = drawn(Circle(10.65, 9.5, 5.5), 60.0, np.random.default_rng(seed))  # the same gains
         step(first, gap_s=0.1)
@@ -73,7 +73,7 @@ def test_a_slide_that_keeps_the_gains_is_noticed_too():
 
 
 def test_more_weight_is_no_move_but_shows_in_the_load():
-    rng, step = np.random.default_rng(2), FollowFootprint(on_pad="whole")
+    rng, step = np.random.default_rng(2), made(FollowFootprint, on_pad="whole")
     image = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng)
     step(image, gap_s=0.1)
     found = step(image.with_values(1.5 * image.values), gap_s=0.1)
@@ -85,7 +85,7 @@ def test_more_weight_is_no_move_but_shows_in_the_load():
 
 
 def test_sizes_of_the_same_object_are_learned_from_placement_to_placement():
-    rng, step = np.random.default_rng(3), FollowFootprint(on_pad="whole")
+    rng, step = np.random.default_rng(3), made(FollowFootprint, on_pad="whole")
     found = [step(drawn(Circle(8.0 + 0.6 * k, 9.5, 5.5), 60.0, rng)) for k in range(8)]
     assert [f.placements for f in found] == list(range(1, 9))
     assert found[-1].shape.radius_std_cm < 0.6 * found[0].shape.radius_std_cm
@@ -93,7 +93,7 @@ def test_sizes_of_the_same_object_are_learned_from_placement_to_placement():
 
 
 def test_another_object_does_not_inherit_them():
-    rng, step = np.random.default_rng(4), FollowFootprint(on_pad="whole")
+    rng, step = np.random.default_rng(4), made(FollowFootprint, on_pad="whole")
     step(drawn(Circle(10.0, 9.5, 5.5), 60.0, rng))
     found = step(drawn(Circle(10.0, 9.5, 3.5), 60.0, rng))
     assert found.placements == 1
@@ -103,14 +103,14 @@ def test_another_object_does_not_inherit_them():
 def test_where_gains_stay_with_the_pad_less_is_learned():
     stated = {}
     for fixed in (0.0, 0.5):
-        rng, step = np.random.default_rng(5), FollowFootprint(on_pad="whole", fixed=fixed)
+        rng, step = np.random.default_rng(5), made(FollowFootprint, on_pad="whole", fixed=fixed)
         found = [step(drawn(Circle(10.0, 9.5, 5.5), 60.0, rng)) for _ in range(6)]
         stated[fixed] = found[-1].shape.radius_std_cm
     assert stated[0.5] > 1.3 * stated[0.0]
 
 
 def test_an_empty_frame_ends_a_rest():
-    rng, step = np.random.default_rng(6), FollowFootprint(on_pad="whole")
+    rng, step = np.random.default_rng(6), made(FollowFootprint, on_pad="whole")
     image = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng)
     step(image)
     with pytest.raises(Degenerate, match="no element bears a load"):
@@ -127,7 +127,7 @@ def test_a_long_gap_makes_a_move_likelier():
     rest = AtRest(readings, 0.034, np.log(5.0))
     odds = rest.log_odds_of_move(readings)
     assert -100.0 < odds < -10.0
-    step = FollowFootprint(on_pad="whole", rest_s=1.0)
+    step = made(FollowFootprint, on_pad="whole", rest_s=1.0)
     step(image, gap_s=0.1)
     assert not step(image, gap_s=0.5 * -odds).moved
     assert step(image, gap_s=3.0 * -odds).moved

@@ -11,17 +11,20 @@ from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
 from tactile_graph_likelihood.several.joint_posterior import (
+    JointProblem,
+    Outlines,
     add_outline,
     gain,
     log_rest_of,
     overlap,
     slopes,
 )
-from tactile_graph_likelihood.several.maximise_jointly import climbed_together
-from tactile_graph_likelihood.several.misfit import misfit_of_load
+from tactile_graph_likelihood.several.maximise_jointly import maximise_jointly
+from tactile_graph_likelihood.several.posteriors import goodness_of_load
 from tactile_graph_likelihood.single.element_terms import OFF, ON
+from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
+from tactile_graph_likelihood.single.information import Information
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
-from tactile_graph_likelihood.single.misfit import misfit
 from tactile_graph_likelihood.single.problem import problem_of
 
 VECTOR = NOISE.vector(1.3)
@@ -37,45 +40,58 @@ def compiled():
         warm_up()
 
 
+def table(points, *rows):
+    at = list(rows or range(len(points)))
+    return Outlines(KINDS[at], CORNERS[at], points[at])
+
+
+def problem_of_joint(logs=BARE, states=None, load=BARE, share=BARE):
+    states = np.zeros(BARE.shape, np.uint8) if states is None else states
+    return JointProblem(GRID, logs, states, VECTOR, PRIOR, load, share)
+
+
+def beside(*rows, outlines=None):
+    found = problem_of_joint(load=BARE.copy(), share=BARE.copy())
+    for k in rows:
+        add_outline.call(found, outlines or table(POINTS), k)
+    return found
+
+
 def image(seed):
-    load, share = BARE.copy(), BARE.copy()
-    for kind, p in zip(KINDS, POINTS, strict=True):
-        add_outline.call(int(kind), 0, p, GRID, VECTOR, load, share)
+    load = beside(0, 1).load
     rng = np.random.default_rng(seed)
     load *= np.exp(0.48 * rng.standard_normal(load.shape)) * (rng.random(load.shape) > 0.16)
     on = load > 5.0
     return np.log(np.where(on, load, 1.0)), np.where(on, ON, OFF).astype(np.uint8)
 
 
-def both(points, logs, states, load=BARE, share=BARE):
-    return gain.call(KINDS, CORNERS, points, load, share, GRID, logs, states, VECTOR)
+def both(points, logs, states):
+    return gain.call(problem_of_joint(logs, states), table(points))
 
 
 def test_one_outline_adds_what_the_single_likelihood_says():
     logs, states = image(1)
     for k in (0, 1):
-        at = slice(k, k + 1)
         alone = log_likelihood.call(
             problem_of(int(KINDS[k]), 0, GRID, logs, states, VECTOR, PRIOR), POINTS[k]
         )
-        own = gain.call(KINDS[at], CORNERS[at], POINTS[at], BARE, BARE, GRID, logs, states, VECTOR)
+        own = gain.call(problem_of_joint(logs, states), table(POINTS, k))
         assert own == pytest.approx(alone, abs=1e-9)
 
 
 def test_two_outlines_add_what_one_and_then_the_other_beside_it_do():
     logs, states = image(2)
-    load, share = BARE.copy(), BARE.copy()
-    add_outline.call(DISC, 0, POINTS[0], GRID, VECTOR, load, share)
-    assert share == pytest.approx(covered.call(DISC, 0, POINTS[0], GRID, (0, 0, 16, 16)))
-    assert load == pytest.approx(math.exp(4.5) * share)
-    first = gain.call(KINDS[:1], CORNERS[:1], POINTS[:1], BARE, BARE, GRID, logs, states, VECTOR)
-    second = gain.call(KINDS[1:], CORNERS[1:], POINTS[1:], load, share, GRID, logs, states, VECTOR)
-    assert both(POINTS, logs, states) == pytest.approx(first + second, abs=1e-9)
+    first = beside(0)
+    assert first.share == pytest.approx(covered.call(DISC, 0, POINTS[0], GRID, (0, 0, 16, 16)))
+    assert first.load == pytest.approx(math.exp(4.5) * first.share)
+    one = gain.call(problem_of_joint(logs, states), table(POINTS, 0))
+    two = gain.call(problem_of_joint(logs, states, first.load, first.share), table(POINTS, 1))
+    assert both(POINTS, logs, states) == pytest.approx(one + two, abs=1e-9)
 
 
 def test_the_plain_kernel_gives_the_same():
     logs, states = image(3)
-    got = gain.reference(KINDS, CORNERS, POINTS, BARE, BARE, GRID, logs, states, VECTOR)
+    got = gain.reference(problem_of_joint(logs, states), table(POINTS))
     assert both(POINTS, logs, states) == pytest.approx(got, abs=1e-8)
 
 
@@ -92,8 +108,9 @@ def test_overlap_costs_and_touching_does_not():
 
 def test_slopes_are_those_of_the_gain():
     logs, states = image(5)
-    slope, matrix = np.empty(12), np.empty((12, 12))
-    slopes.call(KINDS, CORNERS, POINTS, BARE, BARE, GRID, logs, states, VECTOR, slope, matrix)
+    out = Information(np.empty(12), np.empty((12, 12)))
+    slopes.call(problem_of_joint(logs, states), table(POINTS), out)
+    slope, matrix = out
     assert matrix == pytest.approx(matrix.T)
     assert np.linalg.eigvalsh(matrix).min() > -1e-6
     for k, at in ((0, 3), (1, 5)):  # the loads: smooth
@@ -105,28 +122,27 @@ def test_slopes_are_those_of_the_gain():
     assert matrix[4, 4] == matrix[5, 5] == 1.0
 
 
-def test_a_climb_gains_and_comes_near_the_truth():
+def test_maximising_gains_and_comes_near_the_truth():
     off = []
     for seed in range(12):
         logs, states = image(seed)
         points = POINTS + np.array([0.4, -0.3, 0.0, 0.0, 0.0, 0.0])
-        before = both(points, logs, states) + log_rest_of.call(
-            KINDS, CORNERS, points, VECTOR, PRIOR
-        )
-        top = climbed_together.call(
-            KINDS, CORNERS, points, BARE, BARE, GRID, logs, states, VECTOR, PRIOR, 25, 0.1
-        )
+        problem, outlines = problem_of_joint(logs, states), table(points)
+        before = both(points, logs, states) + log_rest_of.call(problem, outlines)
+        top = maximise_jointly.call(problem, outlines, 25, 0.1)
+        points = outlines.points
         assert top > before
         assert top == pytest.approx(
-            both(points, logs, states) + log_rest_of.call(KINDS, CORNERS, points, VECTOR, PRIOR)
+            both(points, logs, states) + log_rest_of.call(problem, outlines)
         )
         off.append(np.hypot(*(points - POINTS)[:, :2].T))
-    assert np.median(off) < 0.48  # a climb ends at the nearest top; 0.5 where it began
+    assert np.median(off) < 0.48  # it ends at the nearest top; 0.5 where it began
 
 
 def test_no_prior_where_an_outline_is_too_small_or_too_light():
     def rest(kind, corners, p):
-        return log_rest_of.call(np.array([kind]), np.array([corners]), p[None], VECTOR, PRIOR)
+        outline = Outlines(np.array([kind]), np.array([corners]), p[None])
+        return log_rest_of.call(problem_of_joint(), outline)
 
     good = np.array([8.0, 8.0, 2.1, 0.1, 4.5, 0.0])
     assert math.isfinite(rest(REGULAR, 3, good))
@@ -137,14 +153,13 @@ def test_no_prior_where_an_outline_is_too_small_or_too_light():
 def test_the_best_cut_parts_two_discs():
     kinds = np.array([DISC, DISC])
     points = np.array([[6.0, 6.0, 2.6, 4.5, 0, 0], [9.9, 9.9, 2.6, 4.5, 0, 0]])
-    load, share = BARE.copy(), BARE.copy()
-    add_outline.call(int(kinds[0]), 0, points[0], GRID, VECTOR, load, share)
-    first = load > 5.0
-    add_outline.call(int(kinds[1]), 0, points[1], GRID, VECTOR, load, share)
+    discs = Outlines(kinds, CORNERS, points)
+    first = beside(0, outlines=discs).load > 5.0
+    load = beside(0, 1, outlines=discs).load
     states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
     logs = np.log(np.where(load > 5.0, load, 1.0))
     sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
-    found, _ = cuts.call(states, GRID, logs, VECTOR, 4, sides)
+    found, _ = cuts.call(problem_of_joint(logs, states), 4, sides)
     best = sides[int(np.argmax(found))]
     assert ((best > 0) == (states == ON)).all()
     assert min(((best == k) != first).sum() for k in (1, 2)) <= 2
@@ -152,12 +167,11 @@ def test_the_best_cut_parts_two_discs():
 
 def test_the_surprise_of_one_outline_is_the_single_fits():
     logs, states = image(6)
-    load, share = BARE.copy(), BARE.copy()
-    add_outline.call(RECTANGLE, 0, POINTS[1], GRID, VECTOR, load, share)
     problem = problem_of(RECTANGLE, 0, GRID, logs, states, VECTOR, PRIOR)
-    alone = misfit.call(problem, POINTS[1])
-    found, _ = misfit_of_load.call(load, 6, logs, states, VECTOR)
-    assert found == pytest.approx(alone[0])
+    alone = goodness_of_fit.call(problem, POINTS[1])
+    seen = problem_of_joint(logs, states, beside(1).load)
+    found, _ = goodness_of_load.call(seen, 6)
+    assert found == pytest.approx(alone.surprise)
 
 
 def test_components_reach_over_corners_and_as_far_as_asked():

@@ -10,7 +10,7 @@ from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import packed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
-from tactile_graph_likelihood.single.information import information
+from tactile_graph_likelihood.single.information import Information, information
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_likelihoods
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.problem import problem_of
@@ -44,8 +44,8 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
         problem.states[share < (0.3 if "fall" in estimated else 0.15)] = UNKNOWN
     p = np.append(p, noise.guess(1.3)[:, 0])
     n = len(p)
-    slope, matrix = np.empty(n), np.empty((n, n))
-    information.compiled(problem, p, slope, matrix)
+    slope, matrix = out = Information(np.empty(n), np.empty((n, n)))
+    information.compiled(problem, p, out)
     for k in range(n):
         up, down = p.copy(), p.copy()
         up[k] += 1e-4
@@ -64,9 +64,9 @@ def test_information_is_the_same_plain_and_compiled():
     problem, p = problem_and_point(SHAPES[2], 60.0, np.random.default_rng(2))
     found = []
     for which in (information.reference, information.compiled):
-        slope, matrix = np.empty(6), np.empty((6, 6))
-        which(problem, p, slope, matrix)
-        found.append(np.vstack([slope, matrix]))
+        out = Information(np.empty(6), np.empty((6, 6)))
+        which(problem, p, out)
+        found.append(np.vstack(out))
     np.testing.assert_allclose(*found, rtol=1e-6, atol=1e-6)
 
 

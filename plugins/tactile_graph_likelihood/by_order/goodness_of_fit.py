@@ -8,11 +8,16 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
-from tactile_graph_likelihood.by_order.likelihood import LEAST_SHARE, Order, log_order, shares_along
-from tactile_graph_likelihood.geometry.covered import Box, blurred, covered, window
+from tactile_graph_likelihood.by_order.likelihood import (
+    LEAST_SHARE,
+    Order,
+    OrderProblem,
+    log_order,
+    shares_along,
+)
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
-    FOAM,
     OFF,
     ON,
     SIGMA,
@@ -21,9 +26,17 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.misfit import DENSITY, SEEN, SURE, leaning_of
-from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
-from tactile_graph_likelihood.single.shares import foam_margin
+from tactile_graph_likelihood.single.goodness_of_fit import (
+    DENSITY,
+    SEEN,
+    SURE,
+    GoodnessOfFit,
+    dome,
+    neighbours_alike,
+    standardised,
+    trend,
+)
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 
 MOST_TIED = 0.25
 """Share of the touched elements that, if they read the same, say nothing of a pattern."""
@@ -47,7 +60,7 @@ def touch_moments(share: Values, t: float, box: Box, states: States, noise: Valu
     share : ndarray, shape (rows, columns)
         Coverage of a window.
     t, box, states, noise
-        As in `order_likelihood.log_touched`.
+        As in `likelihood.log_touched`.
     """
     sums = np.zeros(3)
     for i in range(states.shape[0]):
@@ -97,37 +110,19 @@ def order_moments(
 
 
 @compiled_as_is
-def order_misfit(
-    kind: int,
-    corners: int,
-    p: Values,
-    grid: Values,
-    states: States,
-    order: Order,
-    ends: Order,
-    noise: Values,
-    table: Values,
-) -> tuple[float, float, float, float]:
-    """Return how surprising touch and order are, and what patterns they leave over.
+def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
+    """Return how surprising touch and order are at a posterior mean, and what patterns they leave.
 
-    Parameters
-    ----------
-    kind, corners, p, grid, states, order, ends, noise, table
-        As in `order_log_likelihood`; the point is the posterior mean.
-
-    Returns
-    -------
-    (float, float, float, float)
-        As of `misfit.misfit`. The residuals are of the loads at which `log_order` expects the
-        elements of such an order; those of many equal readings are left out.
+    The residuals are of the loads at which `log_order` expects the elements of such an order;
+    those of many equal readings are left out.
     """
+    kind, corners, grid, noise = problem.kind, problem.corners, problem.grid, problem.noise
+    states, order, ends, table = problem.states, problem.order, problem.ends, problem.hazards
     rows, columns = states.shape
     box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
     share = np.zeros((max(box[2], 0), max(box[3], 0)))
     if box[2] > 0 and box[3] > 0:
-        share = covered(kind, corners, p, grid, box)
-        if noise[FOAM] > 0.0:
-            share = blurred(share, noise[FOAM], box, rows, columns)
+        share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
     n, sigma, t = order.shape[0], noise[SIGMA], p[unknowns(kind, corners)]
     along, levels = shares_along(share, box, order), np.zeros(n)
     log_order(along, ends, sigma, t, table, levels)
@@ -144,7 +139,7 @@ def order_misfit(
         tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
         i, j = order[k, 0], order[k, 1]
         residuals[i, j] = u if z > SURE else 0.0
-        leaning[i, j] = leaning_of(u, z, tail, density) if z > SEEN else 0.0
+        leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
     surprise = (sums[0] - sums[1] - 0.5 * p.shape[0]) / math.sqrt(sums[2])
     lean, fall = trend(leaning, box[0], box[1], dome(share))
-    return surprise, neighbours_alike(residuals), lean, fall
+    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)

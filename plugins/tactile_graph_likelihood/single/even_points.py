@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.sampling import FREEDOM
+from tactile_graph_likelihood.single.importance import FREEDOM
 
 SHIFTS = 32
 FIRST = 128  # points by which a shift is judged

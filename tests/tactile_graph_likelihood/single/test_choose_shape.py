@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE, drawn
+from helpers_likelihood import NOISE, drawn, made
 from tactile_graph import load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
@@ -21,7 +21,7 @@ def compiled():
 
 
 def test_evidence_tells_discs_from_rectangles():
-    rng, step = np.random.default_rng(3), ChooseShape()
+    rng, step = np.random.default_rng(3), made(ChooseShape)
     for shape, name in (
         (Circle(10.0, 9.5, 5.5), "disc"),
         (Rectangle(10.0, 9.5, 13.0, 6.0, 0.4), "rectangle"),
@@ -36,7 +36,7 @@ def test_evidence_tells_discs_from_rectangles():
 def test_no_shape_is_chosen_where_nothing_is_touched():
     empty = Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram")
     with pytest.raises(Degenerate, match="no element bears a load"):
-        ChooseShape()(empty)
+        made(ChooseShape)(empty)
     with pytest.raises(Degenerate, match="nothing to learn from"):
         learned_noise(Model(DISC, noise=NOISE), [empty])
 

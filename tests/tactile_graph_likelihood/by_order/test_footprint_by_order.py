@@ -7,15 +7,15 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from helpers_likelihood import GRID, NOISE, drawn
+from helpers_likelihood import GRID, NOISE, drawn, made
 from tactile_graph import load
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Mask, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
+from tactile_graph_likelihood.by_order.goodness_of_fit import order_moments, touch_moments
 from tactile_graph_likelihood.by_order.hazards import hazard, hazards
-from tactile_graph_likelihood.by_order.likelihood import log_order, ranked
-from tactile_graph_likelihood.by_order.misfit import order_moments, touch_moments
+from tactile_graph_likelihood.by_order.likelihood import log_order, order_of
 
 SHARES = np.array([0.1, 0.4, 0.7, 1.0])
 SIGMA, T = 0.5, 2.5
@@ -120,7 +120,7 @@ def test_what_is_touched_has_the_moments_of_its_chances():
 
 def test_touched_elements_are_ranked():
     logs, states = np.array([[3.0, 1.0], [0.0, 1.0]]), np.array([[1, 1], [0, 1]], np.uint8)
-    order, ends = ranked(logs, states)
+    order, ends = order_of(logs, states)
     assert order.tolist() == [[0, 1], [1, 1], [0, 0]]
     assert ends.tolist() == [2, 2, 3]
 
@@ -130,7 +130,7 @@ def test_touched_elements_are_ranked():
     [("disc", Circle(10.0, 9.5, 5.5)), ("rectangle", Rectangle(10.0, 9.5, 13.0, 6.0, 0.4))],
 )
 def test_no_monotone_law_changes_the_answer_and_it_is_near(shape, true):
-    step = FootprintByOrder(shape=shape, on_pad="whole")
+    step = made(FootprintByOrder, shape=shape, on_pad="whole")
     off = []
     for seed in range(5):
         image = drawn(true, 60.0, np.random.default_rng(seed))
@@ -143,7 +143,7 @@ def test_no_monotone_law_changes_the_answer_and_it_is_near(shape, true):
 
 
 def test_touch_alone_still_locates_and_order_adds():
-    step, sharp, blunt = FootprintByOrder(on_pad="whole"), [], []
+    step, sharp, blunt = made(FootprintByOrder, on_pad="whole"), [], []
     for seed in range(8):
         image = drawn(Circle(10.0, 9.5, 5.5), 60.0, np.random.default_rng(seed))
         touch = image.with_values((image.values > 0).astype(float), "raw")
@@ -156,7 +156,7 @@ def test_touch_alone_still_locates_and_order_adds():
 def test_a_mask_says_what_is_touched_even_of_readings_below_zero():
     image = drawn(Circle(10.0, 9.5, 5.5), 60.0, np.random.default_rng(3))
     mask = Mask(image.values > 0.0, image.pitch_cm, image.origin_cm)
-    step = FootprintByOrder(on_pad="whole")
+    step = made(FootprintByOrder, on_pad="whole")
     lowered = image.with_values(image.values - 1000.0, "raw")
     assert step(lowered, mask).x_cm == pytest.approx(step(image).x_cm, abs=1e-12)
     with pytest.raises(Degenerate, match="no element is touched"):
@@ -165,7 +165,7 @@ def test_a_mask_says_what_is_touched_even_of_readings_below_zero():
 
 def test_nothing_touched_has_no_answer():
     with pytest.raises(Degenerate, match="no element bears a load"):
-        FootprintByOrder()(Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "raw"))
+        made(FootprintByOrder)(Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "raw"))
 
 
 def frames(n, seed, **scene):
@@ -179,7 +179,7 @@ def seen(step, frame):
 
 
 def test_its_region_holds_the_truth_and_designed_frames_fit():
-    step = FootprintByOrder(on_pad="whole")
+    step = made(FootprintByOrder, on_pad="whole")
     rows = []
     for frame in frames(100, 61):
         found, true = seen(step, frame), frame.truth[0].shape
@@ -191,7 +191,7 @@ def test_its_region_holds_the_truth_and_designed_frames_fit():
 
 
 def test_volts_are_freed_of_the_circuit_that_shadows_elements():
-    step, decouple = FootprintByOrder(on_pad="whole"), load("circle-likelihood")
+    step, decouple = made(FootprintByOrder, on_pad="whole"), load("circle-likelihood")
     run = decouple.runner(only=["siemens"])
     (frame,) = frames(1, 3)
     touched = Mask(frame.image.values >= 0.01, frame.image.pitch_cm, frame.image.origin_cm)
@@ -203,7 +203,7 @@ def test_volts_are_freed_of_the_circuit_that_shadows_elements():
 
 def test_impossible_volts_say_nothing():
     (frame,) = frames(1, 3)
-    step, volts = FootprintByOrder(on_pad="whole"), frame.image.values.copy()
+    step, volts = made(FootprintByOrder, on_pad="whole"), frame.image.values.copy()
     volts[:, 8] = 1.0
     found = seen(step, replace(frame, image=frame.image.with_values(volts)))
     true = frame.truth[0].shape
@@ -227,7 +227,7 @@ def disturbed(kind, rng):
 
 @pytest.mark.parametrize("kind", ["leans", "strays", "bumps"])
 def test_what_neither_touch_nor_order_explains_is_flagged(kind):
-    step = FootprintByOrder(on_pad="whole")
+    step = made(FootprintByOrder, on_pad="whole")
     found = [step(disturbed(kind, np.random.default_rng(seed))) for seed in range(6)]
     assert sum(not f.fits for f in found) >= 5
     plain = [step(disturbed("", np.random.default_rng(seed))) for seed in range(6)]

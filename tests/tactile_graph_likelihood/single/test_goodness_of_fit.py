@@ -9,7 +9,11 @@ import pytest
 from scipy.integrate import trapezoid as integral
 
 from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SPAN
-from tactile_graph_likelihood.single.misfit import DENSITY, moments_of_strays, moments_of_term
+from tactile_graph_likelihood.single.goodness_of_fit import (
+    DENSITY,
+    moments_of_strays,
+    moments_of_term,
+)
 
 
 @pytest.mark.parametrize("z", [-2.0, 0.0, 1.3, 5.0])

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.geometry.even_points import even_points
 from tactile_graph_likelihood.geometry.linear import cholesky, inverted, solved
-from tactile_graph_likelihood.single.sampling import FREEDOM, weigh
+from tactile_graph_likelihood.single.even_points import even_points
+from tactile_graph_likelihood.single.importance import FREEDOM, weigh
 
 
 def test_even_points_have_the_moments_of_students_t():

@@ -1,6 +1,6 @@
 """The posterior of one outline among others that stay as they are, by importance sampling.
 
-As `sampling.sampled`, but for an outline whose load adds to that of others.
+As `sample.importance_sample`, but for an outline whose load adds to that of others.
 """
 
 from __future__ import annotations
@@ -12,63 +12,56 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, gain, log_rest_of
-from tactile_graph_likelihood.single.element_terms import States
-from tactile_graph_likelihood.single.problem import Places
-from tactile_graph_likelihood.single.sampling import (
+from tactile_graph_likelihood.several.joint_posterior import (
+    WIDTH,
+    JointProblem,
+    Outlines,
+    gain,
+    log_rest_of,
+)
+from tactile_graph_likelihood.single.importance import (
     FEWEST,
     FREEDOM,
     KEPT,
     WIDER,
-    flatten,
-    spread_of,
+    temper,
     weigh,
+    weighted_moments,
 )
+from tactile_graph_likelihood.single.sample import Plan
 
 PROPOSALS = 4
 FIRST = 2.0  # the first proposal's variance, over the inverse information
 
 
 @compiled_as_is
-def sampled_beside(
-    kinds: Places,
-    corners: Places,
-    centre: Values,
-    covariance: Values,
-    load: Values,
-    share: Values,
-    grid: Values,
-    logs: Values,
-    states: States,
-    noise: Values,
-    prior: Values,
-    table: Values,
-    block: int,
-    worth: float,
-    points: Values,
+def sample_beside(
+    problem: JointProblem, outline: Outlines, covariance: Values, plan: Plan, points: Values,
     weights: Values,
-) -> tuple[int, float, float, float]:
-    """Sample around an outline; write points and weights.
+) -> tuple[int, float, float]:  # fmt: skip
+    """Sample around an outline's mode; write points and weights.
 
     Parameters
     ----------
-    kinds, corners : ndarray, shape (1,)
-        Of the outline.
-    centre, covariance : ndarray, shape (K,) and (K, K)
-        First proposal: the outline's numbers and the logarithm of its load.
-    load, share, grid, logs, states, noise
-        As in `several_posterior.gain`.
-    prior, table, block, worth
-        As in `sampling.sampled`. A new proposal is made after each block, four at most.
+    problem : JointProblem
+    outline : Outlines
+        One outline at its mode.
+    covariance : ndarray, shape (K, K)
+        Of its numbers and the logarithm of its load: the first proposal's.
+    plan : Plan
+        A new proposal is made after each block, four at most.
     points, weights : ndarray, shape (N, K) and (N,)
         Written.
 
     Returns
     -------
-    (int, float, float, float)
-        Points used, log evidence, number of equal weights, the largest log posterior density.
+    (int, float, float)
+        Points used, log evidence, number of equal weights.
     """
-    n, most = centre.shape[0], table.shape[0]
+    table, block, worth = plan
+    kinds, corners, n = outline.kinds, outline.corners, covariance.shape[0]
+    centre = outline.points[0, :n].copy()
+    most = table.shape[0]
     turn = 2 + sizes(kinds[0]) if period(kinds[0], corners[0]) > 0.0 else -1
     half = 0.5 * period(kinds[0], corners[0])
     root, off, work = np.zeros((n, n)), np.empty(n), np.empty(n)
@@ -78,8 +71,9 @@ def sampled_beside(
     constant = math.lgamma(0.5 * (FREEDOM + n)) - math.lgamma(0.5 * FREEDOM)
     constant -= 0.5 * n * math.log(FREEDOM * math.pi)
     proposal, spread = FIRST * covariance, np.empty((n, n))
-    aim, flat, trial = centre.copy(), np.empty(most), np.zeros((1, WIDTH))
-    count, proposals, evidence, equal, top = 0, 0, -math.inf, 0.0, -math.inf
+    aim, tempered, trial = centre.copy(), np.empty(most), np.zeros((1, WIDTH))
+    tried = Outlines(kinds, corners, trial)
+    count, proposals, evidence, equal = 0, 0, -math.inf, 0.0
     while count + block <= most:
         if proposals < PROPOSALS:
             if not cholesky(proposal, root):
@@ -98,11 +92,10 @@ def sampled_beside(
                 trial[0, k] = points[i, k]
             here = -math.inf
             if turn < 0 or abs(points[i, turn] - centre[turn]) <= half:
-                here = log_rest_of(kinds, corners, trial, noise, prior)
+                here = log_rest_of(problem, tried)
             if here > -math.inf:
-                here += gain(kinds, corners, trial, load, share, grid, logs, states, noise)
+                here += gain(problem, tried)
             logs_p[i] = here
-            top = max(top, here)
         drawn[now] += block
         count += block
         for c in range(proposals):
@@ -114,9 +107,9 @@ def sampled_beside(
         evidence, equal = weigh(logs_p, logs_q, drawn / count, proposals, count, weights)
         if equal <= 0.0 or (equal >= worth and count >= 2 * block):
             break
-        flatten(weights, count, FEWEST * n, flat)
-        spread_of(points, flat, count, aim, spread)
+        temper(weights, count, FEWEST * n, tempered)
+        weighted_moments(points, tempered, count, aim, spread)
         for k in range(n):
             for m in range(n):
                 proposal[k, m] = WIDER * spread[k, m] + KEPT * covariance[k, m]
-    return count, evidence, equal, top
+    return count, evidence, equal

@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers_likelihood import GRID, NOISE
+from helpers_likelihood import GRID, NOISE, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
-from tactile_graph_likelihood.geometry.pressure import press
 from tactile_graph_likelihood.single.any_pressure import (
     ALIKE,
     FOAM_ODDS,
@@ -23,8 +22,8 @@ from tactile_graph_likelihood.single.any_pressure import (
 from tactile_graph_likelihood.single.element_terms import FALL, LEAN_X, LEAN_Y
 from tactile_graph_likelihood.single.fit_footprint import FitFootprint
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
+from tactile_graph_likelihood.single.load_shares import press, shares_of
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.shares import shares_of
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 
@@ -144,7 +143,7 @@ SETTINGS = {"sigma": 0.48, "voids": 0.16, "shows_from": 5.0, "gap_cm": 0.3, "on_
 
 
 def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
-    steps = [FootprintDisc(pressure=p, **SETTINGS) for p in ("any", "even")]
+    steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     ball = [errors(step, frames(40, 1, fall=0.5)) for step in steps]
     assert ball[0][1] < 0.5 * ball[1][1]
     assert ball[0][2] > 0.7 > 0.2 > ball[1][2]
@@ -154,7 +153,7 @@ def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
 
 
 def test_an_even_face_loses_nothing_by_the_question():
-    steps = [FootprintDisc(pressure=p, **SETTINGS) for p in ("any", "even")]
+    steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     asked, plain = (errors(step, frames(60, 3)) for step in steps)
     assert asked[0] < 1.05 * plain[0]
     assert asked[1] < 1.1 * plain[1]
@@ -191,7 +190,7 @@ def test_the_mixture_is_weighed_by_evidence_and_what_was_thought_before():
 
 def test_what_is_known_or_estimated_is_not_asked_again():
     def asked(**settings):
-        return set(AnyPressure(FootprintDisc(**settings).model).others)
+        return set(AnyPressure(made(FootprintDisc, **settings).model).others)
 
     assert asked() == {"lean", "fall", "foam"}
     assert asked(estimate=["fall"]) == {"lean", "foam"}
@@ -230,7 +229,7 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
 
 
 def test_foam_nobody_told_of_is_found():
-    steps = [FootprintDisc(pressure=p, **SETTINGS) for p in ("any", "even")]
+    steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     pad = Geometry()
     soft = [
         (disc, image.with_values(np.where(blurred < 5.0, 0.0, blurred)))

@@ -1,4 +1,7 @@
-"""How the pressure under an object varies: it leans to a side, and falls or rises to the rim.
+"""What share of a fully covered element's load an outline brings to each element of a window.
+
+Its coverage, weighed by how the pressure varies, which leans to a side and falls or rises to the
+rim, and blurred as by foam.
 
 With r the distance from the centre over that of the outline in the same direction, a place bears
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
@@ -15,7 +18,7 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box
+from tactile_graph_likelihood.geometry.covered import Box, covered
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
     ELLIPSE,
@@ -26,8 +29,9 @@ from tactile_graph_likelihood.geometry.outlines import (
     corners_of,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse
-from tactile_graph_likelihood.single.element_terms import FALL, LEAN_X, LEAN_Y
+from tactile_graph_likelihood.single.element_terms import FALL, FOAM, LEAN_X, LEAN_Y, SQRT_HALF
 
+FOAM_REACH = 3.5  # widths of the blur
 LEAST_FALL, MOST_FALL = -0.7, 3.0
 NARROW = 0.5
 """Of 1 - r**2 over an element, over its mean: less is integrated by its series."""
@@ -155,3 +159,69 @@ def _distance(kind: int, lines: Values, x: float, y: float) -> tuple[float, floa
         if along > best:
             best, at = along, k
     return max(best, 0.0), math.hypot(lines[at, 0], lines[at, 1])
+
+
+@compiled_as_is
+def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> Values:
+    """Return coverage as foam of a width (standard deviation, in cells) passes it on.
+
+    As `tactile_graph_pads.contact.spread` does: each element takes what falls on its cell, and
+    nothing leaves the pad of ``rows`` x ``columns``. The window must reach 3.5 widths further than
+    the outline.
+    """
+    reach = math.ceil(FOAM_REACH * width) + 1
+    weights = np.empty(reach + 1)
+    for k in range(reach + 1):
+        far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
+        weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
+    turned = _blurred_down(shares, weights, box[0], rows)
+    return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+
+
+@compiled_as_is
+def _blurred_down(shares: Values, weights: Values, first: int, size: int) -> Values:
+    """Blur along the first axis; weights of a source add up to 1 on a pad of ``size`` lines."""
+    lines, across = shares.shape
+    reach = weights.shape[0] - 1
+    out = np.zeros((lines, across))
+    for i in range(lines):
+        kept = 0.0
+        for k in range(-reach, reach + 1):
+            if 0 <= first + i + k < size:
+                kept += weights[abs(k)]
+        for k in range(-reach, reach + 1):
+            if 0 <= i + k < lines:
+                weight = weights[abs(k)] / kept
+                for j in range(across):
+                    out[i + k, j] += weight * shares[i, j]
+    return out
+
+
+@compiled_as_is
+def foam_margin(grid: Values, noise: Values) -> float:
+    """Return how far, in cm, foam carries load beyond an outline."""
+    foam = (FOAM_REACH * noise[FOAM] + 2.0) * grid[2] if noise[FOAM] > 0.0 else 0.0
+    margin: float = foam + grid[5]
+    return margin
+
+
+@compiled_as_is
+def shares_of(
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
+    columns: int,
+) -> Values:  # fmt: skip
+    """Return coverage, weighed by the pressure and blurred by foam, shape (rows, columns) of a box.
+
+    Parameters
+    ----------
+    kind, corners, p, grid, box
+        As in `covered.covered`.
+    noise : ndarray, shape (8,)
+        As in `element_terms`; its foam, fall and lean.
+    rows, columns : int
+        Of the whole image.
+    """
+    shares = covered(kind, corners, p, grid, box)
+    if not is_even(noise):
+        press(kind, corners, p, grid, noise, box, shares)
+    return blurred(shares, noise[FOAM], box, rows, columns) if noise[FOAM] > 0.0 else shares

@@ -11,7 +11,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values
 from tactile_graph_likelihood.geometry.oval import as_ellipse
 from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, log_of, mixed
-from tactile_graph_likelihood.single.model import Model, Top
+from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -47,15 +47,15 @@ class FrameFits:
         self.logs: dict[Key, float] = {}
         self.found: dict[Key, Posterior] = {}
         self.reason = "none of the shapes explains what is touched"
-        self._fits: dict[Key, tuple[Model, Top]] = {}
+        self._fits: dict[Key, tuple[Model, Likeliest]] = {}
 
     def add_even(self, outlines: Sequence[AnyPressure]) -> None:
         """Add the most likely point of each outline with an even face."""
-        tops = [outline.even.top_of(self.readings) for outline in outlines]
+        tops = [outline.even.likeliest(self.readings) for outline in outlines]
         likeliest = max(top.evidence for top in tops)
         for k, outline in enumerate(outlines):
             if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
-                tops[k] = outline.even.top_of(self.readings, tops[k])
+                tops[k] = outline.even.likeliest(self.readings, tops[k])
             self._add((k, EVEN), outline.even, tops[k])
 
     def add_others(self, outlines: Sequence[AnyPressure], asked: Sequence[str]) -> None:
@@ -67,9 +67,9 @@ class FrameFits:
             for part in asked:
                 begin = outline.begin(part, self.point((k, EVEN)))
                 model = outline.others[part]
-                self._add((k, part), model, model.top_of(self.readings, start=begin))
+                self._add((k, part), model, model.likeliest(self.readings, start=begin))
 
-    def _add(self, key: Key, model: Model, top: Top) -> None:
+    def _add(self, key: Key, model: Model, top: Likeliest) -> None:
         self._fits[key] = model, top
         self.logs[key] = top.evidence
 
@@ -78,19 +78,19 @@ class FrameFits:
         if key in self.found:
             return self.found[key].most_likely
         model, top = self._fits[key]
-        return as_ellipse.call(top.p) if model.kind == ELLIPSE else top.p
+        return as_ellipse.call(top.mode.p) if model.kind == ELLIPSE else top.mode.p
 
     def look_around(self, before: Mapping[str, float]) -> None:
         """Find the posteriors of the likely fits, given the probabilities of pressures."""
         scores = {key: log + log_of(before[key[1]]) for key, log in self.logs.items()}
         for key in sorted(scores, key=scores.__getitem__, reverse=True):
             model, top = self._fits[key]
-            if key in self.found or top.height == -math.inf:
+            if key in self.found or top.mode.height == -math.inf:
                 continue
             if scores[key] < max(scores.values()) - FAR:
                 continue
             try:
-                self.found[key] = model.around(self.readings, top)
+                self.found[key] = model.posterior_around(self.readings, top.mode)
                 self.logs[key] = self.found[key].log_evidence
             except Degenerate as why:
                 self.logs[key], self.reason = -math.inf, str(why)

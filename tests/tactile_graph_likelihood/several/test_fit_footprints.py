@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE
+from helpers_likelihood import NOISE, made
 from tactile_graph.compiled import have_compiler, warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
@@ -15,7 +15,7 @@ from tactile_graph_likelihood.several.fit_footprints import FitFootprints
 from tactile_graph_likelihood.single.likely import LikelyCircle, LikelyRectangle
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
-FIT = FitFootprints()
+FIT = made(FitFootprints)
 PAIR = [Circle(6.0, 7.0, 3.0), Circle(12.1, 7.4, 3.1)]
 THREE = [Rectangle(5.0, 5.0, 7.0, 4.0, 0.3), Circle(14.5, 5.5, 2.8), Circle(9.0, 15.0, 3.4)]
 
@@ -77,9 +77,9 @@ def test_three_objects_each_with_its_kind_load_and_place():
 
 def test_kinds_most_and_starts_are_heeded():
     image = image_of(PAIR, 3)
-    discs = FitFootprints(kinds=["disc"])(image)
+    discs = made(FitFootprints, kinds=["disc"])(image)
     assert all(isinstance(s, LikelyCircle) for s in discs.shapes)
-    assert FitFootprints(most=1)(image).count == 1
+    assert made(FitFootprints, most=1)(image).count == 1
     started = FIT(image, [*PAIR])
     assert started.count == 2
     assert started.log_evidence >= FIT(image).log_evidence - 1e-9
@@ -112,4 +112,4 @@ def test_an_empty_pad_and_wrong_sizes_are_told():
     with pytest.raises(Degenerate, match="no element"):
         FIT(Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram"))
     with pytest.raises(ValueError, match="smallest_cm"):
-        FitFootprints(smallest_cm=3.0, largest_cm=2.0)
+        made(FitFootprints, smallest_cm=3.0, largest_cm=2.0)

@@ -1,4 +1,4 @@
-"""``Inside``: readings that outlines of one search all cover whole, as few numbers.
+"""``CoveredWhole``: readings that outlines of one search all cover whole, as few numbers.
 
 What such an element adds to the likelihood depends on the outline by its load alone, so elements
 that read nearly the same need not be looked at one by one. Their logarithms are sorted into bins;
@@ -16,8 +16,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, bounds, unknowns
-from tactile_graph_likelihood.geometry.pressure import is_even
-from tactile_graph_likelihood.large_pads.rims import Runs, drawn_as, runs_of
+from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import (
     FOAM,
     LEAST,
@@ -28,6 +27,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     on_level,
 )
+from tactile_graph_likelihood.single.load_shares import is_even
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
@@ -39,18 +39,18 @@ FAR, NARROWER, LARGER = 2.0, 0.65, 1.5
 sorted anew."""
 LARGE = 800.0  # elements around an outline from which on it is looked at by its rim
 MARGIN, KEPT = 2.0, 0.8
-"""Pitches by which an outline may move so that all is still inside, and those at which the inside
-is looked for anew."""
-ENOUGH = 0.85  # of what might be inside
+"""Pitches by which an outline may move so that it still covers all, and those at which that is
+looked for anew."""
+ENOUGH = 0.85  # of what might be covered whole
 FLAT = 1e-9  # variance of a bin, over its width squared, that is none
 
 COUNT, OFFS, NODES, LOAD, WIDTH = range(5)
-"""Places in an inside's numbers: elements, those that read nothing, weighted readings; the load's
+"""Places in the numbers: elements, those that read nothing, weighted readings; the load's
 logarithm and the sigma for which they were sorted."""
 
 
-class Inside(NamedTuple):
-    """Elements that are inside, and what they read; all written in place.
+class CoveredWhole(NamedTuple):
+    """Elements that are covered whole, and what they read; all written in place.
 
     ``first`` is the first row, ``runs`` hold a row's first and one past its last column;
     ``numbers`` are named by `COUNT` and so on; ``readings`` and ``weights`` have so many entries
@@ -65,10 +65,10 @@ class Inside(NamedTuple):
 
 
 @compiled_as_is
-def nothing_inside(rows: int) -> Inside:
-    """Return an inside without elements, for a pad of so many rows; 0 for none ever."""
+def nothing_covered(rows: int) -> CoveredWhole:
+    """Return a record without elements, for a pad of so many rows; 0 for none ever."""
     size = 2 * BINS_A_SIGMA * 2 * REACH if rows > 0 else 0
-    return Inside(
+    return CoveredWhole(
         np.zeros(1, np.int64), np.zeros((rows, 2), np.int64), np.zeros(5), np.zeros(size),
         np.zeros(size),
     )  # fmt: skip
@@ -84,55 +84,61 @@ def by_rims(problem: Problem) -> bool:
 
 
 @compiled_as_is
-def inside_of(problem: Problem, p: Values) -> Inside:
-    """Return an inside without elements yet; of no rows where looking at each costs no more."""
+def empty_for(problem: Problem, p: Values) -> CoveredWhole:
+    """Return a record without elements yet; of no rows where looking at each costs no more."""
     left, top, right, bottom = bounds(problem.kind, problem.corners, p)
     elements = (right - left) * (bottom - top) / (problem.grid[2] * problem.grid[2])
-    return nothing_inside(problem.states.shape[0] if elements > LARGE and by_rims(problem) else 0)
+    return nothing_covered(problem.states.shape[0] if elements > LARGE and by_rims(problem) else 0)
 
 
 @compiled_as_is
-def holds(inside: Inside, load: float, sigma: float, box: Box, runs: Runs) -> bool:
-    """Return whether all that is inside lies in an outline's own runs, and is sorted for it."""
-    numbers = inside.numbers
+def still_covered(whole: CoveredWhole, load: float, sigma: float, box: Box, runs: Runs) -> bool:
+    """Return whether an outline covers all of them whole, and they are sorted for its load."""
+    numbers = whole.numbers
     if numbers[COUNT] == 0.0:
         return False
     if abs(load - numbers[LOAD]) > FAR * numbers[WIDTH]:
         return False
     if not NARROWER * numbers[WIDTH] < sigma < LARGER * numbers[WIDTH]:
         return False
-    for i in range(inside.runs.shape[0]):
-        a, b = inside.runs[i, 0], inside.runs[i, 1]
+    for i in range(whole.runs.shape[0]):
+        a, b = whole.runs[i, 0], whole.runs[i, 1]
         if a == b:
             continue
-        row = inside.first[0] + i - box[0]
+        row = whole.first[0] + i - box[0]
         if row < 0 or row >= box[2] or a < runs[row, 1] or b > runs[row, 2]:
             return False
     return True
 
 
 @compiled_as_is
-def columns_inside(inside: Inside, row: int, last: int) -> tuple[int, int]:
-    """Return a row's first column that is inside and one past them; ``last`` twice if none is."""
-    i = row - inside.first[0]
-    if not 0 <= i < inside.runs.shape[0] or inside.runs[i, 0] == inside.runs[i, 1]:
+def columns_covered(whole: CoveredWhole, row: int, last: int) -> tuple[int, int]:
+    """Return a row's first column of them and one past the last; ``last`` twice if none is."""
+    i = row - whole.first[0]
+    if not 0 <= i < whole.runs.shape[0] or whole.runs[i, 0] == whole.runs[i, 1]:
         return last, last
-    return inside.runs[i, 0], inside.runs[i, 1]
+    return whole.runs[i, 0], whole.runs[i, 1]
 
 
 @compiled_as_is
-def settle(problem: Problem, inside: Inside, p: Values) -> None:
-    """See to it that what is inside suits outlines around a point: sort readings anew if not.
+def keep_current(problem: Problem, whole: CoveredWhole | None, p: Values) -> None:
+    """Look for what outlines around a point cover whole, and sort its readings, if need be.
 
     Parameters
     ----------
     problem, p
         As in `log_posterior`.
-    inside : Inside
-        Written, unless it suits.
+    whole : CoveredWhole or None
+        Written, unless it suits; None on a small pad.
     """
-    if inside.runs.shape[0] == 0:
+    if whole is None:
         return
+    if whole.runs.shape[0] > 0:
+        _keep_current(problem, whole, p)
+
+
+@compiled_as_is
+def _keep_current(problem: Problem, whole: CoveredWhole, p: Values) -> None:
     grid, (rows, columns) = problem.grid, problem.states.shape
     box = window(problem.kind, problem.corners, p, grid, rows, columns, 0.0)
     numbers, xy = drawn_as(problem.kind, problem.corners, p)
@@ -141,31 +147,31 @@ def settle(problem: Problem, inside: Inside, p: Values) -> None:
     count = 0
     for i in range(box[2]):
         count += wanted[i, 2] - wanted[i, 1]
-    near = abs(load - inside.numbers[LOAD]) < 0.5 * FAR * inside.numbers[WIDTH]
-    if near and ENOUGH * count <= inside.numbers[COUNT]:
+    near = abs(load - whole.numbers[LOAD]) < 0.5 * FAR * whole.numbers[WIDTH]
+    if near and ENOUGH * count <= whole.numbers[COUNT]:
         runs = runs_of(numbers, xy, grid, box, KEPT * grid[2])
-        if holds(inside, load, sigma, box, runs):
+        if still_covered(whole, load, sigma, box, runs):
             return
-    inside.first[0] = box[0]
-    inside.runs[:] = 0
+    whole.first[0] = box[0]
+    whole.runs[:] = 0
     for i in range(box[2]):
-        inside.runs[i, 0], inside.runs[i, 1] = wanted[i, 1], wanted[i, 2]
-    inside.numbers[COUNT], inside.numbers[LOAD], inside.numbers[WIDTH] = count, load, sigma
-    _sort(problem, inside)
+        whole.runs[i, 0], whole.runs[i, 1] = wanted[i, 1], wanted[i, 2]
+    whole.numbers[COUNT], whole.numbers[LOAD], whole.numbers[WIDTH] = count, load, sigma
+    _sort(problem, whole)
 
 
 @compiled_as_is
-def _sort(problem: Problem, inside: Inside) -> None:
-    """Write the weighted readings that stand for those inside, and how many read nothing."""
-    numbers, logs, states = inside.numbers, problem.logs, problem.states
+def _sort(problem: Problem, whole: CoveredWhole) -> None:
+    """Write the weighted readings that stand for them, and how many read nothing."""
+    numbers, logs, states = whole.numbers, problem.logs, problem.states
     size = 2 * REACH * BINS_A_SIGMA
     width = numbers[WIDTH] / BINS_A_SIGMA
     lowest = numbers[LOAD] - REACH * numbers[WIDTH]
     bins = np.zeros((size, 4))
     offs = 0
-    for i in range(inside.runs.shape[0]):
-        row = inside.first[0] + i
-        for column in range(inside.runs[i, 0], inside.runs[i, 1]):
+    for i in range(whole.runs.shape[0]):
+        row = whole.first[0] + i
+        for column in range(whole.runs[i, 0], whole.runs[i, 1]):
             state = states[row, column]
             if state == OFF:
                 offs += 1
@@ -181,14 +187,14 @@ def _sort(problem: Problem, inside: Inside) -> None:
     at = 0
     for k in range(size):
         if bins[k, 0] > 0.0:
-            at = _add_nodes(inside, at, lowest + (k + 0.5) * width, width, bins[k])
+            at = _add_nodes(whole, at, lowest + (k + 0.5) * width, width, bins[k])
     numbers[OFFS], numbers[NODES] = offs, at
 
 
 @compiled_as_is
-def _add_nodes(inside: Inside, at: int, middle: float, width: float, sums: Values) -> int:
+def _add_nodes(whole: CoveredWhole, at: int, middle: float, width: float, sums: Values) -> int:
     """Write the one or two readings that have a bin's moments; return where the next go."""
-    n, readings, weights = sums[0], inside.readings, inside.weights
+    n, readings, weights = sums[0], whole.readings, whole.weights
     mean = sums[1] / n
     variance = sums[2] / n - mean * mean
     if variance < FLAT:
@@ -206,18 +212,26 @@ def _add_nodes(inside: Inside, at: int, middle: float, width: float, sums: Value
 
 
 @compiled_as_is
-def log_likelihood_inside(inside: Inside, load: float, noise: Values) -> float:
-    """Return what the elements inside add to a log likelihood, at a load's logarithm."""
+def log_likelihood_of_covered(whole: CoveredWhole, load: float, noise: Values) -> float:
+    """Return what they add to a log likelihood, at a load's logarithm."""
     sigma, level, total = noise[SIGMA], on_level(noise), 0.0
-    for k in range(int(inside.numbers[NODES])):
-        u = (inside.readings[k] - load) / sigma
+    for k in range(int(whole.numbers[NODES])):
+        u = (whole.readings[k] - load) / sigma
         a = level - 0.5 * u * u
         if a > 30.0:
-            total += inside.weights[k] * a
+            total += whole.weights[k] * a
         elif a > -30.0:
-            total += inside.weights[k] * math.log(1.0 + math.exp(a))
-    if inside.numbers[OFFS] > 0.0:
+            total += whole.weights[k] * math.log(1.0 + math.exp(a))
+    if whole.numbers[OFFS] > 0.0:
         z = (load - noise[LEAST]) / sigma
         off = 1.0 - (1.0 - noise[VOIDS]) * 0.5 * math.erfc(-SQRT_HALF * z)
-        total += inside.numbers[OFFS] * math.log(off)
+        total += whole.numbers[OFFS] * math.log(off)
     return total
+
+
+@compiled_as_is
+def covered_around(problem: Problem, p: Values) -> CoveredWhole:
+    """Return what outlines around a point cover whole, of a large pad."""
+    whole = empty_for(problem, p)
+    keep_current(problem, whole, p)
+    return whole

@@ -1,0 +1,299 @@
+"""What a large outline says, by its rim element by element and what it covers whole at once.
+
+Log likelihood, slopes and information, and goodness of fit, where a face is even and without foam.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.covered import Box, covered, window
+from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.large_pads.covered_whole import (
+    NODES,
+    OFFS,
+    CoveredWhole,
+    columns_covered,
+    log_likelihood_of_covered,
+    still_covered,
+)
+from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, rim_count, rim_shares, runs_of
+from tactile_graph_likelihood.single.element_terms import (
+    LEAST,
+    ON,
+    ROOT_TWO_PI,
+    SIGMA,
+    SQRT_HALF,
+    STRAYS,
+    UNKNOWN,
+    VOIDS,
+    bare,
+    on_level,
+    terms,
+)
+from tactile_graph_likelihood.single.goodness_of_fit import (
+    SEEN,
+    SURE,
+    GoodnessOfFit,
+    dome,
+    goodness_of_fit,
+    moments_of_strays,
+    moments_of_term,
+    neighbours_alike,
+    standardised,
+    trend,
+)
+from tactile_graph_likelihood.single.information import (
+    SLIVER,
+    STEP,
+    Information,
+    add_noise_slopes,
+    add_outer,
+    score_of,
+    steps_of,
+)
+from tactile_graph_likelihood.single.log_posterior import noise_at
+from tactile_graph_likelihood.single.problem import Problem
+
+SLACK = 2.0 * STEP  # of a pitch: no difference moves an edge further
+
+
+@compiled_as_is
+def log_likelihood_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> float:
+    """Return what `log_posterior.log_likelihood` does, where a face is even and without foam.
+
+    Elements that are covered whole, but not in the record, are taken one by one; all of them, where
+    this outline does not cover some of the record's.
+    """
+    kind, corners, grid = problem.kind, problem.corners, problem.grid
+    rows, columns = problem.states.shape
+    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
+    box = window(kind, corners, p, grid, rows, columns, 0.0)
+    if box[2] <= 0 or box[3] <= 0:
+        return 0.0
+    numbers, xy = drawn_as(kind, corners, p)
+    runs = runs_of(numbers, xy, grid, box, 0.0)
+    known = still_covered(whole, load, noise[SIGMA], box, runs)
+    on_rim, beyond = rim_count(runs), 0
+    for i in range(box[2]):
+        beyond += runs[i, 2] - runs[i, 1]
+    expected = np.empty((1, on_rim + beyond))
+    logs, states = np.empty(expected.shape), np.empty(expected.shape, problem.states.dtype)
+    rim_shares(numbers, xy, grid, box, runs, expected[0, :on_rim])
+    scale, at, more = math.exp(load), 0, on_rim
+    for i in range(box[2]):
+        row, last = box[0] + i, runs[i, 2]
+        for part in range(2):
+            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
+                expected[0, at] *= scale
+                logs[0, at], states[0, at] = problem.logs[row, column], problem.states[row, column]
+                at += 1
+        a, b = columns_covered(whole, row, last) if known else (last, last)
+        for part in range(2):
+            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
+                expected[0, more] = scale
+                logs[0, more] = problem.logs[row, column]
+                states[0, more] = problem.states[row, column]
+                more += 1
+    found = terms(expected[:, :more], 0, 0, logs, states, noise)
+    return found + log_likelihood_of_covered(whole, load, noise) if known else found
+
+
+@compiled_as_is
+def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: Information) -> None:
+    """Write slope and information, where a face is even and without foam."""
+    kind, corners, grid = problem.kind, problem.corners, problem.grid
+    first, (rows, columns) = unknowns(kind, corners), problem.states.shape
+    noise, matrix = noise_at(problem, p), out.matrix
+    out.slope[:] = 0.0
+    matrix[:] = 0.0
+    box = window(kind, corners, p, grid, rows, columns, SLACK * grid[2])
+    if box[2] <= 0 or box[3] <= 0:
+        return
+    numbers, xy = drawn_as(kind, corners, p)
+    runs = runs_of(numbers, xy, grid, box, SLACK * grid[2])
+    share, rise = _rises_on_rim(problem, p, box, runs)
+    level, at = on_level(noise), 0
+    along = np.zeros(p.shape[0])
+    along[first] = 1.0
+    for i in range(box[2]):
+        row = box[0] + i
+        for part in range(2):
+            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
+                state, its = problem.states[row, column], share[at]
+                at += 1
+                if its <= 0.0 or state == UNKNOWN:
+                    continue
+                for k in range(first):
+                    along[k] = rise[k, at - 1] / max(its, SLIVER)
+                mu, log = math.log(its) + p[first], problem.logs[row, column]
+                score = score_of(state == ON, log, mu, noise, level)
+                add_noise_slopes(state == ON, score, problem, noise, out)
+                add_outer(score, along, out)
+    _add_whole(problem, whole, p, noise, box, runs, out)
+    for k in range(p.shape[0]):
+        for m in range(k):
+            matrix[m, k] = matrix[k, m]
+
+
+@compiled_as_is
+def _rises_on_rim(problem: Problem, p: Values, box: Box, runs: Runs) -> tuple[Values, Values]:
+    """Return the rim's coverage, shape (N,), and its slope along the outline's numbers, (D, N)."""
+    kind, corners, grid = problem.kind, problem.corners, problem.grid
+    first, count = unknowns(kind, corners), rim_count(runs)
+    share, rise = np.empty(count), np.empty((first, count))
+    numbers, xy = drawn_as(kind, corners, p)
+    rim_shares(numbers, xy, grid, box, runs, share)
+    steps, moved = steps_of(kind, corners, p, grid), p.copy()
+    for k in range(first):
+        moved[k] += steps[k]
+        numbers, xy = drawn_as(kind, corners, moved)
+        moved[k] = p[k]
+        rim_shares(numbers, xy, grid, box, runs, rise[k])
+        for i in range(count):
+            rise[k, i] = (rise[k, i] - share[i]) / steps[k]
+    return share, rise
+
+
+@compiled_as_is
+def _add_whole(
+    problem: Problem, whole: CoveredWhole, p: Values, noise: Values, box: Box, runs: Runs,
+    out: Information,
+) -> None:  # fmt: skip
+    """Add what elements that are covered whole say of the load and of the noise."""
+    first = unknowns(problem.kind, problem.corners)
+    load, level = p[first], on_level(noise)
+    known = still_covered(whole, load, noise[SIGMA], box, runs)
+    its = Information(np.zeros(p.shape[0]), np.zeros(out.matrix.shape))
+    for i in range(box[2]):
+        row = box[0] + i
+        last = runs[i, 2]
+        a, b = columns_covered(whole, row, last) if known else (last, last)
+        for part in range(2):
+            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
+                if problem.states[row, column] == UNKNOWN:
+                    continue
+                on = problem.states[row, column] == ON
+                score = score_of(on, problem.logs[row, column], load, noise, level)
+                add_noise_slopes(on, score, problem, noise, out)
+                out.slope[first] += score[0]
+                out.matrix[first, first] += score[1]
+    if not known:
+        return
+    nodes = int(whole.numbers[NODES])
+    for k in range(nodes + 1):
+        on = k < nodes
+        weight = whole.weights[k] if on else whole.numbers[OFFS]
+        score = score_of(on, whole.readings[k] if on else 0.0, load, noise, level)
+        its.slope[:] = 0.0
+        its.matrix[:] = 0.0
+        add_noise_slopes(on, score, problem, noise, its)
+        its.slope[first] = score[0]
+        its.matrix[first, first] = score[1]
+        for m in range(first, p.shape[0]):
+            out.slope[m] += weight * its.slope[m]
+            out.matrix[m, m] += weight * its.matrix[m, m]
+
+
+@compiled_as_is
+def goodness_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> GoodnessOfFit:
+    """Return what `goodness_of_fit` does, where a face is even and without foam."""
+    rows, columns = problem.states.shape
+    box = window(problem.kind, problem.corners, p, problem.grid, rows, columns, 0.0)
+    if box[2] <= 0 or box[3] <= 0:
+        return goodness_of_fit(problem, p)
+    share = covered(problem.kind, problem.corners, p, problem.grid, box)
+    residuals, leaning = _residuals(problem, p, box, share)
+    lean, fall = trend(leaning, 0, 0, dome(share))
+    surprise = surprise_by_rim(problem, whole, p)
+    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)
+
+
+@compiled_as_is
+def _residuals(problem: Problem, p: Values, box: Box, share: Values) -> tuple[Values, Values]:
+    """Return a window's residuals, and the same freed of their bias from showing at all."""
+    noise, load = noise_at(problem, p), p[unknowns(problem.kind, problem.corners)]
+    residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
+    last, mu, z, tail, density = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(box[2]):
+        for j in range(box[3]):
+            its, row, column = share[i, j], box[0] + i, box[1] + j
+            if its <= 0.0 or problem.states[row, column] != ON:
+                continue
+            if its != last:
+                last, mu = its, math.log(its) + load
+                z = _level(mu, noise)
+                tail, density = _normal(z)
+            u = (problem.logs[row, column] - mu) / noise[SIGMA]
+            residuals[i, j] = u if z > SURE else 0.0
+            leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
+    return residuals, leaning
+
+
+@compiled_as_is
+def _level(mu: float, noise: Values) -> float:
+    """Return the deviations of ln gain by which an expected load exceeds the least."""
+    z: float = (mu - noise[LEAST]) / noise[SIGMA]
+    return min(max(z, -40.0), 40.0)
+
+
+@compiled_as_is
+def _normal(z: float) -> tuple[float, float]:
+    """Return the standard normal distribution and its density."""
+    return 0.5 * math.erfc(-SQRT_HALF * z), math.exp(-0.5 * z * z) / ROOT_TWO_PI
+
+
+@compiled_as_is
+def surprise_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> float:
+    """Return `goodness_of_fit`'s surprise, where a face is even and without foam.
+
+    The likelihood is relative to that of a bare pad, and all elements that are covered whole have
+    the same mean and variance of what they add.
+    """
+    kind, corners, grid, states = problem.kind, problem.corners, problem.grid, problem.states
+    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
+    rows, columns = states.shape
+    known, count, mean, variance = 0, 0, 0.0, 0.0
+    for i in range(rows):
+        for j in range(columns):
+            known += 1 if states[i, j] != UNKNOWN else 0
+    box = window(kind, corners, p, grid, rows, columns, 0.0)
+    numbers, xy = drawn_as(kind, corners, p)
+    runs = runs_of(numbers, xy, grid, box, 0.0)
+    share = np.empty(rim_count(runs))
+    rim_shares(numbers, xy, grid, box, runs, share)
+    at = 0
+    for i in range(box[2]):
+        row = box[0] + i
+        for part in range(2):
+            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
+                its = share[at]
+                at += 1
+                if its > 0.0 and states[row, column] != UNKNOWN:
+                    one, spread = _moments_at(math.log(its) + load, noise)
+                    mean += one
+                    variance += spread
+                    known -= 1
+        for column in range(runs[i, 1], runs[i, 2]):
+            count += 1 if states[row, column] != UNKNOWN else 0
+    one, spread = _moments_at(load, noise)
+    bare_mean, bare_spread = moments_of_strays(noise[STRAYS])
+    mean += count * one + (known - count) * bare_mean
+    variance += count * spread + (known - count) * bare_spread
+    got = log_likelihood_by_rim(problem, whole, p) + bare(states, noise)
+    surprise: float = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
+    return surprise
+
+
+@compiled_as_is
+def _moments_at(mu: float, noise: Values) -> tuple[float, float]:
+    """Return mean and variance of the term of an element that expects a load's logarithm."""
+    z = _level(mu, noise)
+    tail, density = _normal(z)
+    present, strays = 1.0 - noise[VOIDS], noise[STRAYS]
+    level = math.log((1.0 - strays) * present / (noise[SIGMA] * ROOT_TWO_PI))
+    _, one, spread = moments_of_term(z, tail, density, level, present, math.log(1.0 - strays))
+    return one, spread

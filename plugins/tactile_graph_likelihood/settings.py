@@ -1,0 +1,133 @@
+"""``FootprintSettings``: what the steps of this family take, documented once for all of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+
+from tactile_graph.steps import Quantity
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.single.any_pressure import AnyPressure
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.noise import Noise, noise_of
+from tactile_graph_pads.pad import Pad, load_pad
+
+Positive = Annotated[float, Gt(0)]
+Share = Annotated[float, Gt(0), Lt(1)]
+Part = Literal["sigma", "voids", "foam", "fall", "lean"]
+Load = Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
+
+
+@dataclass(frozen=True)
+class FootprintSettings:
+    """What is taken for granted of pad and object, and how closely the posterior is looked at.
+
+    Parameters
+    ----------
+    pad : str or mapping
+        Name of a pad, its YAML file, or the pad itself: gap, unevenness, foam and the least load
+        that shows come from it, unless given here.
+    sigma : float, optional
+        Standard deviation of the logarithm of an element's gain.
+    voids : float, optional
+        Share of covered elements that read nothing.
+    strays : float
+        Probability that a reading has nothing to do with the object.
+    foam_cm : float, optional
+        Width over which foam spreads the load.
+    gap_cm : float, optional
+        Distance of neighbouring elements' edges.
+    shows_from : float, optional
+        Readings below it count as nothing, in the image's unit.
+    estimate : list
+        What of sigma, voids, foam and the pressure's fall and lean is estimated with the object.
+    pressure : "any" or "even"
+        Whether the object may press unevenly: leaning, less towards its rim, or through foam.
+        Looked at where an even face leaves that pattern over, and weighed by the evidence.
+    on_pad : "whole" or "partly"
+        Whether the whole outline lies on the pad, or its centre only. Free polygons are whole.
+    smallest_cm, largest_cm : float, optional
+        Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
+    precision : float
+        Error of the mean, over the posterior's own standard deviation, at which sampling ends.
+    most_points : int
+        Where it ends at the latest.
+    seed : int
+        Shifts the points at which the posterior is looked at.
+
+    Raises
+    ------
+    ValueError
+        If the smallest size is not below the largest.
+    """
+
+    pad: str | dict[str, Any] = "thesis"
+    sigma: Positive | None = None
+    voids: Annotated[float, Ge(0), Lt(1)] | None = None
+    strays: Share = 1e-3
+    foam_cm: Annotated[float, Ge(0)] | None = None
+    gap_cm: Annotated[float, Ge(0)] | None = None
+    shows_from: Annotated[float, Ge(0)] | None = None
+    estimate: list[Part] = field(default_factory=list)
+    pressure: Literal["any", "even"] = "any"
+    on_pad: Literal["whole", "partly"] = "partly"
+    smallest_cm: Positive | None = None
+    largest_cm: Positive | None = None
+    precision: Annotated[float, Gt(0), Le(1)] = 0.15
+    most_points: Annotated[int, Ge(32)] = 1024
+    seed: Annotated[int, Ge(0)] = 0
+
+    def __post_init__(self) -> None:
+        smallest, largest = self.smallest_cm, self.largest_cm
+        if smallest is not None and largest is not None and smallest >= largest:
+            raise ValueError(
+                f"smallest_cm: must be below largest_cm, got {smallest:g} and {largest:g}"
+            )
+
+    @cached_property
+    def known_pad(self) -> Pad:
+        """The pad."""
+        return load_pad(self.pad)
+
+    @property
+    def gap(self) -> float:
+        """Distance of neighbouring elements' edges in cm: the given one, or the pad's."""
+        return self.known_pad.geometry.gap_cm if self.gap_cm is None else self.gap_cm
+
+    @property
+    def noise(self) -> Noise:
+        """The pad's noise, but for what is given."""
+        return noise_of(
+            self.known_pad, sigma=self.sigma, voids=self.voids, strays=self.strays,
+            foam_cm=self.foam_cm, least=self.shows_from,
+            estimated=tuple(dict.fromkeys(self.estimate)),
+        )  # fmt: skip
+
+    def model(self, kind: int, corners: int = 0) -> Model:
+        """Return the model of one kind of outline with an even face; kinds as in `outlines`."""
+        return Model(
+            kind,
+            corners,
+            noise=self.noise,
+            gap_cm=self.gap,
+            whole=self.on_pad == "whole",
+            smallest_cm=self.smallest_cm or 0.0,
+            largest_cm=self.largest_cm or math.inf,
+            precision=self.precision,
+            most_points=self.most_points,
+            seed=self.seed,
+        )
+
+    def asked_model(self, kind: int, corners: int = 0) -> Model | AnyPressure:
+        """Return the model with the pressure that is asked for: an even one, or any."""
+        even = self.model(kind, corners)
+        return AnyPressure(even) if self.pressure == "any" else even
+
+
+DEFAULTS = FootprintSettings()
+ROUGHER = FootprintSettings(precision=0.2)
+"""Where several kinds of outlines are looked at."""

@@ -1,0 +1,55 @@
+"""What a search and a sampler ask of a point: element by element, or by the outline's rim.
+
+``whole`` says which. On a pad of up to 1024 elements it is None, and nothing of what large pads
+need is compiled. On a larger one it is a `CoveredWhole`: of no rows where looking at each element
+costs no more.
+"""
+
+from __future__ import annotations
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.large_pads.by_rim import (
+    goodness_by_rim,
+    information_by_rim,
+    log_likelihood_by_rim,
+)
+from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.information import Information, information
+from tactile_graph_likelihood.single.log_posterior import log_likelihood
+from tactile_graph_likelihood.single.problem import Problem
+
+
+@compiled_as_is
+def log_likelihood_at(problem: Problem, whole: CoveredWhole | None, p: Values) -> float:
+    """Return the log likelihood of an image, over that of a bare pad, at a point, shape (K,)."""
+    if whole is None:
+        return log_likelihood(problem, p)
+    if whole.runs.shape[0] == 0:
+        return log_likelihood(problem, p)
+    return log_likelihood_by_rim(problem, whole, p)
+
+
+@compiled_as_is
+def information_at(
+    problem: Problem, whole: CoveredWhole | None, p: Values, out: Information
+) -> None:
+    """Write the slope of the log likelihood at a point, and an information matrix."""
+    if whole is None:
+        information(problem, p, out)
+        return
+    if whole.runs.shape[0] == 0:
+        information(problem, p, out)
+    else:
+        information_by_rim(problem, whole, p, out)
+
+
+@compiled_as_is
+def goodness_at(problem: Problem, whole: CoveredWhole | None, p: Values) -> GoodnessOfFit:
+    """Return how well an image fits an outline."""
+    if whole is None:
+        return goodness_of_fit(problem, p)
+    if whole.runs.shape[0] == 0:
+        return goodness_of_fit(problem, p)
+    return goodness_by_rim(problem, whole, p)

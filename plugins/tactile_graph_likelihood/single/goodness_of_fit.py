@@ -1,0 +1,258 @@
+"""Whether an image looks like the model's at all: numbers that are normal where it does."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.covered import window
+from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
+from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.single.element_terms import (
+    LEAST,
+    ON,
+    ROOT_TWO_PI,
+    SIGMA,
+    SPAN,
+    SQRT_HALF,
+    STRAYS,
+    UNKNOWN,
+    VOIDS,
+)
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.log_posterior import noise_at
+from tactile_graph_likelihood.single.problem import Problem
+
+SURE = 1.5  # standard deviations of ln gain by which a covered element's load exceeds the least
+SEEN = -1.0  # the same, for what reads a load at all
+MOST = 3.5  # a stray's residual counts as no more
+DENSITY = 1.0 / ROOT_TWO_PI
+FEWEST = 8  # residuals, for a trend
+RIM = 0.15  # pressure squared at the rim: the outermost elements are covered in part only
+
+
+class GoodnessOfFit(NamedTuple):
+    """How well an image fits an outline: numbers that are about normal where the model holds.
+
+    ``surprise``: the log likelihood less its expectation under the model, less half the number of
+    unknowns that were fitted, in its standard deviations: below -3 the readings are worse than the
+    model's own. ``neighbours``: how alike neighbours' residuals are; ``lean``: how much they lean
+    to a side, 0 where they don't, by and large; ``fall``: how much they fall to the rim; each in
+    its standard deviations. Above 3 the model takes for many bumps what is one, or the load is not
+    spread over the outline as it thinks, as under a tilt, foam or a curved face.
+    """
+
+    surprise: float
+    neighbours: float
+    lean: float
+    fall: float
+
+
+@compiled_as_is
+def standardised(u: float, z: float, tail: float, density: float) -> float:
+    """Return a residual of mean 0 and variance 1, given that it shows, which it does above -z.
+
+    ``tail`` and ``density`` are Phi(z) and phi(z).
+    """
+    ratio = density / tail
+    scaled = (u - ratio) / math.sqrt(1.0 - ratio * (z + ratio))
+    return min(max(scaled, -MOST), MOST)
+
+
+@compiled_as_is
+def moments_of_strays(strays: float) -> tuple[float, float]:
+    """Return mean and variance of the term of an element on which nothing is expected."""
+    stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
+    mean = strays * stray + (1.0 - strays) * bare
+    return mean, strays * stray**2 + (1.0 - strays) * bare**2 - mean**2
+
+
+@compiled_as_is
+def moments_of_term(
+    z: float, tail: float, density: float, level: float, present: float, bare: float
+) -> tuple[float, float, float]:
+    """Return the term of an expected element that reads nothing, and all terms' mean and variance.
+
+    ``level`` is the largest log likelihood of a reading, ``present`` the share of elements that
+    are no voids. With u normal and cut at -z, the mean of u**2 is ``Phi(z) - z phi(z)`` and that
+    of u**4 ``3 Phi(z) - (z**3 + 3 z) phi(z)``.
+    """
+    none = 1.0 - present * tail
+    off = bare + math.log(none)
+    second = tail - z * density
+    fourth = 3.0 * tail - (z * z * z + 3.0 * z) * density
+    one = present * (level * tail - 0.5 * second) + none * off
+    two = present * (level * level * tail - level * second + 0.25 * fourth)
+    return off, one, two + none * off * off - one * one
+
+
+@compiled_as_is
+def neighbours_alike(residuals: Values) -> float:
+    """Return the correlation of neighbours' residuals, in its standard deviations.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (rows, columns)
+        Normal under the model; 0 where there is none.
+    """
+    rows, columns = residuals.shape
+    pairs = product = count = squares = 0.0
+    for i in range(rows):
+        for j in range(columns):
+            here = residuals[i, j]
+            if here == 0.0:
+                continue
+            count += 1.0
+            squares += here * here
+            if i + 1 < rows and residuals[i + 1, j] != 0.0:
+                pairs += 1.0
+                product += here * residuals[i + 1, j]
+            if j + 1 < columns and residuals[i, j + 1] != 0.0:
+                pairs += 1.0
+                product += here * residuals[i, j + 1]
+    return product * count / (math.sqrt(pairs) * squares) if pairs > 0.0 else 0.0
+
+
+@compiled_as_is
+def dome(share: Values) -> Values:
+    """Return the logarithm of the pressure under a ball that covers what an outline covers.
+
+    Parameters
+    ----------
+    share : ndarray, shape (rows, columns)
+        Of each element that is covered.
+
+    Notes
+    -----
+    The pressure is ``sqrt(1 - 0.85 r**2)``; r is the distance from the middle in terms of the
+    share's second moments, so 1 at the rim of a disc or ellipse.
+    """
+    rows, columns = share.shape
+    total = y = x = yy = xy = xx = 0.0
+    for i in range(rows):
+        for j in range(columns):
+            c = share[i, j]
+            total += c
+            y += c * i
+            x += c * j
+            yy += c * i * i
+            xy += c * i * j
+            xx += c * j * j
+    out = np.zeros(share.shape)
+    if total <= 0.0:
+        return out
+    y, x = y / total, x / total
+    yy, xy, xx = yy / total - y * y, xy / total - x * y, xx / total - x * x
+    area = yy * xx - xy * xy
+    if area < 1e-3:
+        return out
+    for i in range(rows):
+        for j in range(columns):
+            u, v = i - y, j - x
+            squared = 0.25 * (xx * u * u - 2.0 * xy * u * v + yy * v * v) / area
+            out[i, j] = 0.5 * math.log(max(1.0 - (1.0 - RIM) * squared, 0.5 * RIM))
+    return out
+
+
+@compiled_as_is
+def trend(residuals: Values, row: int, column: int, domes: Values) -> tuple[float, float]:
+    """Return how much residuals lean to a side, and fall to the rim, in standard deviations.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (all rows, all columns)
+        Of mean 0 and equal variance under the model; 0 where there is none.
+    row, column : int
+        Where the window of ``domes`` begins.
+    domes : ndarray, shape (rows, columns)
+        As `dome` gives it.
+
+    Notes
+    -----
+    Residuals are regressed on row and column, and on what these leave of the dome: score tests of
+    a load that leans, and of one that falls or rises towards the rim. For the lean, the number of
+    residuals times the explained share of their squares, s, is chi squared with 2 degrees of
+    freedom, and ``sqrt(2 s) - sqrt(3)`` nearly normal (R. A. Fisher).
+    """
+    means, values = np.zeros(4), np.empty(4)
+    matrix, right, root = np.zeros((3, 3)), np.zeros(3), np.zeros((3, 3))
+    count = squares = 0.0
+    for turn in range(2):
+        for i in range(domes.shape[0]):
+            for j in range(domes.shape[1]):
+                here = residuals[row + i, column + j]
+                if here == 0.0:
+                    continue
+                values[0], values[1], values[2], values[3] = i, j, domes[i, j], here
+                if turn == 0:
+                    count += 1.0
+                    for k in range(4):
+                        means[k] += values[k]
+                    continue
+                for k in range(4):
+                    values[k] -= means[k]
+                squares += values[3] * values[3]
+                for k in range(3):
+                    right[k] += values[k] * values[3]
+                    for m in range(k + 1):
+                        matrix[k, m] += values[k] * values[m]
+        if turn == 0:
+            if count < FEWEST:
+                return 0.0, 0.0
+            means /= count
+    if squares <= 0.0 or not cholesky(matrix, root):
+        return 0.0, 0.0
+    squared_length(root, right, values)
+    scale = 2.0 * count / squares
+    tilt = math.sqrt(scale * (values[0] * values[0] + values[1] * values[1])) - math.sqrt(3.0)
+    return tilt, math.sqrt(0.5 * scale) * values[2]
+
+
+@compiled_as_is
+def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
+    """Return how surprising an image is, and what patterns it leaves over, at a posterior mean."""
+    kind, corners, grid = problem.kind, problem.corners, problem.grid
+    logs, states, first = problem.logs, problem.states, unknowns(problem.kind, problem.corners)
+    rows, columns = states.shape
+    here = noise_at(problem, p)
+    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, here))
+    share = np.zeros((max(box[2], 0), max(box[3], 0)))
+    if box[2] > 0 and box[3] > 0:
+        share = shares_of(kind, corners, p, grid, here, box, rows, columns)
+    sigma, voids, strays = here[SIGMA], here[VOIDS], here[STRAYS]
+    level = math.log((1.0 - strays) * (1.0 - voids) / (sigma * ROOT_TWO_PI))
+    stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
+    mean_bare, var_bare = moments_of_strays(strays)
+    got = mean = variance = 0.0
+    residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
+    for i in range(rows):
+        for j in range(columns):
+            if states[i, j] == UNKNOWN:
+                continue
+            on = states[i, j] == ON
+            r, c = i - box[0], j - box[1]
+            inside = 0 <= r < box[2] and 0 <= c < box[3]
+            if not inside or share[r, c] <= 0.0:
+                got += stray if on else bare
+                mean += mean_bare
+                variance += var_bare
+                continue
+            mu = math.log(share[r, c]) + p[first]
+            z = min(max((mu - here[LEAST]) / sigma, -40.0), 40.0)
+            tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
+            off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
+            if on:
+                u = (logs[i, j] - mu) / sigma
+                got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
+                residuals[i, j] = u if z > SURE else 0.0
+                leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
+            else:
+                got += off
+            mean += one
+            variance += spread
+    surprise = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
+    lean, fall = trend(leaning, box[0], box[1], dome(share))
+    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)

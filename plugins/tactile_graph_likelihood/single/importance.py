@@ -1,0 +1,152 @@
+"""Importance weights of points drawn from Student's t, and what weighted points say.
+
+Points that come from several proposals are weighted together, by the mixture they come from (J.-M.
+Cornuet et al. 2012, 10.1111/j.1467-9469.2011.00756.x).
+"""
+
+from __future__ import annotations
+
+import math
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.outlines import Values
+
+FREEDOM = 8.0  # of Student's t
+WIDER = 1.3  # a proposal's variance over that of the posterior so far
+KEPT = 0.02  # of the first covariance, added to each later one: it stays invertible
+FEWEST = 3.0  # equal weights per unknown: fewer are tempered before a covariance is taken
+
+
+@compiled_as_is
+def t_density(length: float, unknowns: int) -> float:
+    """Return Student's t density at a squared length, over that in its middle."""
+    power = round(FREEDOM) + unknowns
+    base = 1.0 / (1.0 + length / FREEDOM)
+    found = base ** (power // 2)
+    return found * math.sqrt(base) if power % 2 == 1 else found
+
+
+@compiled_as_is
+def t_constant(unknowns: int) -> float:
+    """Return the logarithm of Student's t density in the middle, of unit scale."""
+    constant = math.lgamma(0.5 * (FREEDOM + unknowns)) - math.lgamma(0.5 * FREEDOM)
+    found: float = constant - 0.5 * unknowns * math.log(FREEDOM * math.pi)
+    return found
+
+
+@compiled_as_is
+def weigh(
+    logs_p: Values, logs_q: Values, shares: Values, proposals: int, count: int, weights: Values
+) -> tuple[float, float]:
+    """Write the weights of ``count`` points, summing to 1.
+
+    Parameters
+    ----------
+    logs_p : ndarray, shape (N,)
+        Log posterior of each point, up to a constant.
+    logs_q : ndarray, shape (proposals, N)
+        Log density of each point under each proposal.
+    shares : ndarray, shape (proposals,)
+        Part of the points that was drawn from each.
+    proposals, count : int
+        How many there are of each in the arrays.
+    weights : ndarray, shape (N,)
+        Written: the weights.
+
+    Returns
+    -------
+    (float, float)
+        Logarithm of the mean weight before that, and how many equal weights they are worth.
+    """
+    for i in range(count):
+        if logs_p[i] == -math.inf:
+            weights[i] = -math.inf
+            continue
+        most = logs_q[0, i]
+        for c in range(1, proposals):
+            most = max(most, logs_q[c, i])
+        mixed = 0.0
+        for c in range(proposals):
+            mixed += shares[c] * math.exp(logs_q[c, i] - most)
+        weights[i] = logs_p[i] - most - math.log(mixed)
+    return normalise(weights, count)
+
+
+@compiled_as_is
+def weigh_by_density(
+    logs_p: Values, densities: Values, shares: Values, proposals: int, count: int, weights: Values
+) -> tuple[float, float]:
+    """Do the same from densities, up to one factor, at half the time."""
+    for i in range(count):
+        if logs_p[i] == -math.inf:
+            weights[i] = -math.inf
+            continue
+        mixed = 0.0
+        for c in range(proposals):
+            mixed += shares[c] * densities[c, i]
+        weights[i] = logs_p[i] - math.log(mixed)
+    return normalise(weights, count)
+
+
+@compiled_as_is
+def normalise(weights: Values, count: int) -> tuple[float, float]:
+    """Turn logarithms of weights, in place, into weights that sum to 1; return as `weigh` does."""
+    top = -math.inf
+    for i in range(count):
+        top = max(top, weights[i])
+    if top == -math.inf:
+        weights[:count] = 1.0 / count
+        return -math.inf, 0.0
+    total = squares = 0.0
+    for i in range(count):
+        weights[i] = math.exp(weights[i] - top)
+        total += weights[i]
+        squares += weights[i] * weights[i]
+    for i in range(count):
+        weights[i] /= total
+    return top + math.log(total / count), total * total / squares
+
+
+@compiled_as_is
+def temper(weights: Values, count: int, wanted: float, flat: Values) -> None:
+    """Write weights to a power, at most 1, at which they are worth ``wanted`` equal ones or so."""
+    power = 1.0
+    for _ in range(8):
+        total = squares = 0.0
+        for i in range(count):
+            flat[i] = weights[i] ** power if weights[i] > 0.0 else 0.0
+            total += flat[i]
+            squares += flat[i] * flat[i]
+        for i in range(count):
+            flat[i] /= total
+        if total * total >= wanted * squares:
+            return
+        power *= 0.6
+
+
+@compiled_as_is
+def weighted_moments(
+    points: Values, weights: Values, count: int, mean: Values, matrix: Values
+) -> None:
+    """Write the weighted mean and covariance of the first ``count`` points."""
+    n = points.shape[1]
+    mean[:] = 0.0
+    matrix[:] = 0.0
+    for i in range(count):
+        for k in range(n):
+            mean[k] += weights[i] * points[i, k]
+    for i in range(count):
+        w = weights[i]
+        if w < 1e-12:
+            continue
+        for k in range(n):
+            off = w * (points[i, k] - mean[k])
+            for m in range(k + 1):
+                matrix[k, m] += off * (points[i, m] - mean[m])
+    kept = 1.0
+    for i in range(count):
+        kept -= weights[i] * weights[i]  # a mean of few points lies too near to them
+    for k in range(n):
+        for m in range(k + 1):
+            matrix[k, m] /= max(kept, 0.05)
+            matrix[m, k] = matrix[k, m]

@@ -1,0 +1,354 @@
+"""The posterior around its mode, by adaptive importance sampling from few points.
+
+Points fill space evenly and come in blocks, drawn from Student's t around the mean and covariance
+that the points before have found, the first around the mode. A new proposal is made whenever the
+points have doubled; it ends once they are worth enough equal ones.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.linear import cholesky, inverted, squared_length
+from tactile_graph_likelihood.geometry.outline_prior import TURN
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    ELLIPSE,
+    OVAL,
+    RECTANGLE,
+    Values,
+    period,
+    sizes,
+)
+from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
+from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
+from tactile_graph_likelihood.single.evaluate import goodness_at, log_likelihood_at
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.importance import (
+    FEWEST,
+    KEPT,
+    WIDER,
+    t_constant,
+    t_density,
+    temper,
+    weigh_by_density,
+    weighted_moments,
+)
+from tactile_graph_likelihood.single.information import STEP, steps_of
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
+from tactile_graph_likelihood.single.maximise import Mode
+from tactile_graph_likelihood.single.problem import Problem, with_prior
+
+HELD = 6.0  # information, per squared pitch, on each length of what is sampled first
+SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
+FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
+PROPOSALS = 8
+FIRST = 1.6  # the first proposal's, over the inverse information: a gap lets an edge slide
+
+
+class Plan(NamedTuple):
+    """How a posterior is sampled.
+
+    ``table`` holds points of Student's t with 8 degrees of freedom, shape (N, K), as `even_points`
+    gives them; ``block`` of them are looked at between two looks at how sure the answer is;
+    ``worth`` is the number of equal weights at which sampling ends.
+    """
+
+    table: Values
+    block: int
+    worth: float
+
+
+class Draws(NamedTuple):
+    """Points, shape (N, K), their log densities and weights, (N,), their mean and covariance."""
+
+    points: Values
+    logs_p: Values
+    weights: Values
+    mean: Values
+    covariance: Values
+
+
+class Proposals(NamedTuple):
+    """Student's t distributions: centres, lower roots, and log densities in the middle.
+
+    ``drawn`` counts the points of each, ``densities`` holds those of each point under each, over
+    that in the first one's middle.
+    """
+
+    centres: Values
+    roots: Values
+    levels: Values
+    drawn: Values
+    densities: Values
+
+
+class Sample(NamedTuple):
+    """A posterior as weighted points; none where no outline is possible.
+
+    ``likeliest`` is the point with the largest density; ``equal_points`` says how many equally
+    weighted points they are worth.
+    """
+
+    points: Values
+    weights: Values
+    mean: Values
+    covariance: Values
+    likeliest: Values
+    log_evidence: float
+    equal_points: float
+    fit: GoodnessOfFit
+
+
+@compiled_as_is
+def log_volume(kind: int, p: Values, root: Values) -> float:
+    """Return ln of the volume that a normal mode of a posterior takes, of its own height.
+
+    Parameters
+    ----------
+    kind, p : int, ndarray
+        The mode.
+    root : ndarray, shape (K, K)
+        Lower root of the information there.
+    """
+    n = p.shape[0]
+    volume: float = 0.5 * n * LN_TWO_PI
+    for k in range(n):
+        volume -= math.log(root[k, k])
+    if kind == OVAL:
+        # the mean of 1 / d under a normal distribution, right where it is narrow and in a middle
+        spread = inverted(root)
+        d2 = p[3] * p[3] + p[4] * p[4] + 0.32 * (spread[3, 3] + spread[4, 4])
+        volume -= 0.5 * math.log(d2)
+    return volume
+
+
+@compiled_as_is
+def _hold_in_gaps(problem: Problem, mode: Mode, covariance: Values) -> None:
+    """Write the covariance of an outline whose edges slide no farther than a gap is wide.
+
+    A straight edge that lies in a gap slides freely; where several do, hardly any of the first
+    points would come near what is likely.
+    """
+    root, n = mode.root, mode.root.shape[0]
+    widths = steps_of(problem.kind, problem.corners, mode.p, problem.grid)
+    matrix, held = np.zeros((n, n)), np.empty((n, n))
+    for i in range(n):
+        for j in range(n):
+            for k in range(min(i, j) + 1):
+                matrix[i, j] += root[i, k] * root[j, k]
+    for k in range(widths.shape[0]):
+        matrix[k, k] += HELD * (STEP / widths[k]) ** 2
+    if cholesky(matrix, held):
+        covariance[:] = inverted(held)
+
+
+@compiled_as_is
+def widen_to_other_ends(
+    problem: Problem, whole: CoveredWhole | None, mode: Mode, covariance: Values
+) -> None:
+    """Widen a covariance, in place, towards each side's other likely places.
+
+    A void at an end of an outline looks like the end itself.
+
+    Parameters
+    ----------
+    problem, whole
+        As in `evaluate.log_likelihood_at`.
+    mode : Mode
+    covariance : ndarray, shape (K, K)
+        Of the posterior around it.
+
+    Notes
+    -----
+    Each side of a rectangle, each end of an ellipse's axes, is moved by itself, by up to 1.2
+    pitches. The outer product of each move is added, by the square root of how likely it is.
+    """
+    kind, grid, p = problem.kind, problem.grid, mode.p
+    if kind not in (RECTANGLE, ELLIPSE, OVAL):
+        return
+    at = as_ellipse(p) if kind == OVAL else p
+    move, trial = np.zeros(5), p.copy()
+    for place in range(4 * len(SHIFTS)):
+        side, shift = place // len(SHIFTS), SHIFTS[place % len(SHIFTS)]
+        axis = side // 2
+        way = 1.0 if side % 2 == 0 else -1.0
+        turn = at[4] + 0.5 * math.pi * axis
+        half = 0.5 * shift * grid[2]
+        move[0], move[1] = way * half * math.cos(turn), -way * half * math.sin(turn)
+        move[2], move[3], move[4] = half * (1 - axis), half * axis, 0.0
+        for k in range(5):
+            trial[k] = at[k] + move[k]
+        if kind == OVAL:
+            to_oval(trial)
+            for k in range(5):
+                move[k] = trial[k] - p[k]
+        here = log_rest(problem, trial)
+        if here == -math.inf:
+            continue
+        here += log_likelihood_at(problem, whole, trial)
+        share = math.exp(FLATTER * min(here - mode.height, 0.0))
+        for k in range(5):
+            for m in range(5):
+                covariance[k, m] += share * move[k] * move[m]
+
+
+@compiled_as_is
+def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
+    """Write a proposal; return whether its covariance is positive."""
+    root = np.zeros(covariance.shape)
+    if not cholesky(covariance, root):
+        return False
+    proposals.centres[k], proposals.roots[k] = centre, root
+    proposals.levels[k] = 0.0
+    for i in range(centre.shape[0]):
+        proposals.levels[k] -= math.log(root[i, i])
+    return True
+
+
+@compiled_as_is
+def _draw(proposals: Proposals, k: int, step: Values, point: Values) -> None:
+    """Write the point of a proposal that a step of standard Student's t leads to."""
+    for i in range(point.shape[0]):
+        place = proposals.centres[k, i]
+        for m in range(i + 1):
+            place += proposals.roots[k, i, m] * step[m]
+        point[i] = place
+
+
+@compiled_as_is
+def _add_densities(proposals: Proposals, k: int, points: Values, first: int, last: int) -> None:
+    """Write the densities of some points under a proposal."""
+    n = points.shape[1]
+    off, work = np.empty(n), np.empty(n)
+    level = math.exp(proposals.levels[k] - proposals.levels[0])
+    for i in range(first, last):
+        for m in range(n):
+            off[m] = points[i, m] - proposals.centres[k, m]
+        far = squared_length(proposals.roots[k], off, work)
+        proposals.densities[k, i] = level * t_density(far, n)
+
+
+@compiled_as_is
+def _next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
+    """Return the covariance of the next proposal, and write its centre."""
+    n = centre.shape[0]
+    tempered, found = np.empty(count), np.empty((n, n))
+    temper(draws.weights, count, FEWEST * n, tempered)
+    weighted_moments(draws.points, tempered, count, centre, found)
+    for k in range(n):
+        for m in range(n):
+            found[k, m] = WIDER * found[k, m] + KEPT * first[k, m]
+    return found
+
+
+@compiled_as_is
+def importance_sample(
+    problem: Problem, whole: CoveredWhole | None, plan: Plan, mode: Values, covariance: Values,
+    draws: Draws,
+) -> tuple[int, float, float]:  # fmt: skip
+    """Sample the posterior around its mode.
+
+    Parameters
+    ----------
+    problem, whole
+        As in `evaluate.log_likelihood_at`.
+    plan : Plan
+    mode, covariance : ndarray, shape (K,) and (K, K)
+        Of the first proposal; it is drawn wider.
+    draws : Draws
+        Written.
+
+    Returns
+    -------
+    (int, float, float)
+        Points used, log evidence, number of equal weights; -inf and 0 if no point is possible.
+    """
+    kind, n, most, block = problem.kind, mode.shape[0], plan.table.shape[0], plan.block
+    proposals = Proposals(
+        np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n)), np.empty(PROPOSALS),
+        np.zeros(PROPOSALS), np.empty((PROPOSALS, most)),
+    )  # fmt: skip
+    centre, wanted = mode.copy(), FIRST * covariance
+    draws.mean[:] = mode
+    least = block * (1 if kind == DISC else 2 if kind == OVAL else 4)
+    count, made, renewed, evidence, equal = 0, 0, 0, -math.inf, 0.0
+    while count + block <= most:
+        before = count
+        if made == 0 or (count >= 2 * renewed and made < PROPOSALS):
+            if made > 0:
+                wanted = _next_covariance(draws, count, covariance, centre)
+            if not _propose(proposals, made, centre, wanted):
+                break
+            renewed, before = count, 0
+            made += 1
+        for i in range(count, count + block):
+            _draw(proposals, made - 1, plan.table[i], draws.points[i])
+            here = log_rest(problem, draws.points[i])
+            if here > -math.inf:
+                here += log_likelihood_at(problem, whole, draws.points[i])
+                if kind == OVAL:
+                    here += log_stretch(draws.points[i])
+            draws.logs_p[i] = here
+        proposals.drawn[made - 1] += block
+        for c in range(made):
+            first = before if c == made - 1 else count
+            _add_densities(proposals, c, draws.points, first, count + block)
+        count += block
+        if count < least and count < 2 * renewed:
+            continue
+        evidence, equal = weigh_by_density(
+            draws.logs_p, proposals.densities, proposals.drawn / count, made, count, draws.weights
+        )
+        if equal <= 0.0 or (equal >= plan.worth and count >= least):
+            break
+    if equal > 0.0:
+        weighted_moments(draws.points, draws.weights, count, draws.mean, draws.covariance)
+    return count, evidence - proposals.levels[0] - t_constant(n), equal
+
+
+@compiled_as_is
+def sample_around(problem: Problem, whole: CoveredWhole | None, plan: Plan, mode: Mode) -> Sample:
+    """Return the posterior around a mode.
+
+    Parameters
+    ----------
+    problem, whole
+        As in `evaluate.log_likelihood_at`.
+    plan : Plan
+    mode : Mode
+        A possible one.
+    """
+    kind, n, count = problem.kind, mode.p.shape[0], plan.table.shape[0]
+    prior = problem.prior.copy()
+    if period(kind, problem.corners) > 0.0:
+        prior[TURN] = mode.p[2 + sizes(kind)]
+    near = with_prior(problem, prior)
+    draws = Draws(
+        np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
+    )
+    covariance = inverted(mode.root)
+    if whole is not None:
+        _hold_in_gaps(problem, mode, covariance)
+    widen_to_other_ends(near, whole, mode, covariance)
+    used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, draws)
+    fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
+    if equal <= 0.0:
+        used = 0
+    else:
+        fit = goodness_at(problem, whole, draws.mean)
+    likeliest, top = mode.p.copy(), mode.height
+    if kind == OVAL:
+        top += log_stretch(mode.p)
+    for i in range(used):
+        if draws.logs_p[i] > top:
+            top = draws.logs_p[i]
+            likeliest[:] = draws.points[i]
+    return Sample(
+        draws.points[:used], draws.weights[:used], draws.mean, draws.covariance, likeliest,
+        evidence, equal, fit,
+    )  # fmt: skip
