@@ -4,7 +4,7 @@
 
 Writes figure-5-8.png (with 5.9), figure-5-10.png (to 5.13) and figure-5-14.png into the folder and
 prints the table. The thesis gives neither the test image of figure 5.8 nor its noise in numbers;
-ours are in `tactile_graph_thesis.measure.fields`.
+ours are in `tactile_graph_thesis.measure.restorations`.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from tactile_graph.compiled import warm_up
-from tactile_graph_thesis.drawing.fields import draw_5_8, draw_5_10_to_5_13, draw_5_14
-from tactile_graph_thesis.measure.fields import (
+from tactile_graph_thesis.drawing.line_fields import draw_5_8, draw_5_10_to_5_13, draw_5_14
+from tactile_graph_thesis.measure.restorations import (
     NOISE,
     RECTANGLE,
     Restoration,
@@ -25,6 +25,7 @@ from tactile_graph_thesis.measure.fields import (
     figures_5_10_to_5_13,
     table_5_2,
 )
+from tactile_graph_thesis.numbers import error_table
 
 
 def judge(made: Restoration) -> None:
@@ -53,12 +54,14 @@ def show_table(seed: int, readings: int, pad: str) -> None:
     print(f"\ntable 5.2: radii in cm, mean ± standard deviation of {readings} readings each")
     print(f"{'':10}{'actual':>8}{'lines in volts':>16}{'thesis':>8}", end="")
     print(f"{'bayes-lines':>15}{'bayes-circle':>15}{'circle-3':>15}{'thesis':>8}")
+    thesis = error_table("table-5.2")
     for row in table_5_2(seed, readings, pad):
+        _, by_lines, by_opening = thesis.values[thesis.objects.index(row.name)]
         columns = row.volt_hull_cm, row.line_hull_cm, row.bayesian_cm, row.heuristic_cm
         volts, lines, fitted, opened = (f"{mean:.2f} ± {std:.2f}" for mean, std in columns)
         print(
-            f"{row.name:10}{row.actual_cm:8.1f}{volts:>16}{row.thesis_line_hull_cm:8.1f}"
-            f"{lines:>15}{fitted:>15}{opened:>15}{row.thesis_heuristic_cm:8.1f}"
+            f"{row.name:10}{row.actual_cm:8.1f}{volts:>16}{by_lines:8.1f}"
+            f"{lines:>15}{fitted:>15}{opened:>15}{by_opening:8.1f}"
         )
 
 

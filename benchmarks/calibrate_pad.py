@@ -25,7 +25,8 @@ from scipy.optimize import minimize
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.plugins.registry import installed
-from tactile_graph_thesis.measure.circles import circle_errors, max_and_average
+from tactile_graph_thesis.measure.beside_thesis import spread
+from tactile_graph_thesis.measure.circles import circle_errors
 from tactile_graph_thesis.numbers import error_table
 
 PIPELINES = ("circle-1", "circle-2", "circle-3")
@@ -60,7 +61,13 @@ def readings(pad: dict[str, object], groups: int, seed: int) -> list[Frame]:
 def table(frames: list[Frame]) -> Array:
     """Return maximum and average errors as the thesis tabulates them, shape (3, 3, 6)."""
     runners = [load(name).runner() for name in PIPELINES]
-    return max_and_average(circle_errors(frames, runners, OBJECTS), GROUP)
+    errors = circle_errors(frames, runners, OBJECTS)
+    return np.array([[_row(of_object) for of_object in of_runner] for of_runner in errors])
+
+
+def _row(errors: Array) -> list[float]:
+    found = [spread(column, GROUP) for column in errors.T]
+    return [value for one in found for value in (one.largest, one.average)]
 
 
 def misfit(ours: Array) -> float:

@@ -11,8 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tactile_graph_thesis.measure.identification import mean_curves
-from tactile_graph_thesis.measure.identification_tables import Curve, strangers_rejected, table_4_9
+from tactile_graph_thesis.measure.identification_errors import (
+    Curve,
+    Trials,
+    mean_curves,
+    strangers_rejected,
+    table_4_9,
+)
 from tactile_graph_thesis.numbers import numbers
 
 SEEDS = range(4)
@@ -85,7 +90,7 @@ def main() -> None:
     start = time.perf_counter()
     show_table_4_9()
     for kind in WEIGHINGS:
-        curves = mean_curves(SEEDS, kind)
+        curves = mean_curves(SEEDS, Trials(kind))
         show(curves, kind)
         if folder is not None:
             plot(curves, kind, folder)

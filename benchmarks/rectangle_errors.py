@@ -31,16 +31,17 @@ from tactile_graph_fitters.rectangle.rectangle_from_ellipse import BIAS
 from tactile_graph_thesis.measure.rectangles import (
     OBJECTS,
     STATED_CELL_CM,
-    THESIS,
     rectangle_frames,
     signed_errors,
 )
+from tactile_graph_thesis.numbers import error_table
 
 Values = NDArray[np.float64]
 STRAYS, TOUCHES_CM, STRAY_V, LEVEL_V = 0.04, 11.0, 0.05, 0.01
 PITCH_CM, ORIGIN_CM = 1.3, -0.15
 SIDES_CM = {"RECTANGLE I": (16.0, 7.0), "RECTANGLE II": (14.0, 3.0)}
 WEIGHTS_G = {"RECTANGLE I": 3000, "RECTANGLE II": 1500}
+TABLES = {"rectangle-1": "table-4.7", "rectangle-2": "table-4.8"}
 COLUMNS = ("angle", "length", "breadth")
 # What to call it, how sides are read, settings of rectangle-2.
 WAYS: tuple[tuple[str, dict[str, float], dict[str, int]], ...] = (
@@ -179,13 +180,13 @@ def added(readings: int, seed: int) -> None:
         f"{100 * STRAYS:g} % strays": told(whole, STRAYS, seed),
         "both": told(short, STRAYS, seed),
     }
-    thesis = {n: np.array([THESIS[n][k] for k in OBJECTS])[:, :, 1] for n in THESIS}
+    thesis = {name: error_table(table).values[:, 1::2] for name, table in TABLES.items()}
     head = "  ".join(f"{c:>13}" for c in COLUMNS * 2)
     print(f"\nAverage errors, {' and '.join(OBJECTS)}; ours / thesis\n  {'':49}{head}")
     for title, frames in cases.items():
         for way, read, settings in WAYS:
             logs = []
-            for name in ("rectangle-1", "rectangle-2"):
+            for name in TABLES:
                 used = settings if name == "rectangle-2" else {}
                 errors = signed_errors(runner(name, **used), frames, **read)
                 ours = np.array([np.nanmean(np.abs(errors[k][:, :3]), axis=0) for k in OBJECTS])

@@ -30,13 +30,12 @@ sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
 from tactile_graph import Rectangle, load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
+from tactile_graph_thesis.measure.beside_thesis import beside_thesis
 from tactile_graph_thesis.measure.rectangles import (
     OBJECTS,
     STATED_CELL_CM,
-    ErrorTable,
-    beside_thesis,
     rectangle_frames,
     signed_errors,
 )
@@ -47,16 +46,18 @@ LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
 PRE_FILTER_PASSES = 8
 
 
-def show(title: str, table: ErrorTable, beside: bool) -> None:
+def show(title: str, table: str, errors: dict[str, Values], beside: bool) -> None:
+    """Print maxima and averages, ``beside`` those of the thesis' table or alone."""
+    found = beside_thesis(table, errors)
     print(f"\n{title}")
     print(f"{'':13}" + "".join(f"{c:>15}" for c in COLUMNS) + "   no answer")
     for name in OBJECTS:
-        rows = [row for row in table.rows if row.object == name]
+        rows = found.rows[name]
         if beside:
             cells = "".join(f"{row.ours:8.2f} /{row.thesis:5.1f}" for row in rows)
         else:
             cells = "".join(f"{row.ours:15.2f}" for row in rows)
-        print(f"{name:13}{cells}   {table.missing[name]} of {table.n}")
+        print(f"{name:13}{cells}   {found.missing[name]} of {len(errors[name])}")
 
 
 def averages(errors: dict[str, Values]) -> Values:
@@ -68,7 +69,7 @@ def tables(readings: int, seed: int) -> None:
     frames = rectangle_frames(readings, seed)
     print(f"{readings} readings of each rectangle; ours / thesis; degrees and cm")
     found: dict[str, Values] = {}
-    for name in ("rectangle-1", "rectangle-2"):
+    for name, table in (("rectangle-1", "table-4.7"), ("rectangle-2", "table-4.8")):
         run = load(name).runner()
         ways = {
             f"{name}, full axes": signed_errors(run, frames),
@@ -77,20 +78,18 @@ def tables(readings: int, seed: int) -> None:
         }
         for title, errors in ways.items():
             found[title] = averages(errors)
-            show(title, beside_thesis(name, errors), "corrected" not in title)
+            show(title, table, errors, "corrected" not in title)
     once = load("rectangle-2").with_settings({"filled.times": 1}).runner()
     errors = signed_errors(once, frames)
-    show("rectangle-2, full axes, pre-filter once", beside_thesis("rectangle-2", errors), True)
+    show("rectangle-2, full axes, pre-filter once", "table-4.8", errors, True)
     errors = signed_errors(load("rectangle-3").runner(), frames)
     found["rectangle-3"] = averages(errors)
-    show("rectangle-3", beside_thesis("rectangle-2", errors), False)
+    show("rectangle-3", "table-4.8", errors, False)
     errors = signed_errors(load("rectangle-likelihood").runner(), frames)
     found["rectangle-likelihood"] = averages(errors)
-    table = beside_thesis("rectangle-2", errors)
-    show("rectangle-likelihood beside table 4.8", table, True)
-    for name in OBJECTS:
-        rows = [row for row in table.rows if row.object == name]
-        print(f"{'over it':13}" + "".join(f"{row.ours / row.thesis:15.2f}" for row in rows))
+    show("rectangle-likelihood beside table 4.8", "table-4.8", errors, True)
+    for rows in beside_thesis("table-4.8", errors).rows.values():
+        print(f"{'over it':13}" + "".join(f"{row.ratio:15.2f}" for row in rows))
     orders(found)
 
 
@@ -239,8 +238,6 @@ def main() -> None:
     parser.add_argument("--readings", type=int, default=500, help="of each rectangle")
     parser.add_argument("--seed", type=int, default=101)
     arguments = parser.parse_args()
-    if not have_compiler():
-        print("numba is not installed: these are the times of the plain references\n")
     warm_up()
     tables(arguments.readings, arguments.seed)
     alternatives(min(200, arguments.readings), arguments.seed)

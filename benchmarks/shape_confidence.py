@@ -29,7 +29,7 @@ from tactile_graph.steps import Report
 from tactile_graph.wires import Points
 from tactile_graph_fitters.shape.shape_confidence import KINDS, MOST_CORNERS, features
 from tactile_graph_fitters.shape.shape_decision import PER_CELL, shape_decision
-from tactile_graph_fitters.shape.shape_misfits import shape_misfits
+from tactile_graph_fitters.shape.shape_fits import shape_fits
 from tactile_graph_hull.hull import hull
 from tactile_graph_sources.simulate import simulate
 
@@ -113,8 +113,10 @@ def observed(some: list[Case]) -> tuple[Values, NDArray[np.int64]]:
         corners = hull(case.outline).xy_cm
         if len(corners) < 3:
             continue
-        _, length, misfits, _, _ = shape_misfits(corners, CELL_CM / PER_CELL, MOST_CORNERS, CELL_CM)
-        rows.append(features(length, misfits, CELL_CM))
+        _, length, mean_squares, _, _ = shape_fits(
+            corners, CELL_CM / PER_CELL, MOST_CORNERS, CELL_CM
+        )
+        rows.append(features(length, mean_squares, CELL_CM))
         kinds.append(KINDS.index(case.kind))  # type: ignore[arg-type]
     return np.array(rows), np.array(kinds)
 

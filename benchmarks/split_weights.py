@@ -29,7 +29,8 @@ from tactile_graph import Frame
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
-from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, hull_terms
+from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, Levels, hull_terms
+from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.straight_cuts import (
     COSINES,
     LEAST_CELLS,
@@ -169,10 +170,10 @@ def cuts(
     box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     group, new = 1, 3
     owner = np.where(mine, group, np.where(on, 2, 0)).astype(np.int32)[box].copy()
-    held, known, first = values[box].copy(), np.ones(owner.shape, np.bool_), (truth == a)[box]
-    full = WEAK * float(np.median(values[on]))
-    rest = (held, known, WEAK)
-    both = hull_terms(owner, group, group, *rest, FLOOR * full)
+    cells = Partition(owner, values[box].copy(), np.ones(owner.shape, np.bool_))
+    first, full = (truth == a)[box], WEAK * float(np.median(values[on]))
+    levels = Levels(WEAK, full, FLOOR * full)
+    both = hull_terms(cells, group, group, levels)
     terms, right = [], []
     for cosine, sine in zip(COSINES, SINES, strict=True):
         low, high = reach(owner, group, new, cosine, sine)
@@ -180,7 +181,7 @@ def cuts(
         for at in np.arange(low + 0.5 * STEP_CELLS, high, STEP_CELLS):
             moved = moved_over(owner, group, new, cosine, sine, at)
             if moved != before and LEAST_CELLS <= moved <= both[CELLS] - LEAST_CELLS:
-                terms.append(cut_terms(owner, new, group, *rest, full, FLOOR * full, both))
+                terms.append(cut_terms(cells, new, group, levels, both))
                 same = np.mean((owner == new)[mine[box]] == first[mine[box]])
                 right.append(max(same, 1.0 - same))
             before = moved

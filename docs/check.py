@@ -70,7 +70,8 @@ def doctests(module: ModuleType) -> Iterator[str]:
 
 def pages() -> list[Path]:
     """Return the Markdown pages."""
-    return [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+    first = [ROOT / f"{name}.md" for name in ("README", "CHANGELOG", "CONTRIBUTING")]
+    return [*first, *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def links(page: Path) -> Iterator[str]:

@@ -3,12 +3,12 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result as Result
+    from tactile_graph.api.pipeline import Pipeline as Pipeline
+    from tactile_graph.api.pipeline import load as load
+    from tactile_graph.api.pipeline import loads as loads
+    from tactile_graph.api.result import Result as Result
     from tactile_graph.errors import Degenerate as Degenerate
     from tactile_graph.errors import TactileGraphError as TactileGraphError
-    from tactile_graph.pipeline.load import load as load
-    from tactile_graph.pipeline.load import loads as loads
-    from tactile_graph.pipeline.pipeline import Pipeline as Pipeline
     from tactile_graph.plugins.hookspecs import hookimpl as hookimpl
     from tactile_graph.wires import Circle as Circle
     from tactile_graph.wires import Ellipse as Ellipse
@@ -27,15 +27,15 @@ _HOMES = {
     "Frame": "wires.frame",
     "Image": "wires.image",
     "Mask": "wires.image",
-    "Pipeline": "pipeline.pipeline",
+    "Pipeline": "api.pipeline",
     "Points": "wires.points",
     "Polygon": "wires.shapes",
     "Rectangle": "wires.shapes",
-    "Result": "engine.result",
+    "Result": "api.result",
     "TactileGraphError": "errors",
     "hookimpl": "plugins.hookspecs",
-    "load": "pipeline.load",
-    "loads": "pipeline.load",
+    "load": "api.pipeline",
+    "loads": "api.pipeline",
 }
 __all__ = list(_HOMES)
 

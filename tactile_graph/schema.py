@@ -12,7 +12,7 @@ from typing import Any
 from tactile_graph.docstring import parameters
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.pipeline.declaration import RESERVED
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.settings import adapter
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, type_name

@@ -1,12 +1,30 @@
-"""Profiles of Hypothesis: ``fast`` draws the same examples every time, ``full`` new ones.
+"""Profiles of Hypothesis, and how tests are shared out among processes.
 
-``HYPOTHESIS_PROFILE=full`` or ``--hypothesis-profile=full`` chooses; ``fast`` otherwise.
+The profile ``fast`` draws the same examples every time, ``full`` new ones;
+``HYPOTHESIS_PROFILE=full`` or ``--hypothesis-profile=full`` chooses, ``fast`` otherwise.
 """
 
-import os
+from __future__ import annotations
 
+import os
+from pathlib import Path
+
+import pytest
 from hypothesis import settings
+
+from helpers_processes import compile_once_among_processes
 
 settings.register_profile("fast", derandomize=True, deadline=None)
 settings.register_profile("full", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))
+
+
+def pytest_configure() -> None:
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        compile_once_among_processes()
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """Keep single files and single tests in this process: starting others takes longer."""
+    asked = [Path(arg.partition("::")[0]) for arg in config.args]
+    return 0 if all(path.suffix == ".py" for path in asked) else None

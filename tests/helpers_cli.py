@@ -166,7 +166,16 @@ def plugin(folder: Path, **more: Any) -> Callable[[], types.ModuleType]:
     def tactile_graph_commands() -> Mapping[str, str]:
         return dict(more.get("commands", {}))
 
-    hooks = (tactile_graph_steps, tactile_graph_pipelines, tactile_graph_commands)
+    @hookimpl
+    def tactile_graph_readers() -> Mapping[str, str]:
+        return dict(more.get("readers", {"recording": "path"}))
+
+    hooks = (
+        tactile_graph_steps,
+        tactile_graph_readers,
+        tactile_graph_pipelines,
+        tactile_graph_commands,
+    )
     for hook in hooks:
         setattr(module, hook.__name__, hook)
     return lambda: module

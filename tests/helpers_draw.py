@@ -11,7 +11,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 
 from tactile_graph import Circle, Degenerate, Frame, Image, Mask, Points, Polygon, hookimpl, loads
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps import Quantity
 from tactile_graph.wires import TrueObject

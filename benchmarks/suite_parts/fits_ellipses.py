@@ -10,7 +10,7 @@ import numpy as np
 
 from suite_parts.fits_common import NOISE_CM, POINTS, Case, Fit, Values, opencv_box, ours
 from tactile_graph import Ellipse
-from tactile_graph.pipeline.load import loads
+from tactile_graph.api.pipeline import loads
 from tactile_graph.wires.frame import TrueObject
 
 COUNTS = (10, 20, 40, 1000)

@@ -13,7 +13,7 @@ from suite_parts.records import Measured
 from suite_parts.rounds_of import in_turn
 from suite_parts.scenes import SCENES, Scene, scene
 from tactile_graph import Frame
-from tactile_graph.engine.result import Result
+from tactile_graph.api.result import Result
 from tactile_graph.errors import TactileGraphError
 
 PIPELINES = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge
@@ -12,6 +12,24 @@ from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
+
+Whole = NDArray[np.int64]
+
+
+class _Ring(NamedTuple):
+    """A hull that grows: a ring of points, and for each of its edges the points beyond it.
+
+    An edge bears the number of the point it starts at. ``after`` and ``before`` lead from corner
+    to corner; ``edge_of`` is the edge a point is beyond, ``first_of`` an edge's first such point
+    and ``next_of`` the one behind a point; -1 for none.
+    """
+
+    xy: NDArray[np.float64]
+    after: Whole
+    before: Whole
+    edge_of: Whole
+    first_of: Whole
+    next_of: Whole
 
 
 def hull_beneath_beyond(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Polygon:
@@ -59,16 +77,16 @@ def beneath_beyond_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.f
             high = i
     if xy[low, 0] == xy[high, 0] and xy[low, 1] == xy[high, 1]:
         return xy[low : low + 1] + 0.0
-    # The hull is a ring of points; an edge bears the number of the point it starts at.
     after, before = np.full(n, -1), np.full(n, -1)
     after[low], before[low], after[high], before[high] = high, high, low, low
     edge_of, first_of, next_of = np.full(n, -1), np.full(n, -1), np.full(n, -1)
+    hull = _Ring(xy, after, before, edge_of, first_of, next_of)
     order = _shuffled(n)
     for p in order:
-        _give(xy, p, low, high, after, edge_of, first_of, next_of)
+        _give(hull, p, low, high)
     for p in order:
         if edge_of[p] >= 0:
-            _add(xy, p, after, before, edge_of, first_of, next_of)
+            _add(hull, p)
     size = 1
     corner = after[low]
     while corner != low:
@@ -100,37 +118,22 @@ def _sense(xy: NDArray[np.float64], edge: int, end: int, p: int) -> int:
 
 
 @compiled_later
-def _give(
-    xy: NDArray[np.float64],
-    p: int,
-    one: int,
-    other: int,
-    after: NDArray[np.int64],
-    edge_of: NDArray[np.int64],
-    first_of: NDArray[np.int64],
-    next_of: NDArray[np.int64],
-) -> None:
+def _give(hull: _Ring, p: int, one: int, other: int) -> None:
     """Put p on the list of the edge it is beyond; beneath both it is inside for good."""
-    edge_of[p] = -1
+    hull.edge_of[p] = -1
     for edge in (one, other):
-        if _sense(xy, edge, after[edge], p) < 0:
-            edge_of[p] = edge
-            next_of[p] = first_of[edge]
-            first_of[edge] = p
+        if _sense(hull.xy, edge, hull.after[edge], p) < 0:
+            hull.edge_of[p] = edge
+            hull.next_of[p] = hull.first_of[edge]
+            hull.first_of[edge] = p
             return
 
 
 @compiled_later
-def _add(
-    xy: NDArray[np.float64],
-    p: int,
-    after: NDArray[np.int64],
-    before: NDArray[np.int64],
-    edge_of: NDArray[np.int64],
-    first_of: NDArray[np.int64],
-    next_of: NDArray[np.int64],
-) -> None:
+def _add(hull: _Ring, p: int) -> None:
     """Replace the edges p is beyond by the two sides of its supporting cone."""
+    xy, after, before = hull.xy, hull.after, hull.before
+    edge_of, first_of, next_of = hull.edge_of, hull.first_of, hull.next_of
     start, end = edge_of[p], after[edge_of[p]]
     # An edge on whose line p lies goes too: what was its corner is then between its neighbours.
     while _sense(xy, before[start], start, p) <= 0:
@@ -152,6 +155,6 @@ def _add(
     while waiting >= 0:
         following = next_of[waiting]
         if waiting != p:
-            _give(xy, waiting, start, p, after, edge_of, first_of, next_of)
+            _give(hull, waiting, start, p)
         waiting = following
     edge_of[p] = -1

@@ -99,8 +99,8 @@ class Contact:
             return min(1.0, float(covered.sum()) / shape.area_cm2)
         width, height = geometry.size_cm
         xy = shape.outline_cm()
-        inside = (xy >= 0.0).all() and (xy <= (width, height)).all()
-        if inside:
+        on_pad = (xy >= 0.0).all() and (xy <= (width, height)).all()
+        if on_pad:
             return 1.0
         margin = 0.5 * geometry.gap_cm  # each cell of pitch size carries to its element
         whole = Geometry(geometry.rows, geometry.columns, geometry.pitch_cm, 0.0)

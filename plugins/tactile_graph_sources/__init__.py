@@ -19,6 +19,12 @@ def tactile_graph_steps() -> Mapping[str, str]:
 
 
 @hookimpl
+def tactile_graph_readers() -> Mapping[str, str]:
+    """Offer what reads the recordings a command line names."""
+    return {"recording": "path"}
+
+
+@hookimpl
 def tactile_graph_presets() -> Mapping[str, Path]:
     """Offer the presets of pads on a serial port."""
     return {p.stem: p for p in sorted(Path(__file__).with_name("presets").glob("*.yaml"))}

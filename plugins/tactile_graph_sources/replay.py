@@ -13,7 +13,7 @@ from annotated_types import Gt
 from tactile_graph.errors import DataError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
-from tactile_graph_sources.frames_of import frames_of
+from tactile_graph_sources.recording import recording
 
 
 def replay(
@@ -54,7 +54,7 @@ def replay(
     clock = _Clock(speed, longest_pause_s)
     index = 0
     while True:
-        for position, frame in enumerate(frames_of(path, report)):
+        for position, frame in enumerate(recording(path=path, report=report)):
             if speed is not None:
                 clock.wait_for(_moment(path, frame, position, rate_hz), starts=position == 0)
             again = position == 0 and index > 0

@@ -1,4 +1,4 @@
-"""The thesis family: its tables and figures made again, beside the thesis' own numbers."""
+"""The thesis family: its tables, figures and studies made again, beside its own numbers."""
 
 from collections.abc import Mapping
 
@@ -10,10 +10,10 @@ _STEPS = ("add_noise", "flip_cells", "jitter_points")
 @hookimpl
 def tactile_graph_steps() -> Mapping[str, str]:
     """Offer the steps that bring known noise between the blocks of a pipeline."""
-    return {name: f"{__name__}.{name}:{name}" for name in _STEPS}
+    return {name: f"{__name__}.noise.{name}:{name}" for name in _STEPS}
 
 
 @hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the commands that make the tables and figures, and the studies of chapter 2."""
-    return {name: f"{__name__}.commands.{name}:{name}" for name in ("reproduce", "study")}
+    """Offer the command that makes the tables, figures and studies."""
+    return {"reproduce": f"{__name__}.commands.reproduce:reproduce"}

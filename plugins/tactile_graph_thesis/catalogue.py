@@ -1,4 +1,4 @@
-"""Every item in the order of the book, found by its id or its number."""
+"""Every item in the order of the thesis, found by its id, its number or its study's name."""
 
 from __future__ import annotations
 
@@ -8,53 +8,51 @@ from importlib import import_module
 from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph_thesis.item import Item
 
-_MODULES = (
-    "chapter_2",
-    "thresholds",
-    "variances",
-    "circle_stages",
-    "hull_stages",
-    "rectangle_stages",
-    "rounding_stages",
-    "diagrams",
-    "error_tables",
-    "identification",
-    "bayes",
-    "subpixels",
-    "noise_algorithms",
-    "noise_blocks",
-)
-_AFTER = {
-    "table-4.3": "4.12",
-    "table-4.4": "4.17",
-    "table-4.5": "4.20",
-    "table-4.7": "4.28",
-    "table-4.8": "4.36",
-    "table-4.9": "4.37",
-    "table-5.2": "5.13",
+CONTENTS = {
+    "chapter_2": (
+        "section_2_2_2_converter",
+        "section_2_2_3_samples",
+        "figures_2_8_to_2_11_bias",
+        "figures_2_12_to_2_14_footprints",
+        "figures_2_15_to_2_17_groups_of_four",
+        "figure_2_18_calibration_curve",
+        "figure_2_19_weight_against_area",
+    ),
+    "chapter_4": (
+        "figures_4_1_to_4_3_threshold",
+        "figures_4_4_and_4_5_variance",
+        "figures_4_6_to_4_17_discs",
+        "figures_4_18_to_4_21_hull",
+        "figures_4_22_to_4_28_rectangles",
+        "figures_4_29_to_4_36_rounding",
+        "figures_4_37_to_4_43_identification",
+        "tables_4_3_to_4_8_errors",
+        "table_4_9_identification",
+    ),
+    "chapter_5": ("figures_5_8_to_5_14_restoration", "table_5_2_radii"),
+    "chapter_6": (
+        "section_6_1_3_subdivision",
+        "section_6_1_3_noise_on_localisers",
+        "section_6_1_3_noise_before_blocks",
+    ),
 }
-"""Table -> the number of the figure it stands after."""
+"""Room of ``items/`` -> its modules, each with a tuple ``ITEMS``."""
 
 
 @cache
 def items() -> tuple[Item, ...]:
-    """Return every item in the order of the thesis, studies last."""
+    """Return every item in the order of the thesis."""
     found = [
         item
-        for name in _MODULES
-        for item in import_module(f"tactile_graph_thesis.items.{name}").ITEMS
+        for room, modules in CONTENTS.items()
+        for module in modules
+        for item in import_module(f"tactile_graph_thesis.items.{room}.{module}").ITEMS
     ]
-    return tuple(sorted(found, key=_order))
-
-
-def _order(item: Item) -> tuple[bool, tuple[int, ...], bool]:
-    number = _AFTER.get(item.id, item.number)
-    place = tuple(int(part) for part in number.split(".")) if number else ()
-    return not place, place, item.id in _AFTER
+    return tuple(sorted(found, key=lambda item: item.place))
 
 
 def chosen(names: tuple[str, ...]) -> list[Item]:
-    """Return the items of these names, each once, in the order of the book.
+    """Return the items of these names, each once, in the order of the thesis.
 
     Parameters
     ----------
@@ -69,9 +67,9 @@ def chosen(names: tuple[str, ...]) -> list[Item]:
     """
     wanted: set[str] = set()
     for name in names:
-        found = [i.id for i in items() if name in ("all", i.id, i.number)]
+        found = [i.id for i in items() if name in ("all", i.id, i.number, i.study) and name]
         if not found:
-            known = ["all", *(i.id for i in items()), *(i.number for i in items() if i.number)]
+            known = ["all", *(n for i in items() for n in (i.id, i.number, i.study) if n)]
             hint = did_you_mean(name, known)
             raise UsageError(
                 f"no table, figure or study named {name!r}{hint}; "

@@ -1,20 +1,47 @@
-"""``Item``: one table or figure of the thesis and how it is made; ``Made``: what came out."""
+"""``Item``: a table, figure or study of the thesis and how it is made; ``Made``: what came out."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
-
-from tactile_graph_thesis.chapter_2 import Finding, Table
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from tactile_graph_thesis.work import Work
 
-__all__ = ["Compared", "Finding", "Item", "Made", "Table"]
+
+class Finding(NamedTuple):
+    """A conclusion of the thesis beside what comes out here.
+
+    Parameters
+    ----------
+    thesis : str
+        What the thesis concludes.
+    found : str
+        What comes out here, in numbers.
+    holds : bool
+    """
+
+    thesis: str
+    found: str
+    holds: bool
+
+
+class Table(NamedTuple):
+    """Rows of plain values.
+
+    Parameters
+    ----------
+    columns : tuple of str
+        Names that carry the units.
+    rows : sequence of tuple
+    """
+
+    columns: tuple[str, ...]
+    rows: Sequence[tuple[Any, ...]]
 
 
 class Compared(NamedTuple):
@@ -87,7 +114,7 @@ class Made:
 
 @dataclass(frozen=True)
 class Item:
-    """A table or figure of the thesis, or a study it wished for.
+    """A table or figure of the thesis, or a study that belongs to a section of it.
 
     Parameters
     ----------
@@ -100,6 +127,10 @@ class Item:
         ``make(work)`` returns a `Made`.
     why : str
         Where ours differs from the thesis', and why. Numbers of a run stand in `Made.notes`.
+    study : str
+        Another name for it: that of the study whose figure it is.
+    after : str
+        The number of the figure or section it stands after, where its own does not say it.
     """
 
     id: str
@@ -107,6 +138,8 @@ class Item:
     shows: str
     make: Callable[[Work], Made]
     why: str = ""
+    study: str = ""
+    after: str = ""
 
     @property
     def name(self) -> str:
@@ -118,3 +151,8 @@ class Item:
         """``4.5``; empty for a study."""
         kind, dash, number = self.id.partition("-")
         return number if dash and kind in ("table", "figure") else ""
+
+    @property
+    def place(self) -> tuple[tuple[int, ...], bool]:
+        """Sorts items in the order of the thesis."""
+        return tuple(map(int, (self.after or self.number).split("."))), bool(self.after)

@@ -30,10 +30,10 @@ def paired(cost: NDArray[np.float64], limit: float) -> list[tuple[int, int]]:
     if rows == 0 or columns == 0:
         return []
     nearest = cost.argmin(axis=1)
-    wanted = cost[np.arange(rows), nearest] <= limit
-    chosen = nearest[wanted]
+    within = cost[np.arange(rows), nearest] <= limit
+    chosen = nearest[within]
     if len(set(chosen.tolist())) == chosen.size:
-        return list(zip(np.flatnonzero(wanted).tolist(), chosen.tolist(), strict=True))
+        return list(zip(np.flatnonzero(within).tolist(), chosen.tolist(), strict=True))
     from scipy.optimize import linear_sum_assignment
 
     # Each row has a place of its own beside the columns, where it may stay alone.

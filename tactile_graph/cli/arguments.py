@@ -16,11 +16,10 @@ from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.wires.frame import Frame
 
 F = TypeVar("F", bound=Callable[..., Any])
-RECORDING = "recording"
 COUNT = "frames"
 """The setting by which a source that makes its frames is told how many."""
 
@@ -129,7 +128,7 @@ def open_pipeline(
     PipelineError
         If the file or a setting is wrong.
     """
-    from tactile_graph.pipeline.load import load
+    from tactile_graph.api.pipeline import load
 
     found = registry.installed()
     if name is None:
@@ -164,13 +163,11 @@ def sourced(
     UsageError
         If there is none, or it is not allowed.
     """
-    if recordings and step is not None and step != RECORDING:
-        raise UsageError(f"give recordings or --source {step}, not both: {recordings[0]}")
     own = pipeline.source
     base: dict[str, Any] = {}
     if recordings:
-        step = RECORDING
-        base = {"path": recordings[0] if len(recordings) == 1 else list(recordings)}
+        step, setting = _reader(step, recordings)
+        base = {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
     elif step is None:
         if own is None:
             raise UsageError(
@@ -187,6 +184,17 @@ def sourced(
         return pipeline
     _check_source(step, base, bool(recordings))
     return pipeline.with_source(step, **base)
+
+
+def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
+    """Return the source step that reads recordings, the one named or the first, and its setting."""
+    found = registry.installed()
+    named = step or found.reader()
+    if named is None:
+        raise UsageError(f"no plugin offers a step that reads recordings{found.missing_plugins()}")
+    if not found.has("readers", named):
+        raise UsageError(f"give recordings or --source {named}, not both: {recordings[0]}")
+    return named, str(found.offer("readers", named).target)
 
 
 def _is_default(source: Any, name: str, value: Any) -> bool:
@@ -216,7 +224,7 @@ def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
         raise UsageError(
             f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}"
             if not recordings
-            else f"recordings need the step {RECORDING!r}: {found.unknown('steps', step)}"
+            else f"recordings need the step {step!r}: {found.unknown('steps', step)}"
         )
     signature = found.step(step)
     if signature.kind is not Kind.SOURCE:

@@ -12,7 +12,7 @@ from tactile_graph.errors import PipelineError, TactileGraphError, UsageError
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
 
 
 @click.command(epilog="Exit codes: 0 all are right, 2 some are not.")
@@ -21,9 +21,9 @@ def check(pipelines: tuple[str, ...]) -> None:
     """Report all that is wrong with pipeline files or names; without any, with all installed."""
     from rich.text import Text
 
+    from tactile_graph.api.pipeline import load
     from tactile_graph.cli.problems import show_problems
     from tactile_graph.cli.terminal import console
-    from tactile_graph.pipeline.load import load
 
     found = registry.installed()
     names = pipelines or tuple(found.names("pipelines"))

@@ -11,8 +11,8 @@ from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.errors import UsageError
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
 
 
 @click.command(epilog="Exit codes: 0 no output failed, 1 some did, 2 not done.")

@@ -26,7 +26,7 @@ FORMATS = ("svg", "mermaid", "dot")
 @click.option("-o", "--output", metavar="FILE", help="Write to a file (.svg, .mmd, .dot).")
 def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
     """Draw PIPELINE's graph from left to right."""
-    from tactile_graph.pipeline.load import load
+    from tactile_graph.api.pipeline import load
 
     if pipeline is None:
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")

@@ -10,9 +10,9 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 from rich.text import Text
 
+from tactile_graph.api.result import Result
 from tactile_graph.engine.columns import Column, OutputColumns, values_of
 from tactile_graph.engine.outcome import NO_VALUE, Failed
-from tactile_graph.engine.result import Result
 
 GAP = "  "
 ERRORS = "error"

@@ -38,7 +38,7 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
     from multiprocessing import get_context
 
     from tactile_graph.cli.terminal import console
-    from tactile_graph.pipeline.load import load
+    from tactile_graph.api.pipeline import load
 
     names = pipelines or tuple(registry.installed().names("pipelines"))
     if not names:
@@ -57,7 +57,7 @@ def prepared(name: str) -> str:
     """Compile what a pipeline's first frames need; return what to say of it."""
     from tactile_graph.compiled import warm_up
     from tactile_graph.errors import TactileGraphError
-    from tactile_graph.pipeline.load import load
+    from tactile_graph.api.pipeline import load
 
     start = time.monotonic()
     warm_up()

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.files import write_whole
-from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.pipeline.graph import Graph
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Plugin, Registry, installed
 from tactile_graph.steps.injected import Report
 
@@ -21,12 +22,12 @@ def sidecar(output: str | Path) -> Path:
     return Path(f"{output}.meta.json")
 
 
-def provenance(pipeline: Pipeline, seed: int, report: Report, **more: Any) -> dict[str, Any]:
+def provenance(pipeline: Graph, seed: int, report: Report, **more: Any) -> dict[str, Any]:
     """Return how to make a run's output again, as plain data.
 
     Parameters
     ----------
-    pipeline : Pipeline
+    pipeline : Graph
         As it ran: resolved, with every setting spelled out.
     seed : int
     report : Report
@@ -61,7 +62,7 @@ def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def used_plugins(pipeline: Pipeline, registry: Registry) -> Iterator[Plugin]:
+def used_plugins(pipeline: Graph, registry: Registry) -> Iterator[Plugin]:
     """Yield the plugins that the pipeline, its source and its steps come from."""
     if registry.has("pipelines", pipeline.name):
         yield registry.offer("pipelines", pipeline.name).plugin

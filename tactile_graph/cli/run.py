@@ -24,8 +24,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, is_plain
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
 
 IN_A_PICTURE = 12
 LONG_RUN = 200
@@ -58,6 +58,11 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
     help="Format of the lines, where the file's name does not say; alone it means '-o -'.",
 )
 @click.option(
+    "--full",
+    is_flag=True,
+    help="JSON lines with every field and array of the outputs, not only their summary.",
+)
+@click.option(
     "--plot",
     metavar="FILE",
     help=f"Draw the first {IN_A_PICTURE} frames: a row a frame, a column a node (.png, .svg, …).",
@@ -73,6 +78,7 @@ def run(
     span: Span,
     output: str | None,
     form: str | None,
+    full: bool,
     plot: str | None,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
@@ -82,8 +88,9 @@ def run(
     """
     output = output or ("-" if form else None)
     _check_files(recordings, output, plot)
+    _check_full(full, output, form)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, output, form, plot).go()
+    _Run(opened, tuple(only), span, seed, output, form, full, plot).go()
 
 
 def _check_files(recordings: Sequence[str], output: str | None, plot: str | None) -> None:
@@ -98,6 +105,15 @@ def _check_files(recordings: Sequence[str], output: str | None, plot: str | None
         raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
 
 
+def _check_full(full: bool, output: str | None, form: str | None) -> None:
+    """Refuse to give in full what has no place for it."""
+    from tactile_graph.cli.writers import format_of
+
+    if full and (output is None or format_of(output, form) != "jsonl"):
+        got = "a table" if output is None else "CSV"
+        raise UsageError(f"--full: {got} holds single numbers only; give -o FILE.jsonl or -o -")
+
+
 @dataclass
 class _Run:
     """One run from its first frame to its closing lines."""
@@ -108,6 +124,7 @@ class _Run:
     seed: int
     output: str | None
     form: str | None
+    full: bool
     plot: str | None
     kept: list[Result] = field(default_factory=list)
     interrupted: bool = False
@@ -145,7 +162,7 @@ class _Run:
         if self.output is None:
             return None
         form = format_of(self.output, self.form)
-        return LineFile(self.output, Csv(self.columns) if form == "csv" else JsonLines())
+        return LineFile(self.output, Csv(self.columns) if form == "csv" else JsonLines(self.full))
 
     # -- the frames --------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import yaml
 
 from tactile_graph.docstring import parameters, sections
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import assignable, public_fields
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import Grid, Quantity

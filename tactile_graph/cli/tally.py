@@ -12,10 +12,10 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from tactile_graph.api.result import Result
 from tactile_graph.cli.live_table import shown
 from tactile_graph.engine.columns import OutputColumns, values_of
 from tactile_graph.engine.outcome import Failed, Skipped
-from tactile_graph.engine.result import Result
 from tactile_graph.steps.injected import Report
 
 MOST_TROUBLES = 20

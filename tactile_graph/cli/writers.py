@@ -12,9 +12,9 @@ from typing import Any, BinaryIO, NoReturn, Protocol
 
 import click
 
+from tactile_graph.api.result import Result
 from tactile_graph.engine.columns import OutputColumns, outcome_word, values_of
 from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.result import Result
 from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
@@ -34,7 +34,16 @@ class Lines(Protocol):
 
 
 class JsonLines:
-    """One JSON object a frame: outputs in full, errors where the truth is known, the truth."""
+    """One JSON object a frame: outputs, errors where the truth is known, the truth.
+
+    Parameters
+    ----------
+    full : bool
+        Whether records give every field and every array, or their summary.
+    """
+
+    def __init__(self, full: bool = False) -> None:
+        self.full = full
 
     def head(self) -> str:
         """Return nothing: every line is a frame."""
@@ -42,11 +51,12 @@ class JsonLines:
 
     def line(self, result: Result) -> str:
         """Return a frame's line."""
-        return json.dumps(without_nan(json_row(result)), ensure_ascii=False, allow_nan=False) + "\n"
+        row = without_nan(json_row(result, self.full))
+        return json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def json_row(result: Result) -> dict[str, Any]:
-    """Return a result as plain data."""
+def json_row(result: Result, full: bool) -> dict[str, Any]:
+    """Return a result as plain data, records in full or by their summary."""
     frame = result.frame
     row: dict[str, Any] = {"frame": frame.index}
     if frame.label:
@@ -58,7 +68,7 @@ def json_row(result: Result) -> dict[str, Any]:
     if frame.gap:
         row["gap"] = True
     outcomes = {name: result.outcome(name) for name in result.plan.asked}
-    row["outputs"] = {name: as_data(outcome) for name, outcome in outcomes.items()}
+    row["outputs"] = {name: as_data(outcome, full) for name, outcome in outcomes.items()}
     if frame.truth is None:
         return row
     errors = {}
@@ -67,7 +77,7 @@ def json_row(result: Result) -> dict[str, Any]:
         if true is not None:
             errors[name] = errors_against(outcome, true)
     row["errors"] = errors
-    row["truth"] = [{"kind": type(t.shape).__name__, **as_data(t)} for t in frame.truth]
+    row["truth"] = [{"kind": type(t.shape).__name__, **as_data(t, full)} for t in frame.truth]
     return row
 
 

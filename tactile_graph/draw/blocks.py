@@ -6,8 +6,7 @@ from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from tactile_graph.pipeline.node import FRAME, Node, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, arms
 
 SOURCE = "(source)"
@@ -46,7 +45,7 @@ class Wire:
     label: str = ""
 
 
-def blocks(pipeline: Pipeline) -> list[Block]:
+def blocks(pipeline: Graph) -> list[Block]:
     """Return the source, the frame and the nodes in the order of the file."""
     found = []
     unused, said = set(pipeline.unused), _said(pipeline)
@@ -65,7 +64,7 @@ def blocks(pipeline: Pipeline) -> list[Block]:
     return found
 
 
-def _block(pipeline: Pipeline, node: Node, unused: bool, said: Set[str]) -> Block:
+def _block(pipeline: Graph, node: Node, unused: bool, said: Set[str]) -> Block:
     choice = node.kind is NodeKind.FIRST_OF
     step = "first of" if choice else "hands on" if node.kind is NodeKind.PASS else node.what
     shown = _settings(node.settings, _defaults(node.signature), said)
@@ -85,7 +84,7 @@ def _block(pipeline: Pipeline, node: Node, unused: bool, said: Set[str]) -> Bloc
     )
 
 
-def _outputs_of(pipeline: Pipeline, name: str) -> tuple[str, ...]:
+def _outputs_of(pipeline: Graph, name: str) -> tuple[str, ...]:
     return tuple(o for o, ref in pipeline.outputs.items() if ref.node == name)
 
 
@@ -93,7 +92,7 @@ def _defaults(signature: Any) -> dict[str, Any]:
     return {s.name: s.default for s in signature.settings} if signature else {}
 
 
-def _said(pipeline: Pipeline) -> dict[str, set[str]]:
+def _said(pipeline: Graph) -> dict[str, set[str]]:
     """Return the settings that the file, or who overrode it, spelled out for each node."""
     import yaml
 
@@ -137,7 +136,7 @@ def _value(value: Any, longest: int = _LONGEST_VALUE) -> str:
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
-def wires(pipeline: Pipeline) -> list[Wire]:
+def wires(pipeline: Graph) -> list[Wire]:
     """Return every wire, in the order of the file; what two ports read off one node is one."""
     found: dict[tuple[str, str, WireKind], list[str]] = {}
     if pipeline.source is not None:
@@ -150,7 +149,7 @@ def wires(pipeline: Pipeline) -> list[Wire]:
     return [Wire(*key, ", ".join(labels)) for key, labels in found.items()]
 
 
-def _reads(pipeline: Pipeline, node: Node) -> Iterator[tuple[Ref, WireKind, str]]:
+def _reads(pipeline: Graph, node: Node) -> Iterator[tuple[Ref, WireKind, str]]:
     several = node.signature is not None and len(node.signature.ports) > 1
     for binding in node.inputs:
         for ref in binding.refs:
@@ -165,7 +164,7 @@ def _reads(pipeline: Pipeline, node: Node) -> Iterator[tuple[Ref, WireKind, str]
         yield ref, "guard", ""
 
 
-def _field(pipeline: Pipeline, ref: Ref) -> str:
+def _field(pipeline: Graph, ref: Ref) -> str:
     """Return the field a wire takes, but for a view that the engine takes by itself."""
     path = list(ref.path)
     views = {v for arm in arms(pipeline.types[ref.node]) for v in _views(arm)}

@@ -10,12 +10,13 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from tactile_graph.draw.columns import Column, columns, outcome_of
-from tactile_graph.draw.picture import DASHES, FOUND, TRUE, Pen
-from tactile_graph.engine.result import Result
+from tactile_graph.draw.colours import FOUND, TRUE
+from tactile_graph.draw.paint_strip import DASHES, Pen
+from tactile_graph.draw.strip_columns import Column, columns, outcome_of
+from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.files import write_whole
-from tactile_graph.pipeline.node import FRAME
+from tactile_graph.pipeline.graph import FRAME
 from tactile_graph.wires import Frame
 
 if TYPE_CHECKING:
@@ -34,13 +35,13 @@ Extent = tuple[float, float, float, float]
 
 
 def strip_figure(
-    results: Iterable[Result], nodes: Sequence[str] | None = None, *, most_rows: int = MOST_ROWS
+    results: Iterable[Outcomes], nodes: Sequence[str] | None = None, *, most_rows: int = MOST_ROWS
 ) -> Figure:
     """Return the strip as a figure of its own, known to no window and no global state.
 
     Parameters
     ----------
-    results : iterable of Result
+    results : iterable of Outcomes
         One row each; where there are more than ``most_rows``, as many spread evenly over them.
     nodes : sequence of str, optional
         Nodes, outputs or ``node.field`` to show; the frame and every node that has a place on
@@ -60,7 +61,7 @@ def strip_figure(
 
 
 def save_strip(
-    results: Iterable[Result],
+    results: Iterable[Outcomes],
     path: str | os.PathLike[str],
     nodes: Sequence[str] | None = None,
     *,
@@ -120,7 +121,7 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
     return buffer.getvalue()
 
 
-def _spread(results: list[Result], most: int) -> list[Result]:
+def _spread(results: list[Outcomes], most: int) -> list[Outcomes]:
     if len(results) <= most:
         return results
     if most <= 1:
@@ -132,7 +133,7 @@ def _spread(results: list[Result], most: int) -> list[Result]:
 class _Strip:
     """Lays out the axes in inches and lets a `Pen` draw each."""
 
-    def __init__(self, results: list[Result], shown: list[Column], n_given: int) -> None:
+    def __init__(self, results: list[Outcomes], shown: list[Column], n_given: int) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
@@ -163,7 +164,7 @@ class _Strip:
         )  # fmt: skip
         self._legend(drawn)
 
-    def _cell(self, row: int, column: int, result: Result) -> set[str]:
+    def _cell(self, row: int, column: int, result: Outcomes) -> set[str]:
         axes = self._axes(row, column)
         what = self.columns[column]
         pen = Pen(axes, result.frame, what, self.beneath)

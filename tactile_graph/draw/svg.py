@@ -23,7 +23,7 @@ from tactile_graph.draw.svg_text import (
     text_width,
     texts,
 )
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import Graph
 
 MARGIN = 16.0
 ARROW = 7.0
@@ -38,7 +38,7 @@ _NO_MARKS: Mapping[str, Sequence[Mark]] = MappingProxyType({})
 
 
 def graph_svg(
-    pipeline: Pipeline,
+    pipeline: Graph,
     new: Set[str] = frozenset(),
     *,
     notes: Mapping[str, Sequence[str]] = _NOTHING,
@@ -48,7 +48,7 @@ def graph_svg(
 
     Parameters
     ----------
-    pipeline : Pipeline
+    pipeline : Graph
     new : set of str
         Nodes to draw with a thicker border, as what an evolution added or changed.
     notes : mapping
@@ -91,7 +91,7 @@ def _joint(wire: Wire) -> Joint:
     return Joint(wire.start, wire.end, room, 0.01 if wire.kind == "guard" else 1.0)
 
 
-def _opening(pipeline: Pipeline, width: float, height: float) -> list[str]:
+def _opening(pipeline: Graph, width: float, height: float) -> list[str]:
     name = f"pipeline {pipeline.name}"
     size = f'width="{px(width)}" height="{px(height)}" viewBox="0 0 {px(width)} {px(height)}"'
     return [
@@ -103,7 +103,7 @@ def _opening(pipeline: Pipeline, width: float, height: float) -> list[str]:
     ]
 
 
-def description(pipeline: Pipeline) -> str:
+def description(pipeline: Graph) -> str:
     """Return the graph in words, for those who cannot see it."""
     parts = [pipeline.about.rstrip(".")] if pipeline.about else []
     joined = wires(pipeline)
@@ -152,7 +152,7 @@ def _label(wire: Wire, route: tuple[Point, ...]) -> str:
     return plate + texts([line], right - width / 2, y + 3.5, "middle")[0]
 
 
-def _head(pipeline: Pipeline, width: float) -> list[Line]:
+def _head(pipeline: Graph, width: float) -> list[Line]:
     lines = [Line(pipeline.name, TITLE_PX, bold=True, ink=WIRE)]
     per_line = max(int(width / (SMALL_PX * 0.56)), 30)
     return lines + [Line(t, ink=WIRE) for t in wrap(pipeline.about, per_line)[:3]]

@@ -12,19 +12,19 @@ from rich.text import Text
 from tactile_graph.engine.columns import words_and_unit
 from tactile_graph.engine.outcome import Done, Failed
 from tactile_graph.engine.rows import scalars
-from tactile_graph.pipeline.node import Node, NodeKind
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.graph import Node, NodeKind
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.steps.signature import type_name
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Explained, Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.engine.outcomes import Explained, Outcomes
+    from tactile_graph.pipeline.graph import Graph
 
 STATES = {"ran": "green", "reused": "cyan", "skipped": "yellow", "failed": "bold red"}
 LONGEST_SETTING = 30
 
 
-def pipeline_table(pipeline: Pipeline) -> Table:
+def pipeline_table(pipeline: Graph) -> Table:
     """Return a table of a pipeline's nodes: step, what it reads, settings, guard, output."""
     title = Text(pipeline.name, style="bold")
     if pipeline.about:
@@ -83,7 +83,7 @@ def _short(value: Any) -> str:
     return textwrap.shorten(text, LONGEST_SETTING, placeholder="…")
 
 
-def result_table(result: Result) -> Table:
+def result_table(result: Outcomes) -> Table:
     """Return a table of a frame's nodes: state, time, and the value or why there is none."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("node", style="bold", no_wrap=True)
@@ -105,7 +105,7 @@ def result_table(result: Result) -> Table:
     return table
 
 
-def _story(result: Result, story: Explained) -> Text:
+def _story(result: Outcomes, story: Explained) -> Text:
     if story.state in ("ran", "reused"):
         return Text(summary(story.value))
     text = Text(story.reason, style=STATES[story.state])

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Set
 
 from tactile_graph.draw.blocks import Block, Wire, blocks, wires
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import Graph
 
 _MERMAID_ARROWS = {"data": "-->", "guard": "-.->", "choice": "-.->"}
 _MERMAID_CODES = {c: f"#{ord(c)};" for c in '"#&<>`\\|[]{}()'}
 _DOT_STYLES = {"data": "solid", "guard": "dashed", "choice": "dotted"}
 
 
-def graph_mermaid(pipeline: Pipeline, new: Set[str] = frozenset()) -> str:
+def graph_mermaid(pipeline: Graph, new: Set[str] = frozenset()) -> str:
     """Return the graph as a mermaid flowchart; ``new`` nodes get a thicker border."""
     shown = blocks(pipeline)
     ids = {b.key: f"n{i}" for i, b in enumerate(shown)}  # names may be mermaid's own words
@@ -47,7 +47,7 @@ def _mermaid_text(text: str) -> str:
     return "".join(_MERMAID_CODES.get(c, c if c.isprintable() else " ") for c in text)
 
 
-def graph_dot(pipeline: Pipeline, new: Set[str] = frozenset()) -> str:
+def graph_dot(pipeline: Graph, new: Set[str] = frozenset()) -> str:
     """Return the graph in Graphviz' language; ``new`` nodes get a thicker border."""
     lines = [
         f"digraph {_dot_text(pipeline.name)} {{",

@@ -5,30 +5,52 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from types import FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
-from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.pipeline.graph import Graph, Node, NodeKind
 from tactile_graph.steps.signature import Kind
 from tactile_graph.wires.frame import Frame
 
-if TYPE_CHECKING:
-    from tactile_graph.engine.runner import Runner
-
 Call = Callable[..., Any]
+RunInner = Callable[[Frame, tuple[int, ...]], Outcomes]
+"""Runs an embedded pipeline on the frame of one item; where the item stands seeds its numbers."""
 
 
-def make_call(node: Node, runner: Runner) -> Call:
-    """Return the callable of a node's ports for one runner; stateful steps get a new instance."""
+class Context:
+    """What the calls of one context share: the frame that is under way, and what items came to.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of the steps that take randomness.
+    embedded : callable
+        Gives what runs an embedded pipeline.
+    """
+
+    __slots__ = ("embedded", "frame", "inner_results", "item", "item_failures", "seed")
+
+    def __init__(self, seed: int, embedded: Callable[[Graph], RunInner]) -> None:
+        self.seed = seed
+        self.embedded = embedded
+        self.frame: Frame
+        self.item: tuple[int, ...] = ()
+        self.inner_results: dict[str, list[Outcomes]] = {}
+        self.item_failures: list[Failed] = []
+
+
+def make_call(node: Node, context: Context) -> Call:
+    """Return the callable of a node's ports within a context; stateful steps get a new instance."""
     if node.kind is NodeKind.MAP:
-        return _mapped(node, runner)
-    call = _seeded(node, runner)
+        return _mapped(node, context)
+    call = _seeded(node, context)
     assert node.signature is not None
     if node.signature.gap:
-        call = _with_gap(call, node.signature.gap, runner)
-    return _for_each(node, call, runner) if node.each else call
+        call = _with_gap(call, node.signature.gap, context)
+    return _for_each(node, call, context) if node.each else call
 
 
 def _bound(node: Node, **injected: Any) -> Call:
@@ -55,30 +77,30 @@ def _with_defaults(step: partial[Any]) -> Call:
     return copy
 
 
-def _seeded(node: Node, runner: Runner) -> Call:
+def _seeded(node: Node, context: Context) -> Call:
     signature = node.signature
     assert signature is not None
     if not signature.rng:
         return _bound(node)
-    words = [runner.seed, int(node.key[:16], 16)]
+    words = [context.seed, int(node.key[:16], 16)]
     if signature.rng_at_init:
         return _bound(node, **{signature.rng: np.random.default_rng(words)})
     step = _bound(node)
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.
-        rng = np.random.default_rng([*words, runner.frame.index, *runner.item])
+        rng = np.random.default_rng([*words, context.frame.index, *context.item])
         return step(*args, **kwargs, **{signature.rng: rng})
 
     return call
 
 
-def _with_gap(step: Call, name: str, runner: Runner) -> Call:
+def _with_gap(step: Call, name: str, context: Context) -> Call:
     last: float | None = None
 
     def call(*args: Any, **kwargs: Any) -> Any:
         nonlocal last
-        now = runner.frame.time_s
+        now = context.frame.time_s
         gap = None if last is None or now is None else now - last
         last = now if now is not None else last
         return step(*args, **kwargs, **{name: gap})
@@ -86,7 +108,7 @@ def _with_gap(step: Call, name: str, runner: Runner) -> Call:
     return call
 
 
-def _for_each(node: Node, step: Call, runner: Runner) -> Call:
+def _for_each(node: Node, step: Call, context: Context) -> Call:
     """Return the step run over the items of whichever ports hold lists it does not want whole."""
     assert node.signature is not None
     over = [b.port.name for b in node.inputs if b.iterates]
@@ -100,15 +122,15 @@ def _for_each(node: Node, step: Call, runner: Runner) -> Call:
             raise ValueError(f"lists of different length at one node: {counts}")
         n = next(iter(counts.values()))
         outcomes = []
-        outer = runner.item
+        outer = context.item
         try:
             for i in range(n):
                 item = {**values, **{name: v[i] for name, v in lists.items()}}
-                runner.item = (*outer, i)  # or every item would draw the same numbers
+                context.item = (*outer, i)  # or every item would draw the same numbers
                 outcomes.append(_try(step, item, node.name))
         finally:
-            runner.item = outer
-        runner.item_failures += [o for o in outcomes if o.__class__ is Failed]
+            context.item = outer
+        context.item_failures += [o for o in outcomes if o.__class__ is Failed]
         return gathered(outcomes, node.name)
 
     return call
@@ -132,22 +154,20 @@ def gathered(outcomes: list[Any], name: str) -> Any:
     return Skipped(name, "no items to run for" if not outcomes else outcomes[0].reason)
 
 
-def _mapped(node: Node, runner: Runner) -> Call:
+def _mapped(node: Node, context: Context) -> Call:
     """Return the embedded pipeline run over a list of images."""
-    from tactile_graph.engine.runner import Runner as Inner
-
     assert node.inner is not None
-    inner = Inner(node.inner, tuple(node.inner.outputs), runner.seed)
+    run = context.embedded(node.inner)
     fields = getattr(node.output, "_fields", ())
     names = list(node.inner.outputs)
 
     def call(frame: Any) -> Any:
         results = []
-        outer = runner.frame
+        outer = context.frame
         for i, image in enumerate(frame):
-            inner.item = (*runner.item, i)
-            results.append(inner(Frame(image, outer.index, outer.time_s, label=outer.label)))
-        runner.inner_results[node.name] = results
+            inner = Frame(image, outer.index, outer.time_s, label=outer.label)
+            results.append(run(inner, (*context.item, i)))
+        context.inner_results[node.name] = results
         columns = [gathered([r.outcome(n) for r in results], node.name) for n in names]
         if not fields or all(c.__class__ in NO_VALUE for c in columns):
             return columns[0]

@@ -9,10 +9,10 @@ from typing import Any, Literal, get_origin
 import numpy as np
 
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
-from tactile_graph.engine.result import Result
+from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.rows import scalars
 from tactile_graph.engine.truth import error_names, errors_against, nearest
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, field_type, public_fields
 from tactile_graph.steps.signature import list_item
 
@@ -47,7 +47,7 @@ class OutputColumns:
     errors: tuple[Column, ...]
 
 
-def columns_of(pipeline: Pipeline, asked: tuple[str, ...]) -> list[OutputColumns]:
+def columns_of(pipeline: Graph, asked: tuple[str, ...]) -> list[OutputColumns]:
     """Return the columns of each output or node asked for; the same for every frame."""
     found = []
     for name in asked:
@@ -108,7 +108,7 @@ def words_and_unit(name: str) -> tuple[str, str]:
     return words.replace("_", " "), unit
 
 
-def values_of(result: Result, columns: OutputColumns) -> dict[str, Any]:
+def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:
     """Return the values of an output's columns for one frame; empty where it has none."""
     outcome = result.outcome(columns.output)
     if outcome.__class__ in NO_VALUE:

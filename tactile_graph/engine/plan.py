@@ -11,8 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tactile_graph.pipeline.node import FRAME, FrameRule, Node, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, FrameRule, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, arms
 
 
@@ -48,7 +47,7 @@ class Item:
 class Plan:
     """Everything needed to run a pipeline for a demand, as flat data."""
 
-    pipeline: Pipeline
+    pipeline: Graph
     asked: dict[str, int]
     items: list[Item]
     main: tuple[int, ...]
@@ -94,7 +93,7 @@ def _varies(node: Node) -> bool:
     return node.signature is not None and bool(node.signature.rng)
 
 
-def make_plan(pipeline: Pipeline, asked: Sequence[str]) -> Plan:
+def make_plan(pipeline: Graph, asked: Sequence[str]) -> Plan:
     """Return the plan for the nodes or fields asked for.
 
     Raises
@@ -106,7 +105,7 @@ def make_plan(pipeline: Pipeline, asked: Sequence[str]) -> Plan:
 
 
 class _Planner:
-    def __init__(self, pipeline: Pipeline, asked: Sequence[str]) -> None:
+    def __init__(self, pipeline: Graph, asked: Sequence[str]) -> None:
         self.pipeline = pipeline
         self.asked = {name: pipeline.outputs.get(name) or pipeline.ref(name) for name in asked}
         self.items: list[Item] = []

@@ -16,7 +16,9 @@ from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.node import Node, NodeKind
+from tactile_graph.pipeline.graph import Node, NodeKind
+
+IMMUTABLE = frozenset({bool, int, float, str})
 
 
 def make_program(plan: Plan, call_of: Callable[[Node], Call], blank: State) -> list[Operation]:
@@ -137,24 +139,9 @@ def _view(item: Item) -> Operation:
 
 def _guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:
     """Run the body where the guard holds; ``reads`` give what it is about."""
-    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
     if len(reads) == 1:
-        read = reads[0]
-
-        def operation_of_one(state: State) -> None:
-            value = read(state)
-            if value.__class__ in NO_VALUE:
-                state[slot] = value
-                return
-            try:
-                if holds(value):
-                    body(state)
-                else:
-                    state[slot] = Skipped(name, reason, (value,))
-            except Exception as error:
-                state[slot] = failure(name, error, (value,), f"when {guard.text}")
-
-        return operation_of_one
+        return _guarded_by_one(item, guard, reads[0], body)
+    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
 
     def operation(state: State) -> None:
         values = tuple([read(state) for read in reads])
@@ -163,12 +150,51 @@ def _guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) 
                 state[slot] = value
                 return
         try:
-            if holds(*values):
-                body(state)
-            else:
-                state[slot] = Skipped(name, reason, values)
+            holds_now = holds(*values)
         except Exception as error:
             state[slot] = failure(name, error, values, f"when {guard.text}")
+            return
+        if holds_now:
+            body(state)
+        else:
+            state[slot] = Skipped(name, reason, values)
+
+    return operation
+
+
+def _guarded_by_one(item: Item, guard: Guard, read: Operation, body: Operation) -> Operation:
+    """Run the body where a guard about one value holds.
+
+    Frame after frame nothing lies on the pad: the verdict on the very number of the last frame
+    is kept.
+    """
+    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
+    known: Any = _nothing  # no value is it
+    verdict: Skipped | None = None
+
+    def operation(state: State) -> None:
+        nonlocal known, verdict
+        value = read(state)
+        if value is known:
+            if verdict is None:
+                body(state)
+            else:
+                state[slot] = verdict
+            return
+        if value.__class__ in NO_VALUE:
+            state[slot] = value
+            return
+        try:
+            skipped = None if holds(value) else Skipped(name, reason, (value,))
+        except Exception as error:
+            state[slot] = failure(name, error, (value,), f"when {guard.text}")
+            return
+        if value.__class__ in IMMUTABLE:
+            known, verdict = value, skipped
+        if skipped is None:
+            body(state)
+        else:
+            state[slot] = skipped
 
     return operation
 

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from tactile_graph.engine.outcome import Done, Failed, Skipped
-from tactile_graph.engine.result import Result
+from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.errors import PluginError
+
+MOST_NUMBERS = 32
+"""How many numbers an array or a list may have to be written where only a summary is."""
 
 
-def result_row(result: Result) -> dict[str, Any]:
+def result_row(result: Outcomes) -> dict[str, Any]:
     """Return frame number and time, then each output's scalars; a reason where it has none."""
     frame = result.frame
     row: dict[str, Any] = {"frame": frame.index}
@@ -56,34 +61,59 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
     return {f"{name}.count": count} if isinstance(count, int) else {}
 
 
-def as_data(value: Any) -> Any:
-    """Return a value as plain data for JSON, arrays as nested lists."""
+def as_data(value: Any, full: bool = True) -> Any:
+    """Return a value as plain data for JSON, arrays as nested lists.
+
+    Parameters
+    ----------
+    value : Any
+    full : bool
+        Whether records give every field. Otherwise one that has a method ``summary()`` gives the
+        mapping that this returns, and arrays and lists of more than `MOST_NUMBERS` numbers are
+        told by their shape alone.
+    """
     if isinstance(value, Skipped):
         return {"skipped": value.reason, "origin": value.origin}
     if isinstance(value, Failed):
         return {"failed": value.reason, "origin": value.origin, "kind": value.kind}
     if isinstance(value, np.generic | np.ndarray):
-        return value.tolist()
+        return value.tolist() if full or value.size <= MOST_NUMBERS else _shape(*value.shape)
     if isinstance(value, bool | int | float | str) or value is None:
         return value
+    if isinstance(value, Mapping):
+        return {str(k): as_data(v, full) for k, v in value.items()}
+    if not full and callable(getattr(type(value), "summary", None)):
+        return _own_summary(value)
     if hasattr(value, "_asdict"):
-        return {k: as_data(v) for k, v in value._asdict().items()}
+        return {k: as_data(v, full) for k, v in value._asdict().items()}
     if isinstance(value, list | tuple):
-        return [as_data(v) for v in value]
-    if isinstance(value, dict):
-        return {str(k): as_data(v) for k, v in value.items()}
-    return _record(value)
+        data = [as_data(v, full) for v in value]
+        numbers = len(data) > MOST_NUMBERS and not isinstance(data[0], dict)
+        return _shape(len(data)) if numbers and not full else data
+    return _record(value, full)
 
 
-def _record(value: Any) -> Any:
+def _shape(*shape: int) -> dict[str, list[int]]:
+    return {"shape": list(shape)}
+
+
+def _own_summary(value: Any) -> dict[str, Any]:
+    told = value.summary()
+    if not isinstance(told, Mapping):
+        kind = type(value).__name__
+        raise PluginError(f"{kind}.summary() must return a mapping, got {type(told).__name__}")
+    return {str(k): as_data(v, full=False) for k, v in told.items()}
+
+
+def _record(value: Any, full: bool) -> Any:
     if dataclasses.is_dataclass(value):
         names = [f.name for f in dataclasses.fields(value)]
     else:
         names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
     shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
-    data = {n: as_data(getattr(value, n)) for n in shown}
+    data = {n: as_data(getattr(value, n), full) for n in shown}
     for name in getattr(value, "columns_shown", ()):
-        data.setdefault(name, as_data(getattr(value, name)))
+        data.setdefault(name, as_data(getattr(value, name), full))
     return data if data else str(value)
 
 

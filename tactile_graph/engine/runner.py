@@ -3,50 +3,48 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import Generic, TypeVar
 
-from tactile_graph.engine.calls import make_call
-from tactile_graph.engine.outcome import Failed
+from tactile_graph.engine.calls import Context, RunInner, make_call
+from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.engine.result import Result
 from tactile_graph.errors import RuleError
 from tactile_graph.pipeline.facts import quantity_trouble
-from tactile_graph.pipeline.node import FrameRule
+from tactile_graph.pipeline.graph import FrameRule, Graph
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 
-if TYPE_CHECKING:
-    from tactile_graph.pipeline.pipeline import Pipeline
+ResultT = TypeVar("ResultT", bound=Outcomes)
 
 
-class Runner:
+class Runner(Generic[ResultT]):
     """Call it with a frame, get the result; stateful steps keep their state between calls.
 
     Parameters
     ----------
-    pipeline : Pipeline
+    pipeline : Graph
     asked : tuple of str
         Nodes or ``node.field`` to ask for.
     seed : int
         Seed of the steps that take randomness.
+    result : type
+        What a frame's outcomes are handed out as.
     """
 
-    def __init__(self, pipeline: Pipeline, asked: tuple[str, ...], seed: int = 0) -> None:
-        asked = asked or tuple(pipeline.outputs)
-        self.plan: Plan = make_plan(pipeline, asked)
-        self.seed = seed
-        self.frame: Frame
-        self.item: tuple[int, ...] = ()
-        self.inner_results: dict[str, list[Result]] = {}
-        self.item_failures: list[Failed] = []
-        n = self.plan.n_slots
-        # Outcomes and times; behind them the failures of single items and embedded results.
-        self._blank: list[Any] = [None] * n + [0] * n + [(), None]
-        self._operations = make_program(self.plan, lambda node: make_call(node, self), self._blank)
+    def __init__(
+        self, pipeline: Graph, asked: tuple[str, ...], seed: int, result: type[ResultT]
+    ) -> None:
+        self.plan: Plan = make_plan(pipeline, asked or tuple(pipeline.outputs))
+        self._result = result
+        self._context = Context(seed, self._embedded)
+        self._blank = blank_state(self.plan.n_slots)
+        self._operations = make_program(
+            self.plan, lambda node: make_call(node, self._context), self._blank
+        )
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
-        self._last: tuple[bytes, Result] | None = None
+        self._last: tuple[bytes, ResultT] | None = None
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
         # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
@@ -72,7 +70,17 @@ class Runner:
         """Forget the last frame: the next one is computed, whatever it holds."""
         self._last = None
 
-    def __call__(self, frame: Frame) -> Result:
+    def _embedded(self, pipeline: Graph) -> RunInner:
+        """Return what runs a pipeline that a node of this one runs over a list."""
+        inner = Runner(pipeline, (), self._context.seed, self._result)
+
+        def run(frame: Frame, item: tuple[int, ...]) -> Outcomes:
+            inner._context.item = item  # or every item would draw the same numbers
+            return inner(frame)
+
+        return run
+
+    def __call__(self, frame: Frame) -> ResultT:
         """Return the result for the frame.
 
         Raises
@@ -90,19 +98,20 @@ class Runner:
             last = self._last
             if last is not None and content == last[0] and _alike(image, last[1].frame.image):
                 return last[1].again(frame)
-        self.frame = frame
+        context = self._context
+        context.frame = frame
         state = self._blank.copy()
         state[self._image] = image  # where nothing reads it, the frame takes its place
         state[0] = frame
         for settle in self._operations:
             settle(state)
-        if self.inner_results:
-            state[-1] = self.inner_results
-            self.inner_results = {}
-        if self.item_failures:
-            state[-2] = self.item_failures
-            self.item_failures = []
-        result = Result(self.plan, state)
+        if context.inner_results:
+            state[INNER] = context.inner_results
+            context.inner_results = {}
+        if context.item_failures:
+            state[ITEM_FAILURES] = context.item_failures
+            context.item_failures = []
+        result = self._result(self.plan, state)
         if self._repeatable:
             self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
         return result

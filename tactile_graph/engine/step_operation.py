@@ -9,7 +9,7 @@ from typing import Any
 from tactile_graph.engine.freeze import FROZEN, freeze
 from tactile_graph.engine.outcome import DONE, NO_VALUE, Failed, Skipped, failure, nothing_returned
 from tactile_graph.engine.plan import Input, Item
-from tactile_graph.pipeline.node import Node
+from tactile_graph.pipeline.graph import Node
 
 State = list[Any]
 Operation = Callable[[State], Any]

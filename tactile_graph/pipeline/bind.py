@@ -2,70 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tactile_graph.errors import did_you_mean, one_of
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.node import Binding
-from tactile_graph.pipeline.wiring import Ref, fit
+from tactile_graph.pipeline.graph import Binding
+from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.wiring import Ref, fit, public_fields
 from tactile_graph.steps.signature import Port, Signature, list_item, type_name
-
-if TYPE_CHECKING:
-    from tactile_graph.pipeline.resolve import Resolver
 
 Wired = str | list[str]
 
 
 def bind_inputs(
-    resolver: Resolver, declared: NodeDeclaration, signature: Signature, types: Mapping[str, Any]
+    scope: Scope, declared: NodeDeclaration, signature: Signature
 ) -> tuple[Binding, ...]:
-    """Return what is wired to each port; what does not fit is reported on the resolver."""
-    wired = _by_port(resolver, declared, signature)
+    """Return what is wired to each port; what does not fit is reported in the scope."""
+    wired = _by_port(scope, declared, signature)
     bindings: list[Binding] = []
     n_lists = 0
     for port in signature.ports:
         if port.name not in wired:
             if port.required:
-                _missing(resolver, declared, signature, port)
+                _missing(scope, declared, signature, port)
             continue
         path = ("in", port.name) if isinstance(declared.inputs, dict) else ("in",)
-        binding, over_list = _bind(resolver, declared, signature, port, wired[port.name], path)
+        binding, over_list = _bind(scope, declared, signature, port, wired[port.name], path)
         n_lists += over_list
         if binding is not None:
             bindings.append(binding)
     complete = len(bindings) == len(wired)
     if declared.each and not n_lists and complete:
-        resolver.problem(declared, ": 'each' needs a list on one of its ports", "each")
+        scope.problem(declared, ": 'each' needs a list on one of its ports", "each")
     return tuple(bindings)
 
 
-def _missing(
-    resolver: Resolver, declared: NodeDeclaration, signature: Signature, port: Port
-) -> None:
-    resolver.problem(
+def _missing(scope: Scope, declared: NodeDeclaration, signature: Signature, port: Port) -> None:
+    scope.problem(
         declared,
         f": port {port.name!r} of step {signature.name!r} is not wired ({type_name(port.type)})",
         *(("in",) if declared.inputs is not None else ()),
     )
 
 
-def _by_port(
-    resolver: Resolver, declared: NodeDeclaration, signature: Signature
-) -> dict[str, Wired]:
+def _by_port(scope: Scope, declared: NodeDeclaration, signature: Signature) -> dict[str, Wired]:
     ports = signature.ports
     wired = declared.inputs
     names = [p.name for p in ports]
     if wired is None or wired == [] or wired == {}:
         return {}
     if not ports:
-        resolver.problem(declared, f": step {signature.name!r} has no ports", "in")
+        scope.problem(declared, f": step {signature.name!r} has no ports", "in")
         return {}
     if isinstance(wired, dict):
         for name in [n for n in wired if n not in names]:
             hint = did_you_mean(name, names) or f"; ports: {one_of(names)}"
             text = f": step {signature.name!r} has no port {name!r}{hint}"
-            resolver.problem(declared, text, "in", name, key=True)
+            scope.problem(declared, text, "in", name, key=True)
         return {n: w for n, w in wired.items() if n in names}
     if isinstance(wired, str):
         return {names[0]: wired}
@@ -76,12 +69,12 @@ def _by_port(
             f": {len(wired)} inputs for {len(ports)} port{'s' if len(ports) > 1 else ''} of "
             f"{signature.name!r} ({one_of(names)})"
         )
-        resolver.problem(declared, text, "in")
+        scope.problem(declared, text, "in")
     return dict(zip(names, wired, strict=False))
 
 
 def _bind(
-    resolver: Resolver,
+    scope: Scope,
     declared: NodeDeclaration,
     signature: Signature,
     port: Port,
@@ -96,12 +89,12 @@ def _bind(
     over_list = False
     if collects and port.item is None:
         text = f": port {port.name!r} of {signature.name!r} takes one input, not a list"
-        resolver.problem(declared, text, *path)
+        scope.problem(declared, text, *path)
         return None, False
     wanted = port.item if collects else port.type
     for i, text in enumerate(texts):
         place: tuple[str | int, ...] = (*path, i) if is_list and collects else path
-        found = resolver.ref(declared, text, *place)
+        found = scope.ref(declared, text, *place)
         if found is None:
             return None, False
         ref, kind = found
@@ -110,7 +103,7 @@ def _bind(
         if fitted is None and declared.each and item is not None and not collects:
             fitted, over_list = fit(ref, list[item], list[wanted]), True  # type: ignore[valid-type]
         if fitted is None:
-            resolver.problem(declared, _misfit(signature, port, text, kind, wanted, item), *place)
+            scope.problem(declared, _misfit(signature, port, text, kind, wanted, item), *place)
             return None, over_list
         refs.append(fitted)
     return Binding(port, tuple(refs), collects, over_list), over_list
@@ -123,8 +116,6 @@ def _misfit(signature: Signature, port: Port, text: str, kind: Any, wanted: Any,
     elif item is not None and fit(Ref("x"), item, wanted) is not None:
         hint = "; add 'each: true' to run it for each item"
     elif len(getattr(kind, "_fields", ())) > 0:
-        from tactile_graph.pipeline.wiring import public_fields
-
         fields = [n for n, k in public_fields(kind).items() if fit(Ref("x"), k, wanted)]
         hint = f"; try {text}.{fields[0]}" if fields else ""
     return (

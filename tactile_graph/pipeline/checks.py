@@ -2,48 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import compile_condition
 from tactile_graph.pipeline.references import ConditionError
-
-if TYPE_CHECKING:
-    from tactile_graph.pipeline.resolve import Resolver
+from tactile_graph.pipeline.scope import Scope
 
 
-def check_conditions(resolver: Resolver) -> None:
+def check_conditions(scope: Scope) -> None:
     """Report conditions that are wrong, used or not; a named one only where it stands."""
-    named = resolver.declaration.conditions
+    named = scope.declaration.conditions
     errors: dict[str, ConditionError] = {}
     for name, text in named.items():
         try:
-            compile_condition(text, resolver.scope.types, named, resolver.declaration.nodes)
+            compile_condition(text, scope.types, named, scope.declaration.nodes)
         except ConditionError as error:
             errors[name] = error
     broken = {n for n, e in errors.items() if e.named in ("", n)}
     for name, wrong in errors.items():
         if name in broken or wrong.named not in broken:
             what = f"condition {name!r}: {wrong.message}"
-            _condition_problem(resolver, what, named[name], wrong, "conditions", name)
-    for node, wrong in resolver.condition_errors:
+            _condition_problem(scope, what, named[name], wrong, "conditions", name)
+    for node, wrong in scope.condition_errors:
         if wrong.named not in broken:
             what = f"node {node.name!r}, 'when': {wrong.message}"
-            _condition_problem(resolver, what, node.when or "", wrong, *node.path, "when")
+            _condition_problem(scope, what, node.when or "", wrong, *node.path, "when")
 
 
 def _condition_problem(
-    resolver: Resolver, message: str, text: str, error: ConditionError, *path: str | int
+    scope: Scope, message: str, text: str, error: ConditionError, *path: str | int
 ) -> None:
-    mark = resolver.document.mark(*path)
+    mark = scope.document.mark(*path)
     column = mark.column + (error.offset if "\n" not in text else 0)
-    resolver.document.problem_at(Mark(mark.file, mark.line, column), message)
+    scope.document.problem_at(Mark(mark.file, mark.line, column), message)
 
 
-def check_overrides(resolver: Resolver) -> None:
+def check_overrides(scope: Scope) -> None:
     """Report settings from outside that no node has."""
-    nodes = resolver.declaration.nodes
-    for name, settings in resolver.overrides.items():
+    nodes = scope.declaration.nodes
+    for name, settings in scope.overrides.items():
         head, slash, _ = name.partition("/")
         if head in nodes and (nodes[head].use if slash else nodes[head].step):
             continue  # checked with the node, or inside the embedded pipeline
@@ -53,7 +49,7 @@ def check_overrides(resolver: Resolver) -> None:
             text = f"node {name!r} is no step and has no settings" + (
                 inside if nodes[name].use else "")  # fmt: skip
         else:
-            known = {*nodes, *(n for n in resolver.scope.nodes if "." not in n)}
+            known = {*nodes, *(n for n in scope.nodes if "." not in n)}
             hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
             text = f"no node named {name!r}{hint}"
-        resolver.document.problems.append(Problem(None, where + text))
+        scope.document.problems.append(Problem(None, where + text))

@@ -3,45 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.facts import embedded_facts, source_facts
-from tactile_graph.pipeline.node import FRAME, Binding, Facts, Node, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 
 
-def inline_nodes(
-    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark,
-    outer: Facts,
-) -> tuple[list[Node], list[str]]:  # fmt: skip
-    """Return the inner nodes under ``name/…`` and one passing node per output."""
-    rename, troubles = _renamer(name, ref, kind)
-    nodes = [_moved(node, name, rename, outer) for node in inner.nodes.values()]
+@dataclass(frozen=True)
+class Embedding:
+    """The node that stands for a pipeline in another: what it reads, of which type, and when.
+
+    ``facts`` are those of what it reads.
+    """
+
+    name: str
+    mark: Mark
+    ref: Ref
+    kind: Any
+    facts: Facts
+    guard: Guard | None
+
+
+def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
+    """Return the inner nodes under ``name/…`` and one passing node per output, and troubles."""
+    rename, troubles = _renamer(at.name, at.ref, at.kind)
+    nodes = [_moved(node, at.name, rename, at.facts) for node in inner.nodes.values()]
     single = len(inner.outputs) == 1
     for output, source in inner.outputs.items():
         nodes.append(
             Node(
-                name if single else f"{name}.{output.replace('.', '_')}",
+                at.name if single else f"{at.name}.{output.replace('.', '_')}",
                 NodeKind.PASS,
                 inner.type_of(source),
-                mark,
+                at.mark,
                 choices=(rename(source),),
-                guard=guard,
+                guard=at.guard,
                 key=inner.key + output,
-                facts=embedded_facts(_facts_at(source, inner), outer),
+                facts=embedded_facts(_facts_at(source, inner), at.facts),
             )
         )
     return nodes, troubles
 
 
-def _facts_at(ref: Ref, inner: Pipeline) -> Facts:
+def _facts_at(ref: Ref, inner: Graph) -> Facts:
     if ref.node == FRAME:
         return source_facts(None) if ref.path in ((), ("image",)) else Facts()
     return inner.nodes[ref.node].facts if ref.whole else Facts()
@@ -80,28 +91,26 @@ def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], outer: Facts) ->
     )
 
 
-def map_node(
-    name: str, inner: Pipeline, ref: Ref, kind: Any, guard: Guard | None, mark: Mark
-) -> tuple[Node, str]:
+def map_node(inner: Graph, at: Embedding) -> tuple[Node, str]:
     """Return a node that runs the inner pipeline over each item, and what is wrong with it."""
     trouble = ""
-    fitted = fit(ref, kind, list[Image])
+    fitted = fit(at.ref, at.kind, list[Image])
     if fitted is None:
-        hint = "" if list_item(kind) is not None else " ('each' needs a list)"
-        trouble = f"{ref} is a {type_name(kind)}, a list of images is needed{hint}"
-        fitted = ref
+        hint = "" if list_item(at.kind) is not None else " ('each' needs a list)"
+        trouble = f"{at.ref} is a {type_name(at.kind)}, a list of images is needed{hint}"
+        fitted = at.ref
     stateful = [n.name for n in inner.nodes.values() if n.stateful]
     if stateful:
         trouble = f"stateful node {stateful[0]!r} of {inner.name!r} cannot run for each item"
     binding = Binding(Port(FRAME, list[Image]), (fitted,))
-    return (
-        Node(name, NodeKind.MAP, _map_output(name, inner), mark, inputs=(binding,), guard=guard,
-             each=True, inner=inner),
-        trouble,
+    node = Node(
+        at.name, NodeKind.MAP, _map_output(at.name, inner), at.mark, inputs=(binding,),
+        guard=at.guard, each=True, inner=inner,
     )  # fmt: skip
+    return node, trouble
 
 
-def _map_output(name: str, inner: Pipeline) -> Any:
+def _map_output(name: str, inner: Graph) -> Any:
     kinds = {n.replace(".", "_"): inner.type_of(r) for n, r in inner.outputs.items()}
     if len(kinds) == 1:
         return list[next(iter(kinds.values()))]  # type: ignore[misc]

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.pipeline.node import FRAME, Binding, Facts, FrameRule
-from tactile_graph.pipeline.pipeline import Source
+from tactile_graph.pipeline.graph import FRAME, Binding, Facts, FrameRule, Source
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.rules import Grid, GridFact, Quantity
 from tactile_graph.steps.signature import Signature

@@ -1,67 +1,36 @@
-"""Load a pipeline by name, file or text; report all that is wrong with it at once."""
+"""Load the graph of a pipeline by name, file or text; report all that is wrong with it at once."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
 from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import read_document
-from tactile_graph.pipeline.pipeline import Pipeline
-from tactile_graph.pipeline.resolve import Overrides, Resolver
+from tactile_graph.pipeline.graph import Graph
+from tactile_graph.pipeline.resolve import SourceOverride, resolve
+from tactile_graph.pipeline.scope import Overrides, Scope
 from tactile_graph.plugins.registry import Registry, installed
 
-Sourced = tuple[str, dict[str, Any]] | None
 Open = tuple[tuple[str, Path], ...]
 """The pipelines that are being loaded because one uses the other: name and file."""
 
 
-def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
-    """Return the pipeline of that name or in that file.
-
-    Parameters
-    ----------
-    name : str or Path
-        A name some plugin offers, or a path ending in ``.yaml`` or ``.yml``.
-    registry : Registry, optional
-        Where steps and names are looked up; the installed plugins if not given.
-
-    Raises
-    ------
-    PipelineError
-        With every problem of the file.
-    UsageError
-        If there is no such pipeline or file.
-    """
+def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
+    """Return the graph of the pipeline of that name or in that file; for the rest see `load`."""
     return _load(name, registry or installed(), {}, None, ())
 
 
-def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> Pipeline:
-    """Return the pipeline that YAML text declares.
-
-    Parameters
-    ----------
-    text : str
-    file : str
-        The name its errors carry.
-    registry : Registry, optional
-        As in `load`.
-
-    Raises
-    ------
-    PipelineError
-        With every problem of the text.
-    """
+def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
+    """Return the graph that YAML text declares; ``file`` is the name its errors carry."""
     return _build(text, file, registry or installed(), {}, None, ())
 
 
-def rebuild(pipeline: Pipeline, overrides: Overrides, source: Sourced) -> Pipeline:
-    """Return the pipeline resolved again with other settings or another source."""
-    registry = pipeline.registry or installed()
-    return _build(pipeline.text, pipeline.file, registry, overrides, source, ())
+def resolve_again(graph: Graph, overrides: Overrides, source: SourceOverride) -> Graph:
+    """Return the graph resolved again from its text, with other settings or another source."""
+    registry = graph.registry or installed()
+    return _build(graph.text, graph.file, registry, overrides, source, ())
 
 
 def find(name: str | Path, registry: Registry) -> Path:
@@ -117,9 +86,9 @@ def _load(
     name: str | Path,
     registry: Registry,
     overrides: Overrides,
-    source: Sourced,
+    source: SourceOverride,
     within: Open,
-) -> Pipeline:
+) -> Graph:
     path = find(name, registry)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -147,17 +116,17 @@ def _build(
     text: str,
     file: str,
     registry: Registry,
-    overrides: Mapping[str, Mapping[str, Any]],
-    source: Sourced,
+    overrides: Overrides,
+    source: SourceOverride,
     within: Open,
-) -> Pipeline:
+) -> Graph:
     document = read_document(text, file)
     declaration = declare(document)
     if document.problems and not declaration.nodes:
         raise PipelineError(_ordered(document.problems))
     here = (*within, (declaration.name, Path(file).resolve()))
 
-    def load_inner(name: str, inner_overrides: Overrides) -> Pipeline:
+    def load_inner(name: str, inner_overrides: Overrides) -> Graph:
         beside = Path(file).parent / name
         found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
         names = [n for n, _ in here]
@@ -168,13 +137,12 @@ def _build(
                 raise UsageError(f"pipelines use each other in a circle: {loop}")
         return _load(found, registry, inner_overrides, None, here)
 
-    pipeline = Resolver(
-        declaration, registry, load_inner, overrides, source, embedded=bool(within)
-    ).resolve()
+    scope = Scope(declaration, registry, load_inner, overrides)
+    graph = resolve(scope, source, embedded=bool(within))
     _check_parent(declaration.evolves, document, registry)
     if document.problems:
         raise PipelineError(_ordered(document.problems))
-    return replace(pipeline, registry=registry)
+    return graph
 
 
 def _check_parent(parent: str, document: Any, registry: Registry) -> None:

@@ -1,34 +1,9 @@
-"""Nodes and values as plain data, fit for YAML, JSON and digests."""
+"""Values as plain data, fit for YAML, JSON and digests."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
-
-from tactile_graph.pipeline.node import Node, NodeKind
-
-
-def plain_node(node: Node) -> dict[str, Any]:
-    """Return a node as provenance keeps it, every setting spelled out."""
-    data: dict[str, Any] = {}
-    if node.kind is NodeKind.STEP and node.signature is not None:
-        data["step"] = node.signature.name
-    elif node.inner is not None:
-        data["use"] = node.inner.resolved()
-    if node.choices:
-        data["first_of"] = [str(c) for c in node.choices]
-    if node.inputs:
-        data["in"] = {
-            b.port.name: [str(r) for r in b.refs] if b.collects else str(b.refs[0])
-            for b in node.inputs
-        }
-    if node.settings:
-        data["with"] = plain(node.settings)
-    if node.guard is not None:
-        data["when"] = node.guard.text
-    if node.each:
-        data["each"] = True
-    return data
 
 
 def plain(value: Any) -> Any:

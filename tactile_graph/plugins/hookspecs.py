@@ -19,6 +19,14 @@ def tactile_graph_steps() -> Mapping[str, str | Callable[..., Any]]:  # type: ig
 
 
 @hookspec
+def tactile_graph_readers() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Source step that reads recordings -> its setting that takes the path, or a list of paths.
+
+    The first offered reads the recordings a command line names; ``--source`` names another.
+    """
+
+
+@hookspec
 def tactile_graph_pipelines() -> Mapping[str, Path]:  # type: ignore[empty-body]
     """Pipeline name -> its YAML file."""
 

@@ -24,12 +24,13 @@ if TYPE_CHECKING:
 
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
-OFFERS = ("steps", "pipelines", "pads", "presets", "commands")
+OFFERS = ("steps", "readers", "pipelines", "pads", "presets", "commands")
 _FILES = ("pipelines", "pads", "presets")
 _TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
 _WANTED = {
-    k: "a file's path is needed" if k in _FILES else 'an import string "module:name" is needed'
-    for k in OFFERS
+    **dict.fromkeys(OFFERS, 'an import string "module:name" is needed'),
+    **dict.fromkeys(_FILES, "a file's path is needed"),
+    "readers": "the name of its setting is needed",
 }
 
 
@@ -191,12 +192,21 @@ class Registry:
         text = f"no {kind[:-1]} named {name!r}{did_you_mean(name, names)}"
         if not did_you_mean(name, names):
             text += f"; there are: {one_of(names)}"
+        return text + self.missing_plugins()
+
+    def missing_plugins(self) -> str:
+        """Return the words that say which plugins offer nothing, and why; "" if all do."""
+        text = ""
         for what, names in (
             ("failed to load", [p.name for p in self.plugins if p.error]),
             ("blocked", [p.name for p in self.plugins if p.blocked]),
         ):
             text += f" (plugins {what}: {', '.join(names)})" if names else ""
         return text
+
+    def reader(self) -> str | None:
+        """Return the first step offered that reads recordings, None if there is none."""
+        return next(iter(self._offers["readers"]), None)
 
     def has(self, kind: str, name: str) -> bool:
         """Return whether something of that kind and name is on offer."""

@@ -23,12 +23,11 @@ from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.devices.preset_file import load_preset
-from tactile_graph_thesis.catalogue import items
-from tactile_graph_thesis.chapter_2 import study_names
+from tactile_graph_thesis.catalogue import chosen, items
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
 FILES = (".npz", ".npy", ".csv", ".zarr", ".yaml", ".html", ".md")
 pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests")
 
@@ -74,8 +73,8 @@ def test_every_command_shown_is_understood_and_what_it_names_exists(
     names += [w.split()[0] for w in given.get("variants", ())]
     known = {*installed().names("pipelines"), *installed().names("steps")}
     assert [n for n in names if n not in known and not n.endswith(FILES)] == []
-    if words[0] == "study" and given["name"]:
-        assert given["name"] in study_names()
+    if words[0] == "reproduce":
+        chosen(given["names"])  # raises at a name that is none
 
 
 # -- pipeline files --------------------------------------------------------------------------

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import networkx as nx
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -66,6 +67,74 @@ def test_a_family_imports_no_private_name_and_only_what_third_parties_may_use() 
                 found.append(f"{path.relative_to(ROOT)}: {module} {name}")
     assert found == []
 
+
+# -- circles ---------------------------------------------------------------------------------
+
+
+def modules() -> dict[str, Path]:
+    """Return every module of the core and of the families by name."""
+    found = {}
+    for root in (ROOT, ROOT / "plugins", ROOT / "pipelines"):
+        for package in sorted(root.glob("tactile_graph*")):
+            for path in package.rglob("*.py"):
+                parts = path.relative_to(root).with_suffix("").parts
+                found[".".join(p for p in parts if p != "__init__")] = path
+    return found
+
+
+def import_graph() -> nx.DiGraph[str]:
+    """Return which module imports which, lazily or for a type checker only being no excuse."""
+    known = modules()
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    graph.add_nodes_from(known)
+    for importer, path in known.items():
+        for module, name in imports(path):
+            imported = f"{module}.{name}" if f"{module}.{name}" in known else module
+            if imported in known and imported != importer:
+                graph.add_edge(importer, imported)
+    return graph
+
+
+def circles(graph: nx.DiGraph[str]) -> list[list[str]]:
+    """Return the modules that import one another in a circle, a list for each circle."""
+    return [sorted(c) for c in nx.strongly_connected_components(graph) if len(c) > 1]
+
+
+def family(module: str) -> str:
+    return module.partition(".")[0]
+
+
+def room(module: str) -> str:
+    """Return the room of the core a module stands in, or the module itself."""
+    return ".".join(module.split(".")[:2])
+
+
+FAMILIES = sorted({family(m) for m in modules()})
+
+
+@pytest.mark.parametrize("package", FAMILIES)
+def test_no_files_import_each_other_in_a_circle(package: str) -> None:
+    graph = import_graph()
+    assert circles(graph.subgraph([m for m in graph if family(m) == package])) == []
+
+
+def test_no_families_import_each_other_in_a_circle() -> None:
+    between = nx.DiGraph((family(a), family(b)) for a, b in import_graph().edges)
+    assert circles(between) == []
+
+
+def test_no_rooms_of_the_core_import_each_other_in_a_circle() -> None:
+    core = [(a, b) for a, b in import_graph().edges if family(a) == family(b) == "tactile_graph"]
+    assert circles(nx.DiGraph((room(a), room(b)) for a, b in core)) == []
+
+
+def test_a_circle_is_found_and_named() -> None:
+    assert circles(nx.DiGraph([("a", "b"), ("b", "c"), ("c", "a"), ("c", "d")])) == [
+        ["a", "b", "c"]
+    ]
+
+
+# -- what light work loads -------------------------------------------------------------------
 
 HEAVY = ("skimage", "numba", "matplotlib", "scipy", "networkx", "pandas")
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 import re
 
 import numpy as np
 import pytest
 
-from tactile_graph import Circle, Image, Mask, Points
+from tactile_graph import Circle, Image, Mask
 from tactile_graph_compare.records.scores import Score
 from tactile_graph_compare.report import scatter
 from tactile_graph_compare.report.axes import Scale, scale_of, tick_text
-from tactile_graph_compare.report.drawing import Drawing, View, change_uri, heat_uri, mask_uri
-from tactile_graph_compare.report.grid_png import BROKEN, HEAT, LEVELS, OFF, ON, TWO_WAYS, levels
 from tactile_graph_compare.report.lineage import difference_of
 from tactile_graph_compare.report.markup import Html, join, number, tag, text
 from tactile_graph_compare.report.spread import Row, spread
@@ -77,51 +73,7 @@ def test_ticks_read_well(value: float, told: str) -> None:
     assert tick_text(value) == told
 
 
-# -- grids -------------------------------------------------------------------------------------
-
-
-def pixels(uri: str) -> np.ndarray:
-    from PIL import Image as Picture
-
-    data = base64.b64decode(uri.removeprefix("data:image/png;base64,"))
-    with Picture.open(io.BytesIO(data)) as picture:
-        picture.load()
-        return np.asarray(picture.convert("RGB"))
-
-
-def test_a_mask_is_two_colours_cell_by_cell() -> None:
-    on = np.zeros((3, 11), bool)
-    on[1, 2:7] = on[2, 10] = True
-    expected = np.where(on[..., None], ON, OFF)
-    np.testing.assert_array_equal(pixels(mask_uri(Mask(on))), expected)
-
-
-@pytest.mark.parametrize("n", [4, 10, 40])
-def test_an_image_is_its_levels_broken_cells_apart(n: int) -> None:
-    values = np.linspace(0.0, 1.0, n * n).reshape(n, n).copy()
-    valid = np.ones((n, n), bool)
-    valid[0, 1] = False
-    shown = pixels(heat_uri(Image(values, valid=valid), 0.0, 1.0))
-    assert tuple(shown[0, 1]) == BROKEN
-    assert tuple(shown[0, 0]) == tuple(HEAT[0])
-    assert tuple(shown[-1, -1]) == tuple(HEAT[LEVELS - 1])
-    expected = np.rint(values * (LEVELS - 1)).astype(int)
-    expected[0, 1] = LEVELS
-    np.testing.assert_array_equal(shown, HEAT[expected])
-
-
-def test_values_without_a_number_and_ranges_without_a_width_have_a_level_too() -> None:
-    found = levels(np.array([[math.nan, 1.0, -math.inf]]), 1.0, 1.0)
-    assert found.tolist() == [[LEVELS, 0, LEVELS]]
-
-
-def test_a_difference_is_blue_where_less_and_orange_where_more() -> None:
-    less, none, more = pixels(change_uri(np.array([[-2.0, 0.0, 2.0]])))[0].tolist()
-    assert less == TWO_WAYS[0].tolist()
-    assert more == TWO_WAYS[LEVELS - 1].tolist()
-    assert less[2] > less[0]
-    assert more[0] > more[2]
-    assert min(none) > 230
+# -- differences --------------------------------------------------------------------------------
 
 
 def test_grids_of_other_cells_are_compared_on_the_finer() -> None:
@@ -157,22 +109,6 @@ def test_images_of_other_quantities_have_no_difference() -> None:
 
 
 # -- lines -------------------------------------------------------------------------------------
-
-
-def test_points_lie_where_they_are_and_those_without_a_place_do_not() -> None:
-    view = View.of(Image(np.zeros((4, 8)), (0.5, 0.5), (1.0, 2.0)))
-    assert (view.width, view.height) == (200.0, 100.0)
-    drawing = Drawing(view)
-    drawing.draw(Points(np.array([[1.0, 2.0], [5.0, 4.0], [math.nan, 1.0]])))
-    assert drawing.lines[-1] == '<path d="M0.0 0.0h0M200.0 100.0h0" class="ink dots"></path>'
-
-
-def test_numbers_and_empty_lists_become_words() -> None:
-    drawing = Drawing(View.of(Image(np.zeros((2, 2)))))
-    drawing.draw([])
-    drawing.draw([1, 2.34567, True])
-    assert drawing.notes == ["none", "1", "2.346", "yes"]
-    assert not drawing.lines
 
 
 def test_runs_of_frames_are_one_bar_each() -> None:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
+from tactile_graph.engine.rows import as_data
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, packed, unpacked
@@ -23,8 +24,7 @@ SLABS = Model(RECTANGLE, noise=NOISE, whole=True)
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def discs(n, seed, **noise):
@@ -54,6 +54,17 @@ def test_discs_are_found_as_well_as_they_say():
     assert np.mean(errors) < 0.1
     assert 2.2 < np.mean(scores) < 4.5  # 3 if the covariance is right
     assert 0.83 <= inside / 150 <= 0.97
+
+
+def test_a_line_tells_its_numbers_and_pressures_and_not_its_points():
+    _, image = next(discs(1, 1))
+    found = likely(DISCS.posterior(image))
+    told = as_data(found, full=False)
+    assert {"x_cm", "y_cm", *found.columns_shown} < set(told)
+    assert told["posterior"]["equal_points"] == found.posterior.equal_points
+    assert told["posterior"]["pressures"] == {"even": 1.0}
+    left_out = set(as_data(found)["posterior"]) - set(told["posterior"])
+    assert left_out == {"mean", "covariance", "points", "weights", "most_likely"}
 
 
 def test_rectangles_are_found_and_their_sides_ordered():

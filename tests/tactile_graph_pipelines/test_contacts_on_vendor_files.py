@@ -81,9 +81,12 @@ def test_emed(real: bool, tmp_path: Path) -> None:
         assert ours["force_n"] == pytest.approx(sum(rows.values()), rel=0.005, abs=rounding)
 
 
-def test_f_scan_films_in_kilopascal_run_too(tmp_path: Path) -> None:
+@REAL
+@pytest.mark.parametrize("name", ["FrasP01L.asf", "fscan_testL.asf"])
+def test_f_scan_films_in_kilopascal_run_too(name: str, real: bool, tmp_path: Path) -> None:
     """They carry no vendor's figure of a frame; every frame answers: force is pressure x area."""
-    for name in ("FrasP01L.asf", "fscan_testL.asf"):
-        found = loads_of(shared(f"vendor_exports/{name}"), tmp_path)
-        assert len(found) == 205
-        assert all(load["force_n"] == pytest.approx(load["total"] * 0.0258064) for load in found)
+    text = tekscan_text(blobs(3, 60, 21, seed=len(name)), "KPa", "5.08 mm")
+    path = shared(f"vendor_exports/{name}") if real else write(tmp_path, text)
+    found = loads_of(path, tmp_path)
+    assert len(found) == (205 if real else 3)
+    assert all(load["force_n"] == pytest.approx(load["total"] * 0.0258064) for load in found)

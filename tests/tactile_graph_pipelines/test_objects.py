@@ -7,15 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_panel import Camera, panel_frames, real_panel_frames
 from tactile_graph import Frame, load
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import Skipped
-from tactile_graph.engine.result import Result
-from tactile_graph.steps import Report
 from tactile_graph_filters.contacts.align_contacts import AlignContacts
-from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import ObjectScore, score_objects
 
-CAPCONTACT = Path(__file__).parents[2].parent / "shared/data/capcontact"
+# The alignment of the real panel was fitted on recordings 0000, 0008, …; tried on the others.
+REAL_CAMERA = ((1.0065, 0.0279), (0.0011, 1.0187)), (-0.2352, -0.2531)
+REAL_LOG_AREA = (1.5311, -0.06584, -0.16679, -6e-05, 0.00505, 0.00438)
+MADE_CAMERA = Camera(((1.01, 0.02), (-0.01, 0.99)), (-0.24, 0.2), 0.3, -0.02)
 
 
 def score_of(result: Result) -> ObjectScore:
@@ -79,30 +81,30 @@ def test_fingers_on_a_panel_that_blurs_are_found_within_half_a_cell() -> None:
         assert score.worst_error_cm < 0.24
 
 
-def test_on_a_real_panel_contacts_are_counted_and_their_centres_beat_the_plain_centroid() -> None:
-    """The alignment was fitted on recordings 0000, 0008, …; measured here on the others."""
-    if not CAPCONTACT.is_dir():
-        pytest.skip("the CapContact recordings are not here")
+@pytest.mark.parametrize("real", [True, False], ids=["real", "look-alike"])
+def test_on_a_panel_contacts_are_counted_and_their_centres_beat_the_plain_centroid(
+    real: bool, tmp_path: Path
+) -> None:
     errors: dict[str, list[float]] = {"contacts": [], "sharp": [], "upright": []}
     areas: dict[str, list[float]] = {"sharp": [], "aligned": []}
-    matrix, shift_cm = ((1.0065, 0.0279), (0.0011, 1.0187)), (-0.2352, -0.2531)
-    log_area = (1.5311, -0.06584, -0.16679, -6e-05, 0.00505, 0.00438)
+    matrix, shift_cm = REAL_CAMERA if real else MADE_CAMERA[:2]
+    log_area = REAL_LOG_AREA if real else (MADE_CAMERA.of_one, MADE_CAMERA.of_x, 0.0, 0.0, 0.0, 0.0)
     pipeline = load("capacitive").with_settings({"aligned.log_area": log_area})
     run = pipeline.runner(only=("aligned", *errors))
     align = AlignContacts(matrix=matrix, shift_cm=shift_cm)
-    for path in sorted(CAPCONTACT.glob("*.npz"))[1::2]:
-        for frame in recording(path=path, report=Report()):
-            result = run(frame)
-            assert frame.truth is not None
-            for name, found_errors in errors.items():
-                score = score_objects(frame, align(result[name].contacts).contacts, gate_cm=1.0)
-                assert score.count_right
-                assert score.n_missed == 0
-                found_errors += [e / 0.4775 for _, _, e in score.pairs]
-            for name, found_areas in areas.items():
-                for i, j, _ in score.pairs:
-                    ratio = result[name].contacts[j].area_cm2 / frame.truth[i].shape.area_cm2
-                    found_areas.append(abs(ratio - 1.0))
+    made = panel_frames(tmp_path, camera=MADE_CAMERA)
+    for frame in real_panel_frames(slice(1, None, 2)) if real else made:
+        result = run(frame)
+        assert frame.truth is not None
+        for name, found_errors in errors.items():
+            score = score_objects(frame, align(result[name].contacts).contacts, gate_cm=1.0)
+            assert score.count_right
+            assert score.n_missed == 0
+            found_errors += [e / 0.4775 for _, _, e in score.pairs]
+        for name, found_areas in areas.items():
+            for i, j, _ in score.pairs:
+                ratio = result[name].contacts[j].area_cm2 / frame.truth[i].shape.area_cm2
+                found_areas.append(abs(ratio - 1.0))
     plain, sharp, upright = (float(np.median(e)) for e in errors.values())
     assert upright < 0.19
     assert upright < 0.85 * sharp

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from itertools import islice
+from typing import Any
 
 import pytest
 
 from tactile_graph import load
+from tactile_graph.cli.writers import json_row
 from tactile_graph.engine.outcome import Failed
 from tactile_graph.plugins.registry import installed
 
 NAMES = installed().names("pipelines")
+LONGEST_LINE = 2048
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -21,6 +25,15 @@ def test_runs_on_its_own_source_without_an_error(name: str) -> None:
     for result in results:
         for output in pipeline.outputs:
             assert not isinstance(result.outcome(output), Failed), result
+        assert len(json.dumps(of_one_object(json_row(result, full=False)))) < LONGEST_LINE
+
+
+def of_one_object(data: Any) -> Any:
+    """Return data with one item of each list of records: their number is the frame's."""
+    if isinstance(data, dict):
+        return {k: of_one_object(v) for k, v in data.items()}
+    records = isinstance(data, list) and data and isinstance(data[0], dict)
+    return of_one_object(data[0]) if records else data
 
 
 @pytest.mark.parametrize("name", NAMES)

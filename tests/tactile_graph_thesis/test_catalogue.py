@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 from tactile_graph.errors import UsageError
-from tactile_graph_thesis.catalogue import chosen, items
+from tactile_graph_thesis.catalogue import CONTENTS, chosen, items
 
 TABLES = ("4.3", "4.4", "4.5", "4.7", "4.8", "4.9", "5.2")
 FIGURES = (
@@ -15,7 +17,8 @@ FIGURES = (
     *(f"4.{k}" for k in range(1, 44)),
     *(f"5.{k}" for k in range(8, 15)),
 )
-STUDIES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
+WISHES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
+STUDIES = ("converter", "samples", *WISHES)
 
 
 def test_every_table_and_figure_is_there_once() -> None:
@@ -33,13 +36,49 @@ def test_the_order_is_that_of_the_thesis() -> None:
         ("table-5.2", "figure-5.13", "figure-5.14"),
     ):
         assert ids.index(before) < ids.index(table) < ids.index(after)
-    assert tuple(ids[-len(STUDIES) :]) == STUDIES or set(ids[-len(STUDIES) :]) == set(STUDIES)
+    assert tuple(ids[:3]) == ("converter", "samples", "figure-2.8")
+    assert tuple(ids[-len(WISHES) :]) == WISHES
 
 
 def test_a_number_is_both_the_table_and_the_figure() -> None:
     assert [i.id for i in chosen(("4.5",))] == ["figure-4.5", "table-4.5"]
     assert [i.id for i in chosen(("table-4.5",))] == ["table-4.5"]
     assert [i.id for i in chosen(("subpixel", "2.8", "figure-2.8"))] == ["figure-2.8", "subpixel"]
+
+
+def test_a_study_of_chapter_2_is_the_figure_it_makes() -> None:
+    assert [i.id for i in chosen(("bias-sensitivity",))] == ["figure-2.8"]
+    assert [i.id for i in chosen(("weight-area", "2.19"))] == ["figure-2.19"]
+    names = [n for i in items() for n in {i.id, i.study} if n]
+    assert len(names) == len(set(names))
+
+
+def test_a_file_is_named_after_what_it_makes() -> None:
+    for room, modules in CONTENTS.items():
+        for module in modules:
+            made = import_module(f"tactile_graph_thesis.items.{room}.{module}").ITEMS
+            kind, first, last = told(module)
+            assert room == f"chapter_{first[0]}"
+            for item in made:
+                number = item.number or item.after
+                assert first <= tuple(map(int, number.split("."))) <= last, (module, item.id)
+                assert (item.id if item.number else "section").startswith(kind), (module, item.id)
+
+
+def told(module: str) -> tuple[str, tuple[int, ...], tuple[int, ...]]:
+    """Return what the name of a module says: figure, table or section, and its range."""
+    kind, *words = module.split("_")
+    parts = " ".join(w if w.isdigit() else "|" for w in words).split("|")
+    ranges = [tuple(map(int, part.split())) for part in parts if part.strip()]
+    return kind.rstrip("s"), ranges[0], ranges[-1]
+
+
+def test_no_file_of_an_item_is_left_out() -> None:
+    import tactile_graph_thesis.items as rooms
+
+    for room, modules in CONTENTS.items():
+        there = {path.stem for path in (Path(rooms.__path__[0]) / room).glob("*_[0-9]*.py")}
+        assert there == set(modules)
 
 
 def test_all_is_everything() -> None:
@@ -51,6 +90,10 @@ def test_an_unknown_name_is_told_with_the_nearest() -> None:
         chosen(("figur-4.5",))
     with pytest.raises(UsageError, match=r"no table, figure or study named 'zzz'; 'tactile-graph"):
         chosen(("zzz",))
+    with pytest.raises(UsageError, match=r"named 'wieght-area'; did you mean 'weight-area'"):
+        chosen(("wieght-area",))
+    with pytest.raises(UsageError, match="no table, figure or study named ''"):
+        chosen(("",))
 
 
 def test_reasons_hold_no_number_of_a_run() -> None:

@@ -14,8 +14,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.result import Result
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
 
 HEAD = ("frame", "object", "distance", "runner-up", "margin", "")
 
@@ -60,7 +60,7 @@ def identify(
         lines.add(runner(frame))
     for where, what in report.troubles:
         click.echo(f"{where}: {what}", err=True)
-    lines.close()
+    lines.summarise()
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 
@@ -129,7 +129,7 @@ class _Lines:
         self.n_right += name == identity.name
         return "" if name == identity.name else f"(truly {name})"
 
-    def close(self) -> None:
+    def summarise(self) -> None:
         """Write what the lines came to.
 
         Raises

@@ -15,7 +15,7 @@ from tactile_graph_classifiers.commands.shared import database_option
 from tactile_graph_classifiers.measuring.shapes import SHAPES
 
 if TYPE_CHECKING:
-    from tactile_graph.pipeline.pipeline import Pipeline
+    from tactile_graph.api.pipeline import Pipeline
     from tactile_graph_classifiers.measuring.measurements import Measurements
 
 

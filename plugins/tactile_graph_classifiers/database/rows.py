@@ -73,7 +73,7 @@ def add(connection: sqlite3.Connection, lesson: Lesson) -> None:
         )
         cells = [(of_reading, k, v) for k, v in enumerate(values)]
         connection.executemany("INSERT INTO reading_values VALUES (?, ?, ?)", cells)
-    keep(connection, number, old.joined(Statistics.of(lesson.readings)))
+    store_statistics(connection, number, old.joined(Statistics.of(lesson.readings)))
     connection.execute(
         "UPDATE objects SET n_readings = n_readings + ?, learned_at = ?,"
         " shape = coalesce(nullif(?, ''), shape) WHERE id = ?",
@@ -102,7 +102,7 @@ def statistics_of(connection: sqlite3.Connection, number: int, n_features: int) 
     return Statistics(int(n), none.mean, none.scatter)
 
 
-def keep(connection: sqlite3.Connection, number: int, statistics: Statistics) -> None:
+def store_statistics(connection: sqlite3.Connection, number: int, statistics: Statistics) -> None:
     """Keep an object's statistics in place of those before."""
     means = [(number, k, mean) for k, mean in enumerate(statistics.mean.tolist())]
     connection.executemany("INSERT OR REPLACE INTO means VALUES (?, ?, ?)", means)

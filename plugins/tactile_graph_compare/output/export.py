@@ -13,7 +13,7 @@ from typing import Any
 
 from tactile_graph.engine.rows import without_nan
 from tactile_graph.files import said, write_whole
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph_compare.records.comparison import Comparison, Variant
 from tactile_graph_compare.records.lineage import Evolution
 from tactile_graph_compare.records.scores import Score

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 

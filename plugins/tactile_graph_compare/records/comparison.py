@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph_compare.records.frames import ChosenFrame
 from tactile_graph_compare.records.graph import MergedGraph, Saving, Timeline
 from tactile_graph_compare.records.lineage import Evolution

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.api.pipeline import Pipeline
 
 
 @dataclass(frozen=True)

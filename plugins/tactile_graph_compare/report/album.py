@@ -7,16 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.draw.columns import UNITS, images_in, is_picture
+from tactile_graph.draw.display import display_list, images_in, is_picture, printed, truth_list
+from tactile_graph.draw.grid_png import pale_uri
+from tactile_graph.draw.paint_svg import LONGEST_NOTE, SvgPicture, View
+from tactile_graph.draw.strip_columns import UNITS
 from tactile_graph.engine.rows import scalars
 from tactile_graph_compare.output.tables import us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
-from tactile_graph_compare.report.drawing import MOST_NOTES, Drawing, View, pale_uri, printed
 from tactile_graph_compare.report.markup import Html, join, tag
 
 SHOWN = 0.52
 """Size of a picture on the page against its own pixels."""
+MOST_NOTES = 4
 Range = tuple[float, float, str]
 
 
@@ -75,9 +78,7 @@ class Album:
         low, high, _ = self.range(chosen, "") or (0.0, 1.0, "")
 
         def make() -> Html:
-            drawing = Drawing(view, low, high)
-            drawing.draw(chosen.frame.image)
-            return join(drawing.grids)
+            return _markup(SvgPicture(view, display_list(chosen.frame), low, high).grids)
 
         layers = [self.once(("frame", chosen.position), make)]
         return self.svg(chosen, view, layers, f"frame {chosen.frame.index}")
@@ -86,8 +87,10 @@ class Album:
         """Return a value's grids and lines."""
         drawing = self._drawing(chosen, story)
         key = (chosen.position, story.merged, story.node)
-        found = [self.once(("grids", *key), lambda: join(drawing.grids))] if drawing.grids else []
-        lines = [self.once(("lines", *key), lambda: join(drawing.lines), kind)]
+        found = (
+            [self.once(("grids", *key), lambda: _markup(drawing.grids))] if drawing.grids else []
+        )
+        lines = [self.once(("lines", *key), lambda: _markup(drawing.lines), kind)]
         return found + (lines if drawing.lines else [])
 
     def svg(self, chosen: ChosenFrame, view: View, layers: list[Html], told: str) -> Html:
@@ -107,15 +110,15 @@ class Album:
 
     # -- pieces ------------------------------------------------------------------------------
 
-    def _drawing(self, chosen: ChosenFrame, story: NodeStory) -> Drawing:
+    def _drawing(self, chosen: ChosenFrame, story: NodeStory) -> SvgPicture:
         low, high, _ = self.range(chosen, story.node) or (0.0, 1.0, "")
-        drawing = Drawing(View.of(chosen.frame.image), low, high)
-        drawing.draw(story.value)
-        return drawing
+        return SvgPicture(View.of(chosen.frame.image), display_list(story.value), low, high)
 
     def _ground(self, chosen: ChosenFrame, view: View) -> Html:
         image = chosen.frame.image
-        return self.once(("ground", chosen.position), lambda: view.grid(image, pale_uri(image)))
+        return self.once(
+            ("ground", chosen.position), lambda: Html(view.grid(image, pale_uri(image)))
+        )
 
     def _truth(self, chosen: ChosenFrame, view: View) -> Html | None:
         if not chosen.frame.truth:
@@ -123,22 +126,27 @@ class Album:
         truth = chosen.frame.truth
 
         def make() -> Html:
-            drawing = Drawing(view)
-            for thing in truth:
-                drawing.draw(thing.shape)
-            return join(drawing.lines)
+            return _markup(SvgPicture(view, truth_list(truth)).lines)
 
         return self.once(("truth", chosen.position), make, "true")
 
-    def _noted(self, drawing: Drawing) -> Html:
+    def _noted(self, drawing: SvgPicture) -> Html:
         lines = drawing.notes[:MOST_NOTES]
         rest = len(drawing.notes) - len(lines)
         lines += [f"and {rest} more"] if rest else []
         return join(*(tag("small", line) for line in lines))
 
 
+def _markup(elements: list[str]) -> Html:
+    return Html("".join(elements))
+
+
 def _told(story: NodeStory) -> str:
-    shown = [f"{k.lstrip('.')} {printed(v)}" for k, v in scalars("", story.value).items() if k]
+    shown = [
+        f"{k.lstrip('.')} {printed(v, LONGEST_NOTE)}"
+        for k, v in scalars("", story.value).items()
+        if k
+    ]
     return f": {', '.join(shown[:8])}" if shown else ""
 
 

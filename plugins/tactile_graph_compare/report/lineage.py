@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.draw.grid_png import change_uri
+from tactile_graph.draw.paint_svg import View
 from tactile_graph.wires import Image, Mask
 from tactile_graph_compare.output.tables import signed, signed_us
 from tactile_graph_compare.records.comparison import Comparison
@@ -14,7 +16,6 @@ from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.lineage import Evolution, NodeChange
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.report.album import Album
-from tactile_graph_compare.report.drawing import View, change_uri
 from tactile_graph_compare.report.markup import Child, Html, join, tag
 from tactile_graph_compare.report.parts import scroll
 from tactile_graph_compare.report.people import named
@@ -135,7 +136,7 @@ def _difference(
         return tag("small", "equal")
     view = View.of(frame.frame.image)
     key = ("change", frame.position, before.merged, after.merged)
-    layer = album.once(key, lambda: view.grid(grid, change_uri(off)))
+    layer = album.once(key, lambda: Html(view.grid(grid, change_uri(off))))
     most = float(np.nanmax(np.abs(off)))
     by = "" if isinstance(grid, Mask) else f", by up to {most:.3g}"
     shown = album.svg(frame, view, [layer], told)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tactile_graph.draw.grid_png import heat_stops
 from tactile_graph_compare.output.tables import signed
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import Choice, ChosenFrame, NodeStory
 from tactile_graph_compare.report.album import Album, Range
-from tactile_graph_compare.report.grid_png import heat_stops
 from tactile_graph_compare.report.markup import Html, join, tag
 from tactile_graph_compare.report.parts import counted, details, scroll
 from tactile_graph_compare.report.people import named

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tactile_graph.draw.colours import BEFORE, FOUND, TRUE
 from tactile_graph_compare.report.people import DARK, LIGHT
 
 
@@ -152,8 +153,6 @@ svg.plot .off .num { fill: var(--c) }
 .pic { display: block; background: #fff; border: 1px solid var(--line); overflow: hidden;
   max-width: none }
 image { image-rendering: pixelated }
-.found { --stroke: #d81b60; --dash: none } .true { --stroke: #00838f; --dash: 7 4 }
-.before { --stroke: #1f4fa8; --dash: none }
 .ink, .rim { fill: none; vector-effect: non-scaling-stroke;
   stroke-linecap: round; stroke-linejoin: round }
 .ink { stroke: var(--stroke); stroke-width: 1.6px; stroke-dasharray: var(--dash) }
@@ -162,6 +161,11 @@ image { image-rendering: pixelated }
 .stroke { display: inline-block; width: 26px; border-top: 3px solid var(--stroke);
   vertical-align: middle }
 .stroke.true { border-top-style: dashed }
+"""
+
+_ROLES = f"""
+.found {{ --stroke: {FOUND}; --dash: none }} .true {{ --stroke: {TRUE}; --dash: 7 4 }}
+.before {{ --stroke: {BEFORE}; --dash: none }}
 """
 
 _OTHERWISE = """
@@ -191,4 +195,4 @@ _OTHERWISE = """
 }
 """
 
-STYLE = "\n" + "".join((_COLOURS, _TEXT, _BLOCKS, _TABLES, _DRAWINGS, _OTHERWISE))
+STYLE = "\n" + "".join((_COLOURS, _TEXT, _BLOCKS, _TABLES, _DRAWINGS, _ROLES, _OTHERWISE))

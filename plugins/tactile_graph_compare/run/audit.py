@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.result import Result
 from tactile_graph.engine.rows import as_data
-from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.audit import Audit, GuardAudit
 from tactile_graph_compare.records.comparison import Comparison

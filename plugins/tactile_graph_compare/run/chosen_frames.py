@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tactile_graph.engine.result import Result
+from tactile_graph.api.result import Result
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.graph import STATES

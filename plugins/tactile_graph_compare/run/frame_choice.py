@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tactile_graph.engine.result import Result
+from tactile_graph.api.result import Result
 from tactile_graph_compare.records.frames import Choice
 
 

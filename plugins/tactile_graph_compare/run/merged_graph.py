@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.pipeline.node import Node
-from tactile_graph.pipeline.pipeline import plain
+from tactile_graph.pipeline.graph import Node
+from tactile_graph.pipeline.plain import plain
 from tactile_graph_compare.records.graph import MergedEdge, MergedGraph, MergedNode
 from tactile_graph_compare.run.session import Session
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
-from tactile_graph.engine.result import Result
 from tactile_graph.engine.runner import Runner, check_frame
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.run.frame_choice import Keeper
@@ -101,7 +101,7 @@ class Session:
         self.plan = first.plan
         self.stateful = first.stateful
         self.runners = self._runners(first)
-        self._runner: Runner | None = None
+        self._runner: Runner[Result] | None = None
         self.promises = self.merged.pipeline.promises
         self._turns = np.random.default_rng(seed)
         self.logs = [
@@ -120,7 +120,7 @@ class Session:
         self.started = time.perf_counter()
         self.last = self.started
 
-    def _runners(self, first: Runner) -> list[Runner]:
+    def _runners(self, first: Runner[Result]) -> list[Runner[Result]]:
         """Return runners that take the variants in different orders.
 
         Whoever comes first finds the caches of the processor cold: in one fixed order the first
@@ -184,7 +184,7 @@ class Session:
         self.last = time.perf_counter()
         return result
 
-    def _runner_for(self, frame: Frame) -> Runner:
+    def _runner_for(self, frame: Frame) -> Runner[Result]:
         """Return the one that ran last if it need not run again, else one drawn at random.
 
         Drawn, not in turn: what lies on the pad may come in turn, too.

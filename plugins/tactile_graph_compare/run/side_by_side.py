@@ -7,8 +7,8 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.errors import UsageError
-from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame

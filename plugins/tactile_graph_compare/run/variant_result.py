@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Skipped
-from tactile_graph.engine.result import Result
-from tactile_graph.pipeline.node import FRAME, Node
+from tactile_graph.pipeline.graph import FRAME, Node
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.variants.merge import Member
 

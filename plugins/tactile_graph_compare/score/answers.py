@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.engine.truth import shape_kind
-from tactile_graph.pipeline.pipeline import Pipeline
 from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
 from tactile_graph.steps.signature import list_item
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle

@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
-from tactile_graph.pipeline.node import FRAME, Node, NodeKind, node_key
-from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, node_key
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import Ref
 
 
-def identities(pipeline: Pipeline, always: Collection[str], private: object) -> dict[str, str]:
+def identities(pipeline: Graph, always: Collection[str], private: object) -> dict[str, str]:
     """Return a digest for each node, equal for nodes that may be run as one.
 
     Parameters
     ----------
-    pipeline : Pipeline
+    pipeline : Graph
     always : collection of str
         Nodes that are settled for every frame, whatever the frame holds. A step that keeps state
         is shared only among these: one that a guard or an earlier choice keeps from some frames
@@ -53,7 +53,7 @@ def _what(node: Node) -> tuple[object, ...]:
     return ("step", node.signature.name, id(node.signature.target), settings, node.each, seed)
 
 
-def _inner(pipeline: Pipeline | None) -> tuple[object, ...]:
+def _inner(pipeline: Graph | None) -> tuple[object, ...]:
     """Return what makes two mapped pipelines equal: also their names, which failures carry."""
     assert pipeline is not None
     inner = identities(pipeline, pipeline.nodes, "")

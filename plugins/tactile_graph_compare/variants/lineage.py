@@ -6,9 +6,10 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.node import Node
-from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.pipeline.graph import Node
+from tactile_graph.pipeline.plain import plain
 from tactile_graph_compare.records.frames import ChosenFrame, DifferenceImage
 from tactile_graph_compare.records.lineage import NodeChange, SettingChange
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.node import FRAME, Node
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.pipeline.graph import FRAME, Node
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.variants.identity import identities
 

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.errors import PipelineError, Problem, UsageError
-from tactile_graph.pipeline.pipeline import Pipeline, Source, plain
+from tactile_graph.pipeline.graph import Source
+from tactile_graph.pipeline.plain import plain
 from tactile_graph_compare.variants.variants import Prepared
 
 COUNT = "frames"

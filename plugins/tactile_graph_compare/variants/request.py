@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.errors import UsageError
-from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Registry
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from tactile_graph.pipeline.node import Node, NodeKind
-from tactile_graph.pipeline.pipeline import Pipeline
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.pipeline.graph import Node, NodeKind
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.api.pipeline import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean
-from tactile_graph.pipeline.load import load
-from tactile_graph.pipeline.pipeline import Pipeline, plain
+from tactile_graph.pipeline.graph import Graph
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Registry
 from tactile_graph_compare.variants.request import Wanted, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
@@ -121,7 +122,7 @@ def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[
 # -- settings by name ------------------------------------------------------------------------
 
 
-def setting_names(pipeline: Pipeline) -> Iterator[str]:
+def setting_names(pipeline: Graph) -> Iterator[str]:
     """Yield every ``node.setting`` of a pipeline, those of embedded ones included."""
     for name, node in pipeline.nodes.items():
         if node.signature is not None:

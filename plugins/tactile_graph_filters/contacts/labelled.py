@@ -38,24 +38,22 @@ def contacts_of(
     ranked = rank[number]
     labels[row, column] = ranked
     labels.setflags(write=False)
-    load = image.values[row, column]
-    found = [
-        _contact(k, row[ranked == k], column[ranked == k], load[ranked == k], image, labels, margin)
-        for k in range(1, old.size + 1)
-        if np.count_nonzero(ranked == k) >= min_cells
-    ]
+    found = []
+    for k in range(1, old.size + 1):
+        own = ranked == k
+        if np.count_nonzero(own) >= min_cells:
+            found.append(_contact(k, (row[own], column[own]), image, labels, margin))
     return Contacts(tuple(found), len(found))
 
 
 def _contact(
     number: int,
-    row: NDArray[np.intp],
-    column: NDArray[np.intp],
-    load: NDArray[np.float64],
+    cells: tuple[NDArray[np.intp], NDArray[np.intp]],
     image: Image,
     labels: NDArray[np.int32],
     margin: int,
 ) -> Contact:
+    (row, column), load = cells, image.values[cells]
     (x, y), (pitch_x, pitch_y) = image.origin_cm, image.pitch_cm
     pressed = np.maximum(load, 0.0)
     weights = pressed if pressed.any() else np.ones(load.shape)

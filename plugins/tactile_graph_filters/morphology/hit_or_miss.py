@@ -9,7 +9,7 @@ import numpy as np
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
 from tactile_graph_filters.morphology.elements import Element, ElementSetting, parse_element
-from tactile_graph_filters.morphology.planes import make_plan, sweep
+from tactile_graph_filters.morphology.erosion import make_plan, sweep
 
 
 class HitOrMiss:

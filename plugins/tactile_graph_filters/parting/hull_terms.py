@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import RIM_CELLS
-
-Reals: TypeAlias = NDArray[np.float64]
-Owners: TypeAlias = NDArray[np.int32]
-Flags: TypeAlias = NDArray[np.bool_]
+from tactile_graph_filters.parting.partition import Partition, Reals
 
 CELLS, LOGS, AREA, NOTCHES, WEAK, LONG = 0, 1, 2, 3, 4, 5
 """Places in the terms; see `hull_terms`."""
@@ -21,22 +17,34 @@ FLOOR = 2e-3
 """Readings below this share of the weak one count as it, where logarithms are taken."""
 
 
+class Levels(NamedTuple):
+    """Which readings are low, and how low they count.
+
+    Parameters
+    ----------
+    weak : float
+        Share of the mean reading below which a cell deep inside counts as partly void.
+    full : float
+        Reading from which on a pair of cells in contact counts fully.
+    floor : float
+        Least reading whose logarithm is taken, > 0.
+    """
+
+    weak: float
+    full: float
+    floor: float
+
+
 @compiled_later
-def hull_terms(
-    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, floor: float
-) -> Reals:
+def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
     """Return the terms of the cells that ``one`` or ``two`` owns, taken together, shape (6,).
 
     They are: number of cells; sum of the logarithms of their readings; area of their hull in
     cells, from centre to centre; cells that are off on the hull's rim; what cells deep inside
     lack; half the logarithm of the ratio of the axes of their second moments. The last four are
-    0 for fewer than three cells.
-
-    ``owner`` holds each cell's group, 0 where it is off; ``one`` and ``two`` may be the same;
-    ``values`` and ``known`` are those of `misfit`. Below the share ``weak`` of the mean reading
-    a cell deep inside counts as partly void; ``floor`` is the least reading whose logarithm is
-    taken, > 0.
+    0 for fewer than three cells. ``one`` and ``two`` may be the same.
     """
+    owner, values, known = cells.owner, cells.values, cells.known
     rows, columns = owner.shape
     terms = np.zeros(TERMS)
     x, y = np.empty(2 * rows), np.empty(2 * rows)
@@ -48,7 +56,7 @@ def hull_terms(
             if owner[i, j] == one or owner[i, j] == two:
                 left, right = min(left, j), j
                 terms[CELLS] += 1.0
-                terms[LOGS] += np.log(max(values[i, j], floor))
+                terms[LOGS] += np.log(max(values[i, j], levels.floor))
                 total += values[i, j]
                 sum_x, sum_y = sum_x + j, sum_y + i
                 sum_xx, sum_xy, sum_yy = sum_xx + j * j, sum_xy + i * j, sum_yy + i * i
@@ -70,7 +78,7 @@ def hull_terms(
     for k in range(m - 1):
         terms[AREA] += 0.5 * (hull_x[k] * hull_y[k + 1] - hull_x[k + 1] * hull_y[k])
     terms[AREA] = abs(terms[AREA])
-    limit = weak * total / n
+    limit = levels.weak * total / n
     for i in range(rows):
         for j in range(columns):
             mine = owner[i, j] == one or owner[i, j] == two

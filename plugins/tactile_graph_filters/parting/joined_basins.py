@@ -12,13 +12,15 @@ from tactile_graph_filters.parting.basin_groups import (
     DIAGONAL,
     GAIN,
     REACH_CELLS,
+    assess,
     best_pair,
     best_three,
     energy_of,
     join,
     surveyed,
 )
-from tactile_graph_filters.parting.filled_hull import _misfit_plain, misfit
+from tactile_graph_filters.parting.filled_hull import _misfit_plain
+from tactile_graph_filters.parting.partition import Partition
 
 Array = NDArray[np.float64]
 
@@ -136,25 +138,18 @@ def _cuts_plain(owner: NDArray[np.int32], count: int, values: Array, half: float
 @compiled_twin_of(_joined_plain)
 def joined(owner, count, values, known, rules):  # type: ignore[no-untyped-def]
     """Join groups in ``owner`` while that lowers the energy; return the energy."""
-    left, right, box, cuts = surveyed(owner, count, values, rules[4])
-    alive = np.ones(count + 1, np.bool_)
-    cost = np.zeros(count + 1)
-    union = np.full((count + 1, count + 1), np.nan)
-    group = np.empty(3, np.int32)
+    cells = Partition(owner, values, known)
+    groups = surveyed(owner, count, values, rules[4])
     for a in range(1, count + 1):
-        group[:] = a
-        cost[a] = misfit(owner, values, known, group, left[a], right[a], rules)
+        assess(cells, groups, a, rules)
     while True:
-        a, b = best_pair(owner, values, known, left, right, box, cuts, alive, cost, union, rules)
+        a, b = best_pair(cells, groups, rules)
         c = 0
         if a == 0:
-            a, b, c = best_three(owner, values, known, left, right, cuts, alive, cost, rules)
+            a, b, c = best_three(cells, groups, rules)
         if a == 0:
-            return energy_of(cuts, alive, cost, rules[3])
-        join(owner, a, b, left, right, box, cuts, alive)
+            return energy_of(groups, rules[3])
+        join(owner, groups, a, b)
         if c > 0:
-            join(owner, a, c, left, right, box, cuts, alive)
-        union[a, :] = np.nan
-        union[:, a] = np.nan
-        group[:] = a
-        cost[a] = misfit(owner, values, known, group, left[a], right[a], rules)
+            join(owner, groups, a, c)
+        assess(cells, groups, a, rules)

@@ -16,6 +16,7 @@ from tactile_graph_filters.nan import require_summable
 from tactile_graph_filters.parting.basins import basins, taps_of
 from tactile_graph_filters.parting.joined_basins import joined
 from tactile_graph_filters.parting.object_scale import Cells, split_by_scale
+from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.straight_cuts import joined_and_cut
 
 
@@ -147,6 +148,10 @@ class SplitContacts:
                 best, energy = owner, reached
         if self._recut:
             joined_and_cut(
-                best, values, known, self._weak, rules[4], self._cut_above, self._join_below
+                Partition(best, values, known),
+                self._weak,
+                rules[4],
+                self._cut_above,
+                self._join_below,
             )
         return best

@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, Flags, Owners, Reals, hull_terms
+from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, Levels, hull_terms
+from tactile_graph_filters.parting.partition import Owners, Partition, cut_out
 from tactile_graph_filters.parting.two_or_one import log_odds
 
 LEAST_CELLS = 3
@@ -22,22 +23,21 @@ SINES = np.sin(np.arange(8) * math.pi / 8.0)
 
 @compiled_later
 def joined_and_cut(
-    owner: Owners, values: Reals, known: Flags, weak: float, full: float, cut_above: float,
-    join_below: float,
-) -> None:  # fmt: skip
-    """Join the groups in ``owner`` that are one object, then cut those that are two.
+    cells: Partition, weak: float, full: float, cut_above: float, join_below: float
+) -> None:
+    """Join the groups that are one object, then cut those that are two; in place.
 
     Two convex objects that do not overlap can always be parted by a straight line: lines in
     eight directions are tried, and pieces are cut again.
 
-    ``owner``, changed in place, holds each cell's group from 1, 0 where it is off. A group is
-    cut where the log odds of two objects are above ``cut_above``; two are joined where they are
-    below ``join_below``. For the others see `log_odds`.
+    A group is cut where the log odds of two objects are above ``cut_above``; two are joined where
+    they are below ``join_below``. For ``weak`` and ``full`` see `Levels`.
     """
-    floor = FLOOR * full if full > 0 else 1.0
+    owner = cells.owner
+    levels = Levels(weak, full, FLOOR * full if full > 0 else 1.0)
     most = int(owner.max())
     while True:
-        one, two = best_join(owner, most, values, known, weak, full, floor, join_below)
+        one, two = best_join(cells, most, levels, join_below)
         if one == 0:
             break
         for i in range(owner.shape[0]):
@@ -46,19 +46,16 @@ def joined_and_cut(
                     owner[i, j] = one
     group = 1
     while group <= most:
-        if cut_best(owner, group, most + 1, values, known, weak, full, floor, cut_above):
+        if cut_best(cells, group, most + 1, levels, cut_above):
             most += 1  # the piece that keeps its number is looked at again
         else:
             group += 1
 
 
 @compiled_later
-def best_join(
-    owner: Owners, most: int, values: Reals, known: Flags, weak: float, full: float, floor: float,
-    below: float,
-) -> tuple[int, int]:  # fmt: skip
+def best_join(cells: Partition, most: int, levels: Levels, below: float) -> tuple[int, int]:
     """Return the two groups that are least likely two objects, (0, 0) where all others are."""
-    boxes = boxes_of(owner, most)
+    boxes = boxes_of(cells.owner, most)
     best, first, second = below, 0, 0
     for a in range(1, most + 1):
         for b in range(a + 1, most + 1):
@@ -70,11 +67,8 @@ def best_join(
             aside = max(boxes[a, 2], boxes[b, 2]) - min(boxes[a, 3], boxes[b, 3]) - 1
             if max(apart, aside) > REACH_CELLS:
                 continue
-            held = owner[top : bottom + 1, left : right + 1].copy()
-            load = values[top : bottom + 1, left : right + 1].copy()
-            sure = known[top : bottom + 1, left : right + 1].copy()
-            both = hull_terms(held, a, b, load, sure, weak, floor)
-            odds = log_odds(held, a, b, load, sure, weak, full, floor, both)
+            part = cut_out(cells, top, bottom, left, right)
+            odds = log_odds(part, a, b, levels, hull_terms(part, a, b, levels))
             if odds < best - 1e-9:
                 best, first, second = odds, a, b
     return first, second
@@ -94,35 +88,30 @@ def boxes_of(owner: Owners, most: int) -> Owners:
 
 
 @compiled_later
-def cut_best(
-    owner: Owners, group: int, new: int, values: Reals, known: Flags, weak: float, full: float,
-    floor: float, above: float,
-) -> bool:  # fmt: skip
+def cut_best(cells: Partition, group: int, new: int, levels: Levels, above: float) -> bool:
     """Give one side of the likeliest cut of a group to ``new``; return whether any is likely."""
-    top, bottom, left, right = boxes_of(owner, new)[group]
+    top, bottom, left, right = boxes_of(cells.owner, new)[group]
     if bottom < 0:
         return False
-    held = owner[top : bottom + 1, left : right + 1].copy()
-    load = values[top : bottom + 1, left : right + 1].copy()
-    sure = known[top : bottom + 1, left : right + 1].copy()
-    both = hull_terms(held, group, group, load, sure, weak, floor)
+    part = cut_out(cells, top, bottom, left, right)
+    both = hull_terms(part, group, group, levels)
     if both[CELLS] < 2 * LEAST_CELLS:
         return False
     best, best_way, best_at = above, -1, 0.0
     for way in range(len(COSINES)):
-        low, high = reach(held, group, new, COSINES[way], SINES[way])
+        low, high = reach(part.owner, group, new, COSINES[way], SINES[way])
         at, before = low + 0.5 * STEP_CELLS, 0
         while at < high:
-            moved = moved_over(held, group, new, COSINES[way], SINES[way], at)
+            moved = moved_over(part.owner, group, new, COSINES[way], SINES[way], at)
             if moved != before and LEAST_CELLS <= moved <= both[CELLS] - LEAST_CELLS:
-                odds = log_odds(held, new, group, load, sure, weak, full, floor, both)
+                odds = log_odds(part, new, group, levels, both)
                 if odds > best + 1e-9:
                     best, best_way, best_at = odds, way, at
             at, before = at + STEP_CELLS, moved
     if best_way < 0:
         return False
-    moved_over(held, group, new, COSINES[best_way], SINES[best_way], best_at)
-    owner[top : bottom + 1, left : right + 1] = held
+    moved_over(part.owner, group, new, COSINES[best_way], SINES[best_way], best_at)
+    cells.owner[top : bottom + 1, left : right + 1] = part.owner
     return True
 
 

@@ -13,11 +13,10 @@ from tactile_graph_filters.parting.hull_terms import (
     LONG,
     NOTCHES,
     WEAK,
-    Flags,
-    Owners,
-    Reals,
+    Levels,
     hull_terms,
 )
+from tactile_graph_filters.parting.partition import Partition, Reals
 
 NAMES = (
     "constant", "hull gap", "notches", "weak cells", "seam", "seam's readings", "length",
@@ -32,21 +31,17 @@ NO_SEAM = -1.0
 
 
 @compiled_later
-def log_odds(
-    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
-    floor: float, both: Reals,
-) -> float:  # fmt: skip
+def log_odds(cells: Partition, one: int, two: int, levels: Levels, both: Reals) -> float:
     """Return the log odds that the cells of ``one`` and of ``two`` are two objects.
 
     What speaks for two: the hull of both is larger than their own hulls, off cells on its rim
     and weak ones within it vanish with a cut, the seam between them is short and its readings
     are low, neither is long or small.
 
-    ``both`` are the terms of the two together; from the reading ``full`` on a pair of cells in
-    contact counts fully; for the others see `hull_terms`. Nobody else's cells matter. Of the
-    best cut there is, the result is a log odds; of any cut, a score.
+    ``both`` are the terms of the two together, from `hull_terms`. Nobody else's cells matter. Of
+    the best cut there is, the result is a log odds; of any cut, a score.
     """
-    terms = cut_terms(owner, one, two, values, known, weak, full, floor, both)
+    terms = cut_terms(cells, one, two, levels, both)
     odds = 0.0
     for k in range(len(terms)):
         odds += WEIGHTS[k] * terms[k]
@@ -54,14 +49,11 @@ def log_odds(
 
 
 @compiled_later
-def cut_terms(
-    owner: Owners, one: int, two: int, values: Reals, known: Flags, weak: float, full: float,
-    floor: float, both: Reals,
-) -> Reals:  # fmt: skip
+def cut_terms(cells: Partition, one: int, two: int, levels: Levels, both: Reals) -> Reals:
     """Return what `log_odds` weighs, shape (10,), in the order of `NAMES`."""
-    a = hull_terms(owner, one, one, values, known, weak, floor)
-    b = hull_terms(owner, two, two, values, known, weak, floor)
-    length, on_seam, logs = seam(owner, one, two, values, full, floor)
+    a = hull_terms(cells, one, one, levels)
+    b = hull_terms(cells, two, two, levels)
+    length, on_seam, logs = seam(cells, one, two, levels)
     n = both[CELLS]
     fewer, root = min(a[CELLS], b[CELLS]), np.sqrt(n)
     terms = np.ones(10)
@@ -78,29 +70,28 @@ def cut_terms(
 
 
 @compiled_later
-def seam(
-    owner: Owners, one: int, two: int, values: Reals, full: float, floor: float
-) -> tuple[float, float, float]:
+def seam(cells: Partition, one: int, two: int, levels: Levels) -> tuple[float, float, float]:
     """Return length, number of cells, and sum of their readings' logarithms along the seam."""
+    owner, values, full = cells.owner, cells.values, levels.full
     rows, columns = owner.shape
-    length = cells = logs = 0.0
+    length = on_seam = logs = 0.0
     for i in range(rows):
         for j in range(columns):
             mine = owner[i, j]
             if mine != one and mine != two:
                 continue
             other = two if mine == one else one
-            on_seam = False
+            touches = False
             for k in range(max(0, i - 1), min(rows, i + 2)):
                 for m in range(max(0, j - 1), min(columns, j + 2)):
                     if owner[k, m] != other:
                         continue
-                    on_seam = True
+                    touches = True
                     if mine == one:
                         lower = min(values[i, j], values[k, m])
                         weight = 1.0 if k == i or m == j else DIAGONAL
                         length += weight * (min(1.0, lower / full) if full > 0 else 1.0)
-            if on_seam:
-                cells += 1.0
-                logs += np.log(max(values[i, j], floor))
-    return length, cells, logs
+            if touches:
+                on_seam += 1.0
+                logs += np.log(max(values[i, j], levels.floor))
+    return length, on_seam, logs

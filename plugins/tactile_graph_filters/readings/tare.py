@@ -14,7 +14,7 @@ from tactile_graph.steps.injected import TimeGap
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.morphology.elements import parse_element
-from tactile_graph_filters.morphology.planes import make_plan, sweep
+from tactile_graph_filters.morphology.erosion import make_plan, sweep
 from tactile_graph_filters.nan import all_finite, refuse_nan
 
 

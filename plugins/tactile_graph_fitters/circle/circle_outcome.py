@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
-from tactile_graph_fitters.circle.principal import (
+from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
     NOT_FINITE,
     OUT_OF_RANGE,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +23,33 @@ Usable = NDArray[np.bool_]
 Found = tuple[int, float, float, float, float, float, float, float, int, int]
 
 
+class Readings(NamedTuple):
+    """Loads on a grid of elements.
+
+    Parameters
+    ----------
+    loads : ndarray of float64, shape (rows, columns)
+    usable : ndarray of bool, shape (rows, columns)
+        Elements whose load is known.
+    grid : ndarray, shape (4,)
+        Left and top edge of the first element, pitch, side of an element; in cm.
+    shows_from : float
+        Least load that shows.
+    """
+
+    loads: Values
+    usable: Usable
+    grid: Values
+    shows_from: float
+
+
 @compiled_later
-def start_of(loads: Values, usable: Usable, grid: Values, p: Values) -> int:
+def start_of(readings: Readings, p: Values) -> int:
     """Write the disc with the load's moments, and its full load, into ``p``; return the touched.
 
     ``p`` holds x, y, radius and the load of a fully covered element.
     """
+    loads, usable, grid = readings.loads, readings.usable, readings.grid
     count = 0
     total = x = y = xx = yy = 0.0
     for i in range(loads.shape[0]):
@@ -51,16 +73,10 @@ def start_of(loads: Values, usable: Usable, grid: Values, p: Values) -> int:
 
 
 @compiled_later
-def equations(
-    loads: Values,
-    usable: Usable,
-    grid: Values,
-    shows_from: float,
-    p: Values,
-    normal: Values,
-    slope: Values,
-) -> tuple[float, int]:
+def equations(readings: Readings, p: Values, normal: Values, slope: Values) -> tuple[float, int]:
     """Write the normal equations at ``p``; return the weighted cost and the elements in it."""
+    loads, usable, grid = readings.loads, readings.usable, readings.grid
+    shows_from = readings.shows_from
     rows, columns = loads.shape
     pitch, side, full = grid[2], grid[3], p[3]
     x, y, r, h = p[0] - grid[0], p[1] - grid[1], p[2], STEP * grid[3]
@@ -101,18 +117,8 @@ def equations(
 
 
 @compiled_later
-def even_disc(loads: Values, usable: Usable, grid: Values, shows_from: float) -> Found:
+def even_disc(readings: Readings) -> Found:
     """Return the disc whose even load is nearest to an image's, by least squares.
-
-    Parameters
-    ----------
-    loads : ndarray of float64, shape (rows, columns)
-    usable : ndarray of bool, shape (rows, columns)
-        Elements whose load is known.
-    grid : ndarray, shape (4,)
-        Left and top edge of the first element, pitch, side of an element; in cm.
-    shows_from : float
-        Least load that shows.
 
     Returns
     -------
@@ -122,11 +128,11 @@ def even_disc(loads: Values, usable: Usable, grid: Values, shows_from: float) ->
     """
     p, best = np.zeros(4), np.zeros(4)
     normal, slope, step = np.empty((4, 4)), np.empty(4), np.empty(4)
-    touched = start_of(loads, usable, grid, p)
+    touched = start_of(readings, p)
     if touched < 4:
         return TOO_FEW, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, touched, 0
     status, damping, rounds = NOT_SETTLED, 0.0, 0
-    cost, count = equations(loads, usable, grid, shows_from, p, normal, slope)
+    cost, count = equations(readings, p, normal, slope)
     best[:] = p
     trial, turned = np.empty((4, 4)), np.empty(4)
     while rounds < MOST_ROUNDS:
@@ -139,11 +145,11 @@ def even_disc(loads: Values, usable: Usable, grid: Values, shows_from: float) ->
         if reach > best[2] or p[2] <= 0.0 or p[3] <= 0.0:
             damping = max(10.0 * damping, 0.1)
             continue
-        if reach < SETTLED * grid[3]:
+        if reach < SETTLED * readings.grid[3]:
             best[:] = p
             status = OK
             break
-        new, many = equations(loads, usable, grid, shows_from, p, trial, turned)
+        new, many = equations(readings, p, trial, turned)
         if new <= cost:
             cost, count, damping = new, many, 0.1 * damping if damping > 1e-3 else 0.0
             best[:] = p

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.algebra import HYPER, algebraic_fit
+from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_fit
 from tactile_graph_fitters.circle.circle_outcome import circle_from
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 

@@ -16,6 +16,7 @@ from tactile_graph_fitters.circle.even_load import (
     OK,
     TOO_FEW,
     UNDETERMINED,
+    Readings,
     even_disc,
 )
 
@@ -124,7 +125,7 @@ class FitCircleLoad:
         loads[loads < self._least] = 0.0
         half = 0.5 * self._gap_cm
         grid = np.array([x + half, y + half, across, across - self._gap_cm])
-        status, *measures, n, rounds = even_disc.call(loads, usable, grid, self._least)
+        status, *measures, n, rounds = even_disc.call(Readings(loads, usable, grid, self._least))
         if status != OK:
             raise Degenerate(_why(status, n))
         x, y, radius, full, uneven, centre_std, radius_std = map(float, measures)

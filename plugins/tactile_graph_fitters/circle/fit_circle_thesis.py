@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.algebra import back, distance_from_circle
+from tactile_graph_fitters.circle.algebraic import back, distance_from_circle
 from tactile_graph_fitters.circle.circle_outcome import circle_from
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
-from tactile_graph_fitters.circle.principal import NOT_SETTLED, OK, ONE_LINE, into_frame
+from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, ONE_LINE, into_frame
 
 
 def fit_circle_thesis(

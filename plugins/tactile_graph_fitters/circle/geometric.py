@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
-from tactile_graph_fitters.circle.algebra import HYPER, algebraic_circle, back
-from tactile_graph_fitters.circle.principal import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
+from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_circle, back
+from tactile_graph_fitters.circle.principal_axes import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
 
 STEP = 1e-10  # of the radius: Newton squares it once more, to below rounding
 FLAT = 1e3  # radii beyond so many extents of the points are checked against a straight line

@@ -9,19 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
-from tactile_graph_fitters.circle.principal import OK, Frame, into_frame
+from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 
 Values: TypeAlias = NDArray[np.float64]
 Found: TypeAlias = tuple[int, float, float, float, float, float, float, int]
 """Status, centre x and y, half axes, angle of the first as seen, rms, rounds."""
+Linear: TypeAlias = tuple[float, float, float, float, float]
 Quadratics: TypeAlias = tuple[
-    tuple[float, float], tuple[float, float, float, float, float],
+    tuple[float, float], Linear,
     tuple[float, float, float, float], tuple[float, float, float, float]
 ]  # fmt: skip
 
 FEW_PLACES, OTHER_CONIC, FLAT = range(7, 10)
-"""What else can come of an ellipse, beside what ``principal`` has."""
+"""What else can come of an ellipse, beside what `principal_axes` has."""
 
 FLATTEST = 1e-6
 NOTHING = 1e-29  # of the squared quadratics: what rounding leaves of them
@@ -96,8 +97,8 @@ def quadratics(uv: Values) -> Quadratics:
         both += u * v
     linear = uuu / n, uuv / n, uvv / n, vvv / n, both / n
     left = np.empty((3, n))
+    cos, sin = _left(uv, (by_u, by_v), linear, left)
     z, w, r = left[0], left[1], left[2]
-    cos, sin = _left(uv, by_u, by_v, linear, z, w, r)
     zz = ww = rr = zw = zr = 0.0
     for i in range(n):
         wi, ri = w[i] * cos + r[i] * sin, r[i] * cos - w[i] * sin
@@ -120,11 +121,12 @@ def quadratics(uv: Values) -> Quadratics:
 
 
 @compiled_later
-def _left(
-    uv: Values, by_u: float, by_v: float, linear: tuple[float, float, float, float, float],
-    z: Values, w: Values, r: Values
-) -> tuple[float, float]:  # fmt: skip
-    """Write z, w and r less what is linear in them; return the turn that parts w and r."""
+def _left(uv: Values, by: tuple[float, float], linear: Linear, left: Values) -> tuple[float, float]:
+    """Write z, w and r less what is linear in them; return the turn that parts w and r.
+
+    ``by`` scales u and v; ``left``, shape (3, N), takes z, w and r.
+    """
+    (by_u, by_v), (z, w, r) = by, (left[0], left[1], left[2])
     uuu, uuv, uvv, vvv, both = linear
     z_u, z_v, w_u, w_v = 0.5 * (uuu + uvv), 0.5 * (uuv + vvv), 0.5 * (uuu - uvv), 0.5 * (uuv - vvv)
     ww = wr = rr = 0.0
@@ -221,10 +223,14 @@ def ellipse_frame(xy: Values) -> tuple[int, Values, Frame]:
 
 @compiled_later
 def in_pad(
-    frame: Frame, u: float, v: float, a: float, b: float, angle: float, rms: float, rounds: int
+    frame: Frame, ellipse: tuple[float, float, float, float, float], rms: float, rounds: int
 ) -> Found:
-    """Return an ellipse found in the frame of `ellipse_frame` in pad coordinates."""
+    """Return in pad coordinates an ellipse found in the frame of `ellipse_frame`.
+
+    ``ellipse`` is its centre (u, v), its half axes and the angle of the first.
+    """
     x, y, unit, cos, sin = frame
+    u, v, a, b, angle = ellipse
     # v runs as y does, down, in the frame: as seen its angles run the other way.
     seen = -(angle + math.atan2(sin, cos))
     x, y = x + unit * (u * cos - v * sin), y + unit * (u * sin + v * cos)
@@ -244,4 +250,4 @@ def direct_fit(xy: Values) -> Found:
     total = 0.0
     for i in range(off.shape[0]):
         total += off[i] * off[i]
-    return in_pad(frame, u, v, a, b, angle, math.sqrt(total / off.shape[0]), 0)
+    return in_pad(frame, (u, v, a, b, angle), math.sqrt(total / off.shape[0]), 0)

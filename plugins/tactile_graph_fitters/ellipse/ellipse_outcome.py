@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import Kernel
 from tactile_graph.errors import Degenerate
-from tactile_graph_fitters.circle.principal import NOT_FINITE, NOT_SETTLED, OUT_OF_RANGE
+from tactile_graph_fitters.circle.principal_axes import NOT_FINITE, NOT_SETTLED, OUT_OF_RANGE
 from tactile_graph_fitters.ellipse.direct_ellipse import FLAT, OTHER_CONIC, Found
-from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, in_order
+from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, ellipse_of
+from tactile_graph_fitters.orientation.oriented import Oriented
 
 Values = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ def ellipse_from(xy_cm: Values, fit: Kernel[[Values], Found]) -> FittedEllipse:
         return _rescaled(xy, fit)
     if status:
         raise Degenerate(why(xy, status, rounds))
-    return in_order(x, y, first, second, angle, rms, len(xy), rounds)
+    return ellipse_of(Oriented(x, y, first, second, angle), rms, len(xy), rounds)
 
 
 def _rescaled(xy: Values, fit: Kernel[[Values], Found]) -> FittedEllipse:
@@ -44,7 +45,7 @@ def _rescaled(xy: Values, fit: Kernel[[Values], Found]) -> FittedEllipse:
         x, y, first, second, rms = (math.ldexp(v, exponent) for v in (*lengths, rms))
     except OverflowError:
         raise Degenerate(f"{len(xy)} points: their ellipse is too large for a number") from None
-    return in_order(x, y, first, second, angle, rms, len(xy), rounds)
+    return ellipse_of(Oriented(x, y, first, second, angle), rms, len(xy), rounds)
 
 
 def why(xy: Values, status: int, rounds: int) -> str:

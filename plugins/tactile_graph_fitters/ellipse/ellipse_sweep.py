@@ -12,10 +12,17 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.principal import LARGEST
-from tactile_graph_fitters.ellipse.fit_ellipse_origin import FLATTEST, OK, origin_fit, polar
-from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, in_order
+from tactile_graph_fitters.circle.principal_axes import LARGEST
+from tactile_graph_fitters.ellipse.fit_ellipse_origin import (
+    FLATTEST,
+    OK,
+    Polar,
+    origin_fit,
+    polar,
+)
+from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, ellipse_of
 from tactile_graph_fitters.orientation.orientation import Orientation
+from tactile_graph_fitters.orientation.oriented import Oriented
 
 SETTLED = 1e-6  # of the half axes, where the simplex has to find them
 STEPS = 12  # of Newton's method, which needs about five
@@ -84,7 +91,7 @@ def ellipse_sweep(
     )
     if not a > 0.0:
         raise Degenerate(f"{n} points: at none of {tried} orientations an ellipse fits")
-    return in_order(x, y, a, b, angle, rms, n, tried)
+    return ellipse_of(Oriented(x, y, a, b, angle), rms, n, tried)
 
 
 @compiled_later
@@ -92,24 +99,23 @@ def _at(dx: Values, dy: Values, angle: float) -> tuple[float, float, float]:
     """Return half axes and rms of the best ellipse at an angle as seen; infinite rms for none."""
     cos, sin = math.cos(angle), math.sin(angle)
     x, y = dx * cos - dy * sin, dx * sin + dy * cos
-    scale, a, b, r, cos2, sin2 = polar(x, y)
+    scale, a, b, points = polar(x, y)
     if scale > 0.0:
-        a, b, error = straight(r, cos2, sin2, a, b)
+        a, b, error = straight(points, a, b)
         if FLATTEST * a < b < a / FLATTEST:
-            return scale * a, scale * b, scale * math.sqrt(error / r.shape[0])
+            return scale * a, scale * b, scale * math.sqrt(error / x.shape[0])
     status, a, b, rms, _ = origin_fit(x, y, SETTLED, 1000)
     return (a, b, rms) if status == OK else (0.0, 0.0, np.inf)
 
 
 @compiled_later
-def straight(
-    r: Values, cos2: Values, sin2: Values, a: float, b: float
-) -> tuple[float, float, float]:
+def straight(points: Polar, a: float, b: float) -> tuple[float, float, float]:
     """Return half axes of least squared radial distances near a and b, and the sum of these.
 
     Newton's method on 1 / a**2 and 1 / b**2, as long as each step is at most half the one before;
     half axes of 0 where it does not lead straight to a minimum.
     """
+    r, cos2, sin2 = points
     p, q, last = 1.0 / (a * a), 1.0 / (b * b), 1.0
     for _ in range(STEPS):
         error = g_p = g_q = h_pp = h_pq = h_qq = 0.0

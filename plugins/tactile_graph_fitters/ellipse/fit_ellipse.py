@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.principal import NOT_SETTLED, OK
+from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
 from tactile_graph_fitters.ellipse.direct_ellipse import Found, direct_shape, ellipse_frame, in_pad
 from tactile_graph_fitters.ellipse.ellipse_outcome import ellipse_from
@@ -73,7 +73,7 @@ def geometric_fit(xy: Values) -> Found:
     rms, rounds = refined(uv, p, STEP)
     if rounds <= 0:
         return NOT_SETTLED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -rounds
-    return in_pad(frame, p[0], p[1], p[2], p[3], p[4], rms, rounds)
+    return in_pad(frame, (p[0], p[1], p[2], p[3], p[4]), rms, rounds)
 
 
 @compiled_later

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt
@@ -12,13 +12,22 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, in_order
+from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, ellipse_of
 from tactile_graph_fitters.orientation.orientation import Orientation
+from tactile_graph_fitters.orientation.oriented import Oriented
 
 OK, NO_SPREAD, NOT_SETTLED = range(3)
 FLATTEST = 1e-6  # half axes of a smaller ratio than this are a line
 
 Values = NDArray[np.float64]
+
+
+class Polar(NamedTuple):
+    """Distances of points from the centre, and the squared cosines and sines of their angles."""
+
+    r: Values
+    cos2: Values
+    sin2: Values
 
 
 def fit_ellipse_origin(
@@ -74,7 +83,8 @@ def fit_ellipse_origin(
     status, a, b, rms, rounds = origin_fit(x, y, tolerance, max_iterations)
     if status != OK:
         raise Degenerate(_why(x, y, status, rounds))
-    return in_order(axis.x_cm, axis.y_cm, a, b, axis.angle_rad, rms, n, rounds)
+    found = Oriented(axis.x_cm, axis.y_cm, a, b, axis.angle_rad)
+    return ellipse_of(found, rms, n, rounds)
 
 
 def _why(x: Values, y: Values, status: int, rounds: int) -> str:
@@ -113,9 +123,10 @@ def radial_error(r: Values, cos2: Values, sin2: Values, a: float, b: float, off:
 
 @compiled_later
 def simplex_search(
-    r: Values, cos2: Values, sin2: Values, a: float, b: float, tolerance: float, most: int
+    points: Polar, a: float, b: float, tolerance: float, most: int
 ) -> tuple[bool, float, float, float, int]:
     """Return whether it settled, a, b, the error there, and the steps of one simplex search."""
+    r, cos2, sin2 = points
     off = np.empty(r.shape[0])
     # Best, middle and worst corner: a, b, error. The error does not mind the sign of a and b.
     s = np.empty((3, 3))
@@ -159,8 +170,8 @@ def simplex_search(
 
 
 @compiled_later
-def polar(x: Values, y: Values) -> tuple[float, float, float, Values, Values, Values]:
-    """Return the scale, the start a and b, and r, cos**2 and sin**2 of the points, all scaled.
+def polar(x: Values, y: Values) -> tuple[float, float, float, Polar]:
+    """Return the scale, the start a and b, and the points' distances and angles, all scaled.
 
     The scale is 0 where no ellipse fits: too few points, not finite, or on one line.
     """
@@ -172,7 +183,7 @@ def polar(x: Values, y: Values) -> tuple[float, float, float, Values, Values, Va
         finite &= math.isfinite(x[i]) and math.isfinite(y[i])
         largest = max(largest, abs(x[i]), abs(y[i]))
     if not finite or not 1e-150 < largest < 1e150:
-        return 0.0, 0.0, 0.0, r, cos2, sin2
+        return 0.0, 0.0, 0.0, Polar(r, cos2, sin2)
     xx = xy = yy = 0.0
     for i in range(n):
         u, v = x[i] / largest, y[i] / largest
@@ -184,8 +195,9 @@ def polar(x: Values, y: Values) -> tuple[float, float, float, Values, Values, Va
         cos2[i] = u * u / rr if rr > 0.0 else 1.0
         sin2[i] = v * v / rr if rr > 0.0 else 0.0
     if xx * yy - xy * xy <= 1e-14 * (xx + yy) ** 2:
-        return 0.0, 0.0, 0.0, r, cos2, sin2
-    return largest, math.sqrt(2.0 * xx / n), math.sqrt(2.0 * yy / n), r, cos2, sin2
+        return 0.0, 0.0, 0.0, Polar(r, cos2, sin2)
+    a, b = math.sqrt(2.0 * xx / n), math.sqrt(2.0 * yy / n)
+    return largest, a, b, Polar(r, cos2, sin2)
 
 
 @compiled_later
@@ -193,13 +205,13 @@ def origin_fit(
     x: Values, y: Values, tolerance: float, most: int
 ) -> tuple[int, float, float, float, int]:
     """Return status, half axes along x and y, rms in cm, and the steps of all searches."""
-    scale, a, b, r, cos2, sin2 = polar(x, y)
+    scale, a, b, points = polar(x, y)
     if scale == 0.0:
         return NO_SPREAD, 0.0, 0.0, 0.0, 0
-    settled, a, b, error, steps = simplex_search(r, cos2, sin2, a, b, tolerance, most)
+    settled, a, b, error, steps = simplex_search(points, a, b, tolerance, most)
     while settled:
         settled, new_a, new_b, new_error, more = simplex_search(
-            r, cos2, sin2, a, b, tolerance, most - steps
+            points, a, b, tolerance, most - steps
         )
         steps += more
         moved = max(abs(new_a / a - 1.0), abs(new_b / b - 1.0))

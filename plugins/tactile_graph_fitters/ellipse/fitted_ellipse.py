@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from tactile_graph.wires import Ellipse
+from tactile_graph_fitters.orientation.oriented import Oriented
 
 
 @dataclass(frozen=True)
@@ -23,47 +23,19 @@ class FittedEllipse(Ellipse):
     columns_shown: ClassVar[tuple[str, ...]] = (*Ellipse.columns_shown, "rms_cm", "n_points")
 
 
-def in_order(
-    x_cm: float,
-    y_cm: float,
-    first_cm: float,
-    second_cm: float,
-    angle_rad: float,
-    rms_cm: float,
-    n_points: int,
-    iterations: int,
-) -> FittedEllipse:
-    """Return the ellipse with half axes ``first_cm`` along the angle and ``second_cm`` across.
-
-    Parameters
-    ----------
-    x_cm, y_cm : float
-        Centre.
-    first_cm, second_cm : float
-        The two half axes, in either order of size.
-    angle_rad : float
-        Direction of the first, as seen; brought into (-pi/2, pi/2] for the longer one.
-    rms_cm, n_points, iterations : float, int, int
-        As in `FittedEllipse`.
-    """
-    if second_cm > first_cm:
-        first_cm, second_cm, angle_rad = second_cm, first_cm, angle_rad + 0.5 * math.pi
+def ellipse_of(found: Oriented, rms_cm: float, n_points: int, iterations: int) -> FittedEllipse:
+    """Return the ellipse with these half axes, and how well it fits as `FittedEllipse` says it."""
+    x_cm, y_cm, semi_major_cm, semi_minor_cm, angle_rad = found.longer_first()
     ellipse = object.__new__(FittedEllipse)
-    # At once: a frozen dataclass sets its fields one by one. Plain references leave NumPy's floats.
+    # At once: a frozen dataclass sets its fields one by one.
     ellipse.__dict__.update(
-        x_cm=float(x_cm),
-        y_cm=float(y_cm),
-        semi_major_cm=float(first_cm),
-        semi_minor_cm=float(second_cm),
-        angle_rad=axis_angle(angle_rad),
+        x_cm=x_cm,
+        y_cm=y_cm,
+        semi_major_cm=semi_major_cm,
+        semi_minor_cm=semi_minor_cm,
+        angle_rad=angle_rad,
         rms_cm=float(rms_cm),
         n_points=n_points,
         iterations=iterations,
     )
     return ellipse
-
-
-def axis_angle(angle_rad: float) -> float:
-    """Return the angle of an axis, known up to half turns, brought into (-pi/2, pi/2]."""
-    angle = math.remainder(angle_rad, math.pi)
-    return angle if angle > -0.5 * math.pi else 0.5 * math.pi

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph_fitters.circle.principal import EPS
+from tactile_graph_fitters.circle.principal_axes import EPS
 from tactile_graph_fitters.ellipse.ellipse_equations import reduced
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import along_axes, feet
 

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.principal import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
+from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
+from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
 ANGLES = 12  # tried over a quarter turn before the search
@@ -79,7 +80,7 @@ def fit_rectangle(
     if status != OK:
         raise Degenerate(_why(xy, status, rounds))
     first, second = 2.0 * (first + inside_cm), 2.0 * (second + inside_cm)
-    return rectangle_of(x, y, first, second, angle, misfit, n, rounds, cell_cm)
+    return rectangle_of(Oriented(x, y, first, second, angle), misfit, n, rounds, cell_cm)
 
 
 def _why(xy: Values, status: int, rounds: int) -> str:
@@ -174,7 +175,7 @@ def _boxed(uv: Values, angle: float, p: Values) -> None:
 
 
 @compiled_later
-def _searched(uv: Values, p: Values, scale: float, least: float) -> tuple[float, int]:
+def _minimise(uv: Values, p: Values, scale: float, least: float) -> tuple[float, int]:
     """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
     normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
     new_normal, new_slope, trial = np.empty((5, 5)), np.empty(5), np.empty(5)
@@ -236,7 +237,7 @@ def outline_fit(xy: Values, scale_cm: float, starts: int, least_step: float) -> 
         k = int(np.argmin(costs))
         costs[k] = np.inf
         p[:] = boxes[k]
-        found, made = _searched(uv, p, scale, least_step)
+        found, made = _minimise(uv, p, scale, least_step)
         rounds += abs(made)
         if found < least:
             least, settled = found, made > 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 from annotated_types import Gt, Lt
@@ -18,9 +18,10 @@ from tactile_graph_fitters.orientation.orientation import (
     principal_variances,
     seen_angle,
 )
+from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
-from tactile_graph_fitters.rectangle.quasi_newton import searched
-from tactile_graph_fitters.rectangle.rectangle_likelihood import OFF, ON, UNKNOWN, States
+from tactile_graph_fitters.rectangle.quasi_newton import minimise
+from tactile_graph_fitters.rectangle.rectangle_likelihood import OFF, ON, UNKNOWN, Window
 
 AROUND = 2  # cells looked at around the footprint
 SOFT_CELLS = 0.92  # over which a cell's coverage rises, as the outline passes it
@@ -106,27 +107,15 @@ class FitRectangleLoad:
         (px, py), law = mask.pitch_cm, self._law
         cell = math.sqrt(px * py)
         full = np.array([*law, SOFT_CELLS * cell, 0.0 if image is None else 1.0])
-        status, x, y, first, second, angle, found, rounds = likeliest(
-            window.cells_cm, window.logs, window.states, window.x_cm, window.y_cm, full, cell
-        )
+        status, x, y, first, second, angle, found, rounds = likeliest(window, full, cell)
         n = len(window.cells_cm)
         if status:
             raise Degenerate(_why(n, status, rounds))
-        first, second = 2.0 * first, 2.0 * second
-        return rectangle_of(x, y, first, second, angle, found / n, n, rounds, cell)
+        sides = Oriented(x, y, 2.0 * first, 2.0 * second, angle)
+        return rectangle_of(sides, found / n, n, rounds, cell)
 
 
-class _Window(NamedTuple):
-    """The part of a pad around a footprint."""
-
-    cells_cm: Values
-    logs: Values
-    states: States
-    x_cm: Values
-    y_cm: Values
-
-
-def _window(mask: Mask, image: Image | None, power: float) -> _Window:
+def _window(mask: Mask, image: Image | None, power: float) -> Window:
     rows, columns = np.nonzero(mask.values)
     if len(rows) == 0:
         raise Degenerate("no cell is on: no rectangle fits")
@@ -154,7 +143,7 @@ def _window(mask: Mask, image: Image | None, power: float) -> _Window:
     ys: Values = y + (np.arange(top, top + height, dtype=np.float64) + 0.5) * py
     cells = np.empty((len(rows), 2))
     cells[:, 0], cells[:, 1] = xs[at[1]], ys[at[0]]
-    return _Window(cells, logs, states, xs, ys)
+    return Window(cells, logs, states, xs, ys)
 
 
 def _median(values: Values) -> float:
@@ -177,11 +166,9 @@ Found = tuple[int, float, float, float, float, float, float, int]
 
 
 @compiled_later
-def likeliest(
-    cells: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, cell: float
-) -> Found:
+def likeliest(window: Window, law: Values, cell: float) -> Found:
     """Return status, centre (x, y), half sides, angle of the first, cost and rounds."""
-    n, x, y, xx, xy, yy = points_scatter(cells)
+    n, x, y, xx, xy, yy = points_scatter(window.cells_cm)
     larger, smaller = principal_variances(xx / max(n, 1), xy / max(n, 1), yy / max(n, 1))
     if n < 3 or smaller <= 0.0:
         return ONE_LINE, x, y, 0.0, 0.0, 0.0, 0.0, 0
@@ -193,7 +180,7 @@ def likeliest(
     for k in range(tries):
         p[0], p[1], p[2], p[3] = x, y, half + 0.2 * cell, other + 0.2 * cell
         p[4] = angle + k * math.pi / 8.0
-        found, made = searched(p, logs, states, xs, ys, law, cell, TOLERANCE, ROUNDS)
+        found, made = minimise(p, window, law, cell, TOLERANCE, ROUNDS)
         rounds += abs(made)
         if found < least:
             least, settled = found, made > 0

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from tactile_graph.wires import Rectangle
-from tactile_graph_fitters.ellipse.fitted_ellipse import axis_angle
 from tactile_graph_fitters.orientation.orientation import angle_std_rad
+from tactile_graph_fitters.orientation.oriented import Oriented
 
 
 @dataclass(frozen=True)
@@ -28,46 +27,15 @@ class FittedRectangle(Rectangle):
 
 
 def rectangle_of(
-    x_cm: float,
-    y_cm: float,
-    first_cm: float,
-    second_cm: float,
-    angle_rad: float,
-    misfit: float,
-    n_points: int,
-    iterations: int,
-    cell_cm: float,
+    found: Oriented, misfit: float, n_points: int, iterations: int, cell_cm: float
 ) -> FittedRectangle:
-    """Return the rectangle with sides ``first_cm`` along the angle and ``second_cm`` across.
+    """Return the rectangle with these sides, and how well it fits as `FittedRectangle` says it.
 
-    Parameters
-    ----------
-    x_cm, y_cm : float
-        Centre.
-    first_cm, second_cm : float
-        The two sides, in either order of size.
-    angle_rad : float
-        Direction of the first, as seen; brought into (-pi/2, pi/2] for the longer one.
-    misfit, n_points, iterations : float, int, int
-        As in `FittedRectangle`.
-    cell_cm : float
-        Pitch of the elements that were read, for ``ambiguous``.
+    ``cell_cm``, the pitch of the elements that were read, tells whether it is ``ambiguous``.
     """
-    if second_cm > first_cm:
-        first_cm, second_cm, angle_rad = second_cm, first_cm, angle_rad + 0.5 * math.pi
-    # Plain references leave NumPy's own floats.
-    length, breadth = float(first_cm), float(second_cm)
-    return FittedRectangle(
-        float(x_cm),
-        float(y_cm),
-        length,
-        breadth,
-        axis_angle(angle_rad),
-        float(misfit),
-        n_points,
-        iterations,
-        alike(length, breadth, cell_cm),
-    )
+    place = found.longer_first()
+    unclear = alike(place.first_cm, place.second_cm, cell_cm)
+    return FittedRectangle(*place, float(misfit), n_points, iterations, unclear)
 
 
 def alike(length_cm: float, breadth_cm: float, pitch_cm: float) -> bool:

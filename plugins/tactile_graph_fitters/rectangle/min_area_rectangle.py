@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
+from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
 Values = NDArray[np.float64]
@@ -56,15 +57,15 @@ def min_area_rectangle(
     # By a power of two: areas of very large and very small ones are no numbers.
     _, exponent = math.frexp(float(np.abs(corners).max()))
     found = smallest(np.ldexp(corners, -exponent))
-    first, second, angle, inside = found[2:]
+    first, second, angle, filled = found[2:]
     if not first * second > 0.0:
         raise Degenerate(f"{n} points nearly on one line: the rectangle's area is too small")
-    empty = max(0.0, 1.0 - inside / (first * second))
+    empty = max(0.0, 1.0 - filled / (first * second))
     try:
         x, y, first, second = (math.ldexp(v, exponent) for v in (*found[:2], first, second))
     except OverflowError:
         raise Degenerate(f"{n} points: their rectangle is too large for a number") from None
-    return rectangle_of(x, y, first, second, angle, empty, n, len(corners), cell_cm)
+    return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), cell_cm)
 
 
 @compiled_later

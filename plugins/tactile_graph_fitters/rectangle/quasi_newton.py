@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph_fitters.rectangle.rectangle_likelihood import States, cost
+from tactile_graph_fitters.rectangle.rectangle_likelihood import Window, cost
 
 Values = NDArray[np.float64]
 
@@ -66,18 +66,11 @@ def _learn(inverse: Values, moved: Values, change: Values) -> None:
 
 
 @compiled_later
-def searched(
-    p: Values,
-    logs: Values,
-    states: States,
-    xs: Values,
-    ys: Values,
-    law: Values,
-    cell: float,
-    tolerance: float,
-    most: int,
+def minimise(
+    p: Values, window: Window, law: Values, cell: float, tolerance: float, most: int
 ) -> tuple[float, int]:
     """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
+    logs, states, xs, ys = window.logs, window.states, window.x_cm, window.y_cm
     inverse, slope, new_slope = np.empty((N, N)), np.empty(N), np.empty(N)
     step, moved, change, trial = np.empty(N), np.empty(N), np.empty(N), np.empty(N)
     _restart(inverse, cell)

@@ -8,7 +8,7 @@ strays. What a cell adds to the cost is the negative logarithm of that likelihoo
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,29 @@ OFF, ON, UNKNOWN = range(3)
 
 Values: TypeAlias = NDArray[np.float64]
 States: TypeAlias = NDArray[np.uint8]
+
+
+class Window(NamedTuple):
+    """The part of a pad around a footprint.
+
+    Parameters
+    ----------
+    cells_cm : ndarray, shape (N, 2)
+        Centres (x, y) of the touched cells.
+    logs : ndarray, shape (rows, columns)
+        Logarithm of each touched cell's load over a fully covered cell's.
+    states : ndarray of uint8, shape (rows, columns)
+        `OFF`, `ON` or `UNKNOWN`.
+    x_cm, y_cm : ndarray
+        Cell centres along x and down y.
+    """
+
+    cells_cm: Values
+    logs: Values
+    states: States
+    x_cm: Values
+    y_cm: Values
+
 
 SQRT_HALF = math.sqrt(0.5)
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_fitters.shape.shape_misfits import FEWEST_CORNERS
+from tactile_graph_fitters.shape.shape_fits import FEWEST_CORNERS
 
 Values: TypeAlias = NDArray[np.float64]
 Kind = Literal["disc", "ellipse", "rectangle", "polygon"]
@@ -36,15 +36,15 @@ WEIGHTS = np.array([
 ])  # fmt: skip
 
 
-def features(length_cm: float, misfits_cm2: Values, cell_cm: float) -> Values:
+def features(length_cm: float, mean_squares_cm2: Values, cell_cm: float) -> Values:
     """Return what the regression is on, shape (9,).
 
     Parameters
     ----------
     length_cm : float
         Of the outline.
-    misfits_cm2 : ndarray, shape (at least `MOST_CORNERS` + 1,)
-        From `shape_misfits`.
+    mean_squares_cm2 : ndarray, shape (at least `MOST_CORNERS` + 1,)
+        From `shape_fits`.
     cell_cm : float
         Pitch of the elements that were read.
 
@@ -56,11 +56,11 @@ def features(length_cm: float, misfits_cm2: Values, cell_cm: float) -> Values:
     out[0], out[1] = 1.0, math.log(length_cm / cell_cm / USUAL_CELLS)
     area, last = cell_cm * cell_cm, math.inf
     for row in range(MOST_CORNERS + 1):
-        misfit = float(misfits_cm2[row])
-        if row > FEWEST_CORNERS and misfit == math.inf:
-            misfit = last
-        last = misfit
-        out[2 + row] = math.log(min(misfit / area, CEILING_CELLS2) + FLOOR_CELLS2)
+        mean_square = float(mean_squares_cm2[row])
+        if row > FEWEST_CORNERS and mean_square == math.inf:
+            mean_square = last
+        last = mean_square
+        out[2 + row] = math.log(min(mean_square / area, CEILING_CELLS2) + FLOOR_CELLS2)
     return out
 
 

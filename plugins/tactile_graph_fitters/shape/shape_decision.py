@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Points, Polygon, Rectangle
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
-from tactile_graph_fitters.ellipse.fitted_ellipse import in_order
+from tactile_graph_fitters.ellipse.fitted_ellipse import ellipse_of
+from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import rectangle_of
 from tactile_graph_fitters.shape.shape_confidence import (
     KINDS,
@@ -21,7 +22,7 @@ from tactile_graph_fitters.shape.shape_confidence import (
     confidences,
     features,
 )
-from tactile_graph_fitters.shape.shape_misfits import DISC, FEWEST_CORNERS, RECTANGLE, shape_misfits
+from tactile_graph_fitters.shape.shape_fits import DISC, FEWEST_CORNERS, RECTANGLE, shape_fits
 
 Values: TypeAlias = NDArray[np.float64]
 AnyShape: TypeAlias = Circle | Ellipse | Rectangle | Polygon
@@ -50,11 +51,11 @@ class ShapeDecision(NamedTuple):
 
 
 class Fits(NamedTuple):
-    """What `shape_misfits` returns."""
+    """What `shape_fits` returns."""
 
     n: int
     length_cm: float
-    misfits_cm2: Values
+    mean_squares_cm2: Values
     shapes: Values
     polygons: Values
 
@@ -106,10 +107,10 @@ def shape_decision(
     if outline.count < 3 or outline.area_cm2 <= 0.0:
         raise Degenerate(f"{points.count} points on one line: no shape to decide on")
     most = max(max_corners, MOST_CORNERS)
-    fits = Fits(*shape_misfits(outline.xy_cm, cell_cm / PER_CELL, most, cell_cm))
-    share = confidences(features(fits.length_cm, fits.misfits_cm2, cell_cm), temperature)
+    fits = Fits(*shape_fits(outline.xy_cm, cell_cm / PER_CELL, most, cell_cm))
+    share = confidences(features(fits.length_cm, fits.mean_squares_cm2, cell_cm), temperature)
     rows = [*range(FEWEST_CORNERS), _best_polygon(fits, max_corners, cell_cm)]
-    able = [k for k, row in enumerate(rows) if fits.misfits_cm2[row] < math.inf]
+    able = [k for k, row in enumerate(rows) if fits.mean_squares_cm2[row] < math.inf]
     if not able:
         raise Degenerate(f"{points.count} points: no shape can be fitted to their hull")
     best = max(able, key=lambda k: share[k])
@@ -136,21 +137,22 @@ def _best_polygon(fits: Fits, most: int, cell_cm: float) -> int:
     """Return the number of corners, 3 to ``most``, of the least criterion."""
     n = max(fits.length_cm / cell_cm * EVIDENCE, 2.0)
     floor = (FLOOR_CELLS * cell_cm) ** 2
-    misfits = fits.misfits_cm2[: most + 1].tolist()
+    mean_squares = fits.mean_squares_cm2[: most + 1].tolist()
     return min(
         range(FEWEST_CORNERS, most + 1),
-        key=lambda k: n * math.log(misfits[k] + floor) + 2 * k * math.log(n),
+        key=lambda k: n * math.log(mean_squares[k] + floor) + 2 * k * math.log(n),
     )
 
 
 def _shape(fits: Fits, row: int, cell_cm: float) -> AnyShape:
-    rms = math.sqrt(fits.misfits_cm2[row])
+    rms = math.sqrt(fits.mean_squares_cm2[row])
     if row > RECTANGLE:
         return Polygon(fits.polygons[row, :row].copy())
     x, y, first, second, angle = fits.shapes[row].tolist()
     if row == DISC:
         return FittedCircle(x, y, first, rms, fits.n)
     if row == RECTANGLE:
-        return rectangle_of(x, y, 2.0 * first, 2.0 * second, angle, rms, fits.n, 0, cell_cm)
+        sides = Oriented(x, y, 2.0 * first, 2.0 * second, angle)
+        return rectangle_of(sides, rms, fits.n, 0, cell_cm)
     # As seen angles run against those of (x, y) with y down.
-    return in_order(x, y, first, second, -angle, rms, fits.n, 0)
+    return ellipse_of(Oriented(x, y, first, second, -angle), rms, fits.n, 0)

@@ -53,7 +53,7 @@ def to_ellipses(points: NDArray[np.float64], weights: NDArray[np.float64]) -> No
         across += weights[i] * points[i, 4]
     middle = 0.5 * math.atan2(across, along)
     for i in range(points.shape[0]):
-        points[i] = as_ellipse(points[i])
+        points[i, :] = as_ellipse(points[i])
         quarters = round((points[i, 4] - middle) / (0.5 * math.pi))
         points[i, 4] -= quarters * 0.5 * math.pi
         if quarters % 2 != 0:

@@ -135,20 +135,17 @@ def find_mode_on_large_pad(
 ) -> tuple[Mode, bool]:
     """Return what `search.find_mode` does, of a pad of more than 1024 elements."""
     n = best.p.shape[0]
-    p, root, height = best.p.copy(), best.root.copy(), best.height
-    trial, its_root = np.zeros(n), np.zeros((n, n))
+    trial, root = np.zeros(n), np.zeros((n, n))
     blocks = coarsened(problem)
     for attempt in range(attempts[0], attempts[1]):
         given, seen = start[:0], blocks
         if attempt == 0:
             given, seen = start, Blocks(in_one_piece(blocks.problem), blocks.block, blocks.load)
         _start(problem, seen, given, table, attempt * TRIES, trial)
-        here = maximise_from_blocks(problem, blocks.block, trial, its_root)
-        again = attempt > 0 and abs(here - height) < SAME
-        if here > height:
-            height = here
-            p[:] = trial
-            root[:] = its_root
-        if height > -math.inf and (_surprise(problem, p) > POOR or again):
-            return Mode(p, root, height), False
-    return Mode(p, root, height), attempts[1] < ATTEMPTS
+        here = maximise_from_blocks(problem, blocks.block, trial, root)
+        again = attempt > 0 and abs(here - best.height) < SAME
+        if here > best.height:
+            best = Mode(trial.copy(), root.copy(), here)
+        if best.height > -math.inf and (_surprise(problem, best.p) > POOR or again):
+            return best, False
+    return best, attempts[1] < ATTEMPTS

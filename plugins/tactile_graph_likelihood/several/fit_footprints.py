@@ -14,7 +14,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
 from tactile_graph_likelihood.settings import FootprintSettings, Load, Positive
-from tactile_graph_likelihood.several.posteriors import posteriors, started
+from tactile_graph_likelihood.several.posteriors import configuration_of, posteriors
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import UNLIKELY
@@ -141,7 +141,7 @@ class FitFootprints:
             If nothing is touched, or no such outlines explain what is.
         """
         search = self.search(image)
-        found = search.run(started(starts, search) if len(starts) else None)
+        found = search.run(configuration_of(starts, search) if len(starts) else None)
         parts, surprise, alike = posteriors(search, found)
         odds = [math.exp(f.log_evidence - found.log_evidence) for f in search.allowed()]
         return Footprints(

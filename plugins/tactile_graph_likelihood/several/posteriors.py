@@ -135,7 +135,7 @@ def _wider(alone: Values, together: Values) -> Values:
     return np.asarray(np.linalg.cholesky(together) @ np.linalg.inv(np.linalg.cholesky(alone)))
 
 
-def started(shapes: Sequence[Shape], scene: Scene) -> Configuration:
+def configuration_of(shapes: Sequence[Shape], scene: Scene) -> Configuration:
     """Return shapes as outlines of the kinds that are looked for, not yet maximised."""
     fallback = next((k for k in scene.kinds if k[0] == ELLIPSE), scene.kinds[0])
     kinds, corners, points = [], [], np.zeros((len(shapes), WIDTH))

@@ -64,7 +64,7 @@ def sample_beside(
     most = table.shape[0]
     turn = 2 + sizes(kinds[0]) if period(kinds[0], corners[0]) > 0.0 else -1
     half = 0.5 * period(kinds[0], corners[0])
-    root, off, work = np.zeros((n, n)), np.empty(n), np.empty(n)
+    off, work = np.empty(n), np.empty(n)
     centres, roots = np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n))
     levels, drawn = np.empty(PROPOSALS), np.zeros(PROPOSALS)
     logs_q, logs_p = np.empty((PROPOSALS, most)), np.empty(most)
@@ -76,12 +76,12 @@ def sample_beside(
     count, proposals, evidence, equal = 0, 0, -math.inf, 0.0
     while count + block <= most:
         if proposals < PROPOSALS:
-            if not cholesky(proposal, root):
+            if not cholesky(proposal, roots[proposals]):
                 break
-            centres[proposals], roots[proposals] = aim, root
+            centres[proposals, :] = aim
             levels[proposals] = constant
             for k in range(n):
-                levels[proposals] -= math.log(root[k, k])
+                levels[proposals] -= math.log(roots[proposals, k, k])
             proposals += 1
         now = proposals - 1
         for i in range(count, count + block):

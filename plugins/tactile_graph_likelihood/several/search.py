@@ -79,7 +79,7 @@ class Search(Parts):
         for a in range(found.count):
             yield from self.moves_of_one(found, a, masks[a])
         for a in range(found.count):
-            near, far = around(masks[a], 1), around(masks[a], 2)
+            near, far = dilated(masks[a], 1), dilated(masks[a], 2)
             for b in range(a):
                 if (far & (masks[b] == 1)).any():
                     touching = bool((near & (masks[b] == 1)).any())
@@ -173,7 +173,7 @@ class Search(Parts):
         return np.where(self.on, own, -1)
 
 
-def around(mask: Places, reach: int) -> States:
+def dilated(mask: Places, reach: int) -> States:
     """Return where a mask is, or is no more than some cells away."""
     wide = np.pad(mask == 1, reach)
     rows, cols = mask.shape

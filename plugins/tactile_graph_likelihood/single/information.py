@@ -71,7 +71,9 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
         other, step = noise.copy(), FOAM_STEP if place == FOAM else PRESSURE_STEP
         other[place] = noise[FOAM] * math.exp(step) if place == FOAM else noise[place] + step
         moved = shares_of(kind, corners, p, grid, other, box, rows, columns)
-        rise[first + 1 + k] = (moved - share) / step
+        for i in range(box[2]):
+            for j in range(box[3]):
+                rise[first + 1 + k, i, j] = (moved[i, j] - share[i, j]) / step
     return share, rise
 
 

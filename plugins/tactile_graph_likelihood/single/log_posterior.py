@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
@@ -69,12 +67,3 @@ def log_rest(problem: Problem, p: Values) -> float:
         for k in range(first):
             total -= 0.5 * (p[i] - belief[i]) * precision[i, k] * (p[k] - belief[k])
     return total
-
-
-@compiled_as_is
-def log_likelihoods(problem: Problem, points: Values) -> Values:
-    """Return `log_likelihood` of many points, shape (N, K)."""
-    out = np.empty(points.shape[0])
-    for k in range(points.shape[0]):
-        out[k] = log_likelihood(problem, points[k])
-    return out

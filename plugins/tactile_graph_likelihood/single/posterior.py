@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -78,6 +79,12 @@ class Posterior:
     lean: float = 0.0
     fall: float = 0.0
     pressures: Mapping[str, float] = field(default_factory=lambda: {"even": 1.0})
+
+    def summary(self) -> dict[str, Any]:
+        """Return what lines a frame tell of it: its single numbers; the shape has the rest."""
+        numbers = "log_evidence", "equal_points", "surprise", "neighbours", "lean", "fall"
+        names = "kind", "corners", *numbers, "pressures"
+        return {name: getattr(self, name) for name in names}
 
     @property
     def fits(self) -> bool:

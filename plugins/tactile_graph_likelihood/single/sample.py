@@ -128,8 +128,8 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
 
 
 @compiled_as_is
-def _hold_in_gaps(problem: Problem, mode: Mode, covariance: Values) -> None:
-    """Write the covariance of an outline whose edges slide no farther than a gap is wide.
+def _held_in_gaps(problem: Problem, mode: Mode) -> Values:
+    """Return the covariance of an outline whose edges slide no farther than a gap is wide.
 
     A straight edge that lies in a gap slides freely; where several do, hardly any of the first
     points would come near what is likely.
@@ -143,8 +143,7 @@ def _hold_in_gaps(problem: Problem, mode: Mode, covariance: Values) -> None:
                 matrix[i, j] += root[i, k] * root[j, k]
     for k in range(widths.shape[0]):
         matrix[k, k] += HELD * (STEP / widths[k]) ** 2
-    if cholesky(matrix, held):
-        covariance[:] = inverted(held)
+    return inverted(held if cholesky(matrix, held) else root)
 
 
 @compiled_as_is
@@ -200,12 +199,12 @@ def widen_to_other_ends(
 @compiled_as_is
 def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
     """Write a proposal; return whether its covariance is positive."""
-    root = np.zeros(covariance.shape)
+    root = proposals.roots[k]
     if not cholesky(covariance, root):
         return False
-    proposals.centres[k], proposals.roots[k] = centre, root
     proposals.levels[k] = 0.0
     for i in range(centre.shape[0]):
+        proposals.centres[k, i] = centre[i]
         proposals.levels[k] -= math.log(root[i, i])
     return True
 
@@ -331,9 +330,7 @@ def sample_around(problem: Problem, whole: CoveredWhole | None, plan: Plan, mode
     draws = Draws(
         np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
     )
-    covariance = inverted(mode.root)
-    if whole is not None:
-        _hold_in_gaps(problem, mode, covariance)
+    covariance = inverted(mode.root) if whole is None else _held_in_gaps(problem, mode)
     widen_to_other_ends(near, whole, mode, covariance)
     used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, draws)
     fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)

@@ -227,19 +227,17 @@ def find_mode(
         What earlier attempts found; of the height -inf if this is the first.
     """
     n = best.p.shape[0]
-    p, root, height = best.p.copy(), best.root.copy(), best.height
-    trial, its_root = np.zeros(n), np.zeros((n, n))
+    trial, root = np.zeros(n), np.zeros((n, n))
     for attempt in range(attempts[0], attempts[1]):
         if attempt == 0 and start.shape[0] == n:
             trial[:] = start
         else:
             likeliest_start(problem, table, attempt * TRIES, trial)
-        here = maximise_softly_first(problem, trial, its_root)
-        again = attempt > 0 and abs(here - height) < SAME
-        if here > height:
-            height = here
-            p[:] = trial
-            root[:] = its_root
-        if height > -math.inf and (goodness_of_fit(problem, p).surprise > POOR or again):
-            return Mode(p, root, height), False
-    return Mode(p, root, height), attempts[1] < ATTEMPTS
+        here = maximise_softly_first(problem, trial, root)
+        again = attempt > 0 and abs(here - best.height) < SAME
+        if here > best.height:
+            best = Mode(trial.copy(), root.copy(), here)
+        possible = best.height > -math.inf
+        if possible and (goodness_of_fit(problem, best.p).surprise > POOR or again):
+            return best, False
+    return best, attempts[1] < ATTEMPTS

@@ -199,9 +199,9 @@ class Calibration:
         """
         readings = np.asarray(readings, dtype=np.float64)
         valid = readings <= self.up_to
-        inside = valid & (readings > 0.0)
+        in_range = valid & (readings > 0.0)
         load = np.zeros(readings.shape)
-        load[inside] = np.maximum(self.fit.grams(readings[inside]), 0.0)
+        load[in_range] = np.maximum(self.fit.grams(readings[in_range]), 0.0)
         return Grams(load, valid)
 
     def force_settings(self) -> dict[str, Any]:

@@ -14,7 +14,6 @@ from tactile_graph_pads.calibration.calibration import (
     UNITS,
     Calibration,
     Point,
-    Provenance,
     Quality,
     Units,
 )
@@ -26,6 +25,8 @@ FitKind = Literal["polynomial", "isotonic", "sums", "power"]
 FITS: tuple[str, ...] = get_args(FitKind)
 LEAST_LOADS = {"isotonic": 3, "sums": 3, "power": 3}
 MOST_LINES = 12
+WHERE = "calibration"
+"""What errors name."""
 
 
 def calibrated(
@@ -33,9 +34,6 @@ def calibrated(
     kind: FitKind = "polynomial",
     reading: Literal["volt", "siemens", "counts", "raw"] = "volt",
     order: int = 5,
-    where: str = "calibration",
-    about: str = "",
-    provenance: Provenance | None = None,
     observations: Sequence[Observation] = (),
 ) -> Calibration:
     """Return the calibration of one kind that comes nearest to the points.
@@ -49,10 +47,6 @@ def calibrated(
         What was read.
     order : int
         Of the polynomial.
-    where : str
-        What errors name.
-    about : str
-    provenance : Provenance, optional
     observations : sequence of Observation
         What the points were made from; the fit by sums needs them.
 
@@ -69,18 +63,18 @@ def calibrated(
     load, for the sums. The first three take a group's mean reading for that of its mean load. On
     uneven elements that is biased, as the law between them is curved; the sums are not.
     """
-    _check_number(points, kind, order, where)
+    _check_number(points, kind, order)
     load = np.array([p.load_g for p in points])
     read = np.array([p.reading for p in points])
     fit: Polynomial | Isotonic | PowerLaw
     if kind == "polynomial":
-        fit = fit_polynomial(read, load, order, where)
+        fit = fit_polynomial(read, load, order)
     elif kind == "isotonic":
-        fit = fit_isotonic(read, load, np.array([float(p.placements) for p in points]), where)
+        fit = fit_isotonic(read, load, np.array([float(p.placements) for p in points]))
     elif kind == "sums":
-        fit = fit_sums(observations, read, where)
+        fit = fit_sums(observations, read)
     else:
-        fit = fit_power(read, load, where)
+        fit = fit_power(read, load)
     return Calibration(
         format=FORMAT,
         reading=reading,
@@ -89,31 +83,26 @@ def calibrated(
         up_to=fit.points[-1][0] if isinstance(fit, Isotonic) else float(read.max()),
         quality=quality_of(fitted_g(fit, points, observations if kind == "sums" else ()), load),
         points=tuple(points),
-        about=about,
         units=Units(UNITS[reading]),
-        provenance=provenance or Provenance(),
     )
 
 
-def _check_number(points: Sequence[Point], kind: FitKind, order: int, where: str) -> None:
+def _check_number(points: Sequence[Point], kind: FitKind, order: int) -> None:
     needed = order + 1 if kind == "polynomial" else LEAST_LOADS[kind]
     if len(points) < needed:
         what = f"a polynomial of order {order}" if kind == "polynomial" else f"the fit {kind}"
         raise DataError(
-            where, f"too few loads: {what} needs {needed} different ones, got {len(points)}"
+            WHERE, f"too few loads: {what} needs {needed} different ones, got {len(points)}"
         )
 
 
-def fit_polynomial(
-    reading: Array, load_g: Array, order: int, where: str = "calibration"
-) -> Polynomial:
+def fit_polynomial(reading: Array, load_g: Array, order: int) -> Polynomial:
     """Return grams as a polynomial of the reading, through (0, 0).
 
     Parameters
     ----------
     reading, load_g : ndarray, shape (n,)
     order : int
-    where : str
 
     Raises
     ------
@@ -128,7 +117,7 @@ def fit_polynomial(
     falling = fine[slope < 0.0]
     if falling.size:
         raise DataError(
-            where,
+            WHERE,
             f"not monotone: the polynomial of order {order} falls between readings "
             f"{falling[0] * top:.4g} and {falling[-1] * top:.4g}, so one reading there would mean "
             "several loads; take fewer orders, other loads, or the isotonic fit",
@@ -137,16 +126,13 @@ def fit_polynomial(
     return Polynomial("polynomial", (0.0, *map(float, coefficients)))
 
 
-def fit_isotonic(
-    reading: Array, load_g: Array, weights: Array, where: str = "calibration"
-) -> Isotonic:
+def fit_isotonic(reading: Array, load_g: Array, weights: Array) -> Isotonic:
     """Return the straight lines through the readings nearest to these that do not fall.
 
     Parameters
     ----------
     reading, load_g, weights : ndarray, shape (n,)
         By rising load.
-    where : str
 
     Raises
     ------
@@ -167,13 +153,11 @@ def fit_isotonic(
             w = w0 + w1
             blocks.append(((r0 * w0 + r1 * w1) / w, (g0 * w0 + g1 * w1) / w, w))
     if len(blocks) < 2:
-        raise DataError(where, "not monotone: the readings do not rise with the loads at all")
+        raise DataError(WHERE, "not monotone: the readings do not rise with the loads at all")
     return Isotonic("isotonic", ((0.0, 0.0), *((r, g) for r, g, _ in blocks)))
 
 
-def fit_sums(
-    observations: Sequence[Observation], reading: Array, where: str = "calibration"
-) -> Isotonic:
+def fit_sums(observations: Sequence[Observation], reading: Array) -> Isotonic:
     """Return rising straight lines whose grams, summed over each group, come nearest its weight.
 
     Parameters
@@ -181,7 +165,6 @@ def fit_sums(
     observations : sequence of Observation
     reading : ndarray, shape (n,)
         Mean reading of each load: where lines may meet, besides the largest single reading.
-    where : str
 
     Raises
     ------
@@ -211,17 +194,16 @@ def fit_sums(
     found = nnls(np.array(rises), np.ones(len(rises)))[0]
     grams = np.append(0.0, np.cumsum(found))
     if grams[-1] <= 0.0:
-        raise DataError(where, "not monotone: no rising curve explains these loads")
+        raise DataError(WHERE, "not monotone: no rising curve explains these loads")
     return Isotonic("isotonic", tuple(zip(nodes.tolist(), grams.tolist(), strict=True)))
 
 
-def fit_power(reading: Array, load_g: Array, where: str = "calibration") -> PowerLaw:
+def fit_power(reading: Array, load_g: Array) -> PowerLaw:
     """Return grams as a power of the reading.
 
     Parameters
     ----------
     reading, load_g : ndarray, shape (n,)
-    where : str
 
     Raises
     ------
@@ -231,7 +213,7 @@ def fit_power(reading: Array, load_g: Array, where: str = "calibration") -> Powe
     unit = 1e-6 if reading.max() < 1e-2 else 1.0
     exponent, log_scale = np.polyfit(np.log(reading / unit), np.log(load_g), 1)
     if exponent <= 0.0:
-        raise DataError(where, f"not monotone: the loads go with reading^{exponent:.3g}, falling")
+        raise DataError(WHERE, f"not monotone: the loads go with reading^{exponent:.3g}, falling")
     return PowerLaw("power", float(np.exp(log_scale)), float(exponent), unit)
 
 

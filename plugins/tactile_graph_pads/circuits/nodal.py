@@ -6,7 +6,7 @@ Works in any kind of number: with `fractions.Fraction` its answers are exact.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 
 def node_voltages(
@@ -58,6 +58,16 @@ def _star_to_mesh(weight: list[dict[int, Any]], k: int, star: dict[int, Any], to
                 weight[a][b] = weight[a].get(b, 0 * total) + g_a * g_b / total
 
 
+class _Scan(NamedTuple):
+    """A circuit and the conductances it scans; see `measured_ratio`."""
+
+    kind: str
+    siemens: Sequence[Sequence[Any]]
+    bias_ohm: Any
+    driver_ohm: Any
+    mux_ohm: Any
+
+
 def measured_ratio(kind: str, siemens: Sequence[Sequence[Any]], bias_ohm: Any, driver_ohm: Any,
                    mux_ohm: Any) -> list[list[Any]]:  # fmt: skip
     """Return what a scan measures in shares of the supply, one network solved per element.
@@ -71,14 +81,14 @@ def measured_ratio(kind: str, siemens: Sequence[Sequence[Any]], bias_ohm: Any, d
     bias_ohm, driver_ohm, mux_ohm : number
         As the circuits take them; ``mux_ohm`` does not apply to ``feedback``.
     """
+    scan = _Scan(kind, siemens, bias_ohm, driver_ohm, mux_ohm)
     rows, columns = len(siemens), len(siemens[0])
-    return [
-        [_one(kind, siemens, i, j, bias_ohm, driver_ohm, mux_ohm) for j in range(columns)]
-        for i in range(rows)
-    ]
+    return [[_one(scan, i, j) for j in range(columns)] for i in range(rows)]
 
 
-def _one(kind: str, siemens: Any, i: int, j: int, bias: Any, driver: Any, mux: Any) -> Any:
+def _one(scan: _Scan, i: int, j: int) -> Any:
+    """Return what is measured at row i and column j."""
+    kind, siemens, bias, driver, mux = scan
     rows, columns = len(siemens), len(siemens[0])
     n = rows + columns
     ground, supply, tap = n, n + 1, n + 2

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 if TYPE_CHECKING:
-    from tactile_graph_pads.calibration.calibration import Calibration, Origin
+    from tactile_graph_pads.calibration.calibration import Calibration, Origin, Provenance
     from tactile_graph_pads.calibration.groups import GroupReader
     from tactile_graph_pads.calibration.lists import Loaded
     from tactile_graph_pads.calibration.points import Observation
 
+SOURCE = "recording"
 FITS = ("polynomial", "isotonic", "sums", "power")
 
 
@@ -54,21 +56,7 @@ class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.option("--about", default="", help="A line for people, kept in the file.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
               help="Draw points, error bars and curve (.png, .svg, .pdf).")  # fmt: skip
-def calibrate(
-    recordings: tuple[str, ...],
-    output: Path | None,
-    loads: Path | None,
-    fit: Any,
-    order: int,
-    group: Any,
-    at: tuple[int, int] | None,
-    pad_name: str | None,
-    decouple: bool,
-    empty: Path | None,
-    full_scale: float | None,
-    about: str,
-    plot: Path | None,
-) -> None:
+def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
     """Fit grams on an element to its reading, from recordings of known loads.
 
     Each FILE=GRAMS is a recording of one weight on a group of neighbouring elements; the weight
@@ -77,63 +65,97 @@ def calibrate(
     """
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
-    from tactile_graph_pads.calibration.calibration import Provenance, write_calibration
+    from tactile_graph_pads.calibration.calibration import write_calibration
     from tactile_graph_pads.calibration.fit import calibrated, fitted_g
     from tactile_graph_pads.calibration.lists import parse_loaded, read_loads
     from tactile_graph_pads.calibration.plot import check_picture, save_calibration_plot
     from tactile_graph_pads.calibration.points import points_of
 
-    if plot is not None:
-        check_picture(plot)
-    if output is not None:
-        check_target("-o", output)
-    given = [*map(parse_loaded, recordings), *(read_loads(loads) if loads else ())]
+    asked = _Options(**options)
+    if asked.plot is not None:
+        check_picture(asked.plot)
+    if asked.output is not None:
+        check_target("-o", asked.output)
+    given = [*map(parse_loaded, recordings), *(read_loads(asked.loads) if asked.loads else ())]
     if not given:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
-    group = None if group == "all" else group
-    reader = _reader(group, at or None, pad_name, decouple, empty, full_scale)
-    seen, origins, quantity, shape = _observe(given, reader)
-    provenance = Provenance(
+    observed = _observe(given, _reader(asked))
+    points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
+    made = replace(
+        calibrated(points, fit, observed.quantity, asked.order, seen),
+        about=asked.about,
+        provenance=_provenance(asked, observed),
+    )
+    _say(made, fitted_g(made.fit, points, seen if fit == "sums" else ()), fit)
+    if asked.output is not None:
+        write_calibration(asked.output, made)
+        click.echo(f"wrote {asked.output}")
+    if asked.plot is not None:
+        save_calibration_plot(asked.plot, made)
+        click.echo(f"wrote {asked.plot}")
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What the command line says, by the names of its options."""
+
+    output: Path | None
+    loads: Path | None
+    fit: Any
+    order: int
+    group: tuple[int, int] | str
+    at: tuple[int, int] | None
+    pad_name: str | None
+    decouple: bool
+    empty: Path | None
+    full_scale: float | None
+    about: str
+    plot: Path | None
+
+    @property
+    def group_shape(self) -> tuple[int, int] | None:
+        """Rows and columns of the loaded group; None for the whole pad."""
+        return None if isinstance(self.group, str) else self.group
+
+
+class _Observed(NamedTuple):
+    """What the recordings hold: observations, where from, of what quantity and shape."""
+
+    seen: list[Observation]
+    origins: list[Origin]
+    quantity: Any
+    shape: tuple[int, int]
+
+
+def _provenance(asked: _Options, observed: _Observed) -> Provenance:
+    from tactile_graph_pads.calibration.calibration import Provenance
+
+    return Provenance(
         made_by=_made_by(),
         made_at=_now(),
         command=("tactile-graph", *sys.argv[1:]),
-        pad=pad_name or "",
-        decoupled=decouple,
-        group=group or shape,
-        recordings=tuple(origins),
+        pad=asked.pad_name or "",
+        decoupled=asked.decouple,
+        group=asked.group_shape or observed.shape,
+        recordings=tuple(observed.origins),
     )
-    points = points_of(seen)
-    made = calibrated(
-        points, fit, quantity, order, about=about, provenance=provenance, observations=seen
-    )
-    _say(made, fitted_g(made.fit, points, seen if fit == "sums" else ()), fit)
-    if output is not None:
-        write_calibration(output, made)
-        click.echo(f"wrote {output}")
-    if plot is not None:
-        save_calibration_plot(plot, made)
-        click.echo(f"wrote {plot}")
 
 
 # -- reading it ------------------------------------------------------------------------------
 
 
-def _reader(
-    group: tuple[int, int] | None,
-    at: tuple[int, int] | None,
-    pad_name: str | None,
-    decouple: bool,
-    empty: Path | None,
-    full_scale: float | None,
-) -> GroupReader:
+def _reader(asked: _Options) -> GroupReader:
     from tactile_graph.errors import UsageError
     from tactile_graph_pads.calibration.groups import GroupReader
     from tactile_graph_pads.pad import load_pad
 
-    if decouple and pad_name is None:
+    if asked.decouple and asked.pad_name is None:
         raise UsageError("--decouple needs --pad: whose circuit is it?")
-    pad = None if pad_name is None else load_pad(pad_name)
-    return GroupReader(group, at, pad, decouple, full_scale, _median(empty))
+    pad = None if asked.pad_name is None else load_pad(asked.pad_name)
+    empty = _median(asked.empty)
+    return GroupReader(
+        asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, empty
+    )
 
 
 def _median(empty: Path | None) -> Any:
@@ -146,23 +168,21 @@ def _median(empty: Path | None) -> Any:
 
 
 def _frames(path: Path) -> tuple[list[Any], Origin]:
+    """Return the frames of a recording, read by whichever plugin offers that source."""
     from tactile_graph.errors import UsageError
+    from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.injected import Report
     from tactile_graph_pads.calibration.calibration import Origin
 
-    try:
-        from tactile_graph_sources.frames_of import frames_of
-    except ModuleNotFoundError as error:
-        raise UsageError(f"recordings need the plugin 'sources': {error}") from error
-    report = Report()
-    frames = list(frames_of(path, report))
+    steps, report = installed(), Report()
+    if not steps.has("steps", SOURCE):
+        raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
+    frames = list(steps.load("steps", SOURCE)(path=path, report=report))
     digest = next(iter(report.digests.values()), "")
     return frames, Origin(path.name, digest, len(frames))
 
 
-def _observe(
-    given: Sequence[Loaded], reader: GroupReader
-) -> tuple[list[Observation], list[Origin], Any, tuple[int, int]]:
+def _observe(given: Sequence[Loaded], reader: GroupReader) -> _Observed:
     from tactile_graph.errors import DataError
 
     seen: list[Observation] = []
@@ -185,7 +205,7 @@ def _observe(
         raise DataError(
             "calibration", f"only readings can be calibrated, these are {quantity} already"
         )
-    return seen, origins, quantity, frames[0].image.shape
+    return _Observed(seen, origins, quantity, frames[0].image.shape)
 
 
 def _read_as(quantity: str, reader: GroupReader) -> str:

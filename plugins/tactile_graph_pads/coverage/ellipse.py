@@ -8,6 +8,7 @@ only six arc tangents a row or column; an element's area is the difference of it
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,9 +93,32 @@ def primitive(x: float, radius: float) -> float:
     return 0.5 * (x * root + radius * radius * angle)
 
 
+class _Conic(NamedTuple):
+    """An ellipse about the origin as the notes of `ellipse_areas` name it; B is its half height.
+
+    ``stretch`` is (A / B)**2.
+    """
+
+    A: float
+    B: float
+    m: float
+    k: float
+    stretch: float
+
+
+class _Strip(NamedTuple):
+    """A vertical strip from x = u to v, and the primitive at both."""
+
+    u: float
+    v: float
+    P0: float
+    P1: float
+
+
 @compiled_later
-def _line(h: float, A: float, B: float, m: float, k: float, stretch: float, line: Area) -> None:
+def _line(h: float, conic: _Conic, line: Area) -> None:
     """Write a horizontal line's height, half length, start, end and the primitive at both."""
+    A, B, m, k, stretch = conic
     line[0], line[1], line[2], line[3] = h, 0.0, A, A
     if -B < h < B:
         half = k * math.sqrt((B - h) * (B + h))
@@ -105,10 +129,10 @@ def _line(h: float, A: float, B: float, m: float, k: float, stretch: float, line
 
 
 @compiled_later
-def _below(
-    line: Area, A: float, B: float, m: float, k: float, u: float, v: float, P0: float, P1: float
-) -> float:
-    """Return the area of the ellipse below a line and between x = u and v."""
+def _below(line: Area, conic: _Conic, strip: _Strip) -> float:
+    """Return the area of the ellipse below a line and within a strip."""
+    A, B, m, k, _ = conic
+    u, v, P0, P1 = strip
     h, s, e = line[0], line[2], line[3]
     if h <= -B:
         return 0.0
@@ -147,7 +171,7 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
     B = math.hypot(a * sin, b * cos)
     m = (a - b) * (a + b) * cos * sin / A**2
     k = a * b / A**2
-    stretch, full = (A / B) ** 2, element_cm**2
+    conic, full = _Conic(A, B, m, k, (A / B) ** 2), element_cm**2
     first = max(math.floor(max((x_cm - A - element_cm) / pitch_cm, -1.0)) + 1, 0)
     last = min(math.ceil(min((x_cm + A) / pitch_cm, float(columns))), columns)
     strips = np.empty((4, columns))  # left, right, and the primitive there
@@ -160,8 +184,8 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
         top = r * pitch_cm - y_cm
         if top + element_cm <= -B or top >= B:
             continue
-        _line(top, A, B, m, k, stretch, low)
-        _line(top + element_cm, A, B, m, k, stretch, high)
+        _line(top, conic, low)
+        _line(top + element_cm, conic, high)
         # elements between both lines' ends are covered whole, the outline being convex
         inner = max(math.ceil((x_cm + max(low[2], high[2])) / pitch_cm), first)
         outer = math.floor((x_cm + min(low[3], high[3]) - element_cm) / pitch_cm) + 1
@@ -172,8 +196,8 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
                 areas[r, c:outer] = full
                 c = outer
                 continue
-            u, v, P0, P1 = strips[0, c], strips[1, c], strips[2, c], strips[3, c]
-            area = _below(high, A, B, m, k, u, v, P0, P1) - _below(low, A, B, m, k, u, v, P0, P1)
+            strip = _Strip(strips[0, c], strips[1, c], strips[2, c], strips[3, c])
+            area = _below(high, conic, strip) - _below(low, conic, strip)
             areas[r, c] = min(max(area, 0.0), full)
             c += 1
     return areas

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -36,18 +36,23 @@ def convert(
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
     from tactile_graph.steps.injected import Report
-    from tactile_graph_sources.frames_of import frames_of
+    from tactile_graph_sources.recording import recording
 
     if target.suffix not in KINDS:
         raise click.UsageError(f"TARGET must end in {', '.join(KINDS)}, got {target.name!r}")
     if target.exists():
         raise click.UsageError(f"{target} is there already")
     check_target("TARGET", target)
-    told = {"rows": rows, "columns": columns, "pitch_cm": pitch_cm, "quantity": quantity}
+    told: dict[str, Any] = {
+        "rows": rows,
+        "columns": columns,
+        "pitch_cm": pitch_cm,
+        "quantity": quantity,
+    }
     report = Report()
     kept = _Kept()
     try:
-        frames = frames_of(source, report, **{k: v for k, v in told.items() if v is not None})
+        frames = recording(path=source, report=report, **told)
         n = _write(target, kept.watch(frames), source)
     except ValueError as error:
         raise UsageError(str(error)) from error

@@ -178,7 +178,7 @@ class BetweenSilences:
 
     def feed(self, units: Units) -> list[Assembled]:
         """Take rows; a silence, or a line that is no data, closes a frame."""
-        out = self._close() if units.opens or len(units.cells) == 0 else []
+        out = self._flush() if units.opens or len(units.cells) == 0 else []
         if len(units.cells) == 0:
             self._open = True
             return out
@@ -192,7 +192,7 @@ class BetweenSilences:
             del self._rows[1:]
         return out
 
-    def _close(self) -> list[Assembled]:
+    def _flush(self) -> list[Assembled]:
         rows, self._rows = self._rows, []
         hurt, self._hurt = self._hurt, False
         if not self._open or (not rows and not hurt):

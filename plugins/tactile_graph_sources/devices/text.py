@@ -54,7 +54,7 @@ class TextFramer:
                 continue
             numbers = self._line(line)
             if numbers is None:
-                self._close(rows, ends, out)
+                self._flush(rows, ends, out)
                 continue
             if not rows:
                 self._claim()
@@ -62,7 +62,7 @@ class TextFramer:
                 self._ever = True
             rows.append(numbers)
             ends.append(self._place)
-        self._close(rows, ends, out)
+        self._flush(rows, ends, out)
         self._bound()
         return out
 
@@ -92,9 +92,9 @@ class TextFramer:
         if self._n_last:
             return f"lines come with {self._n_last} numbers, the preset expects {self.n_numbers}"
         if self._odd:
-            wanted = f"with {self.head.decode()!r}" if self.head else "with a number"
+            expected = f"with {self.head.decode()!r}" if self.head else "with a number"
             got = repr(self._odd).removeprefix("b")
-            return f"a line begins with {got}, the preset expects it to begin {wanted}"
+            return f"a line begins with {got}, the preset expects it to begin {expected}"
         return ""
 
     def _bound(self) -> None:
@@ -104,7 +104,7 @@ class TextFramer:
             self._place += len(self._buffer)
             self._buffer, self._skipping, self._broken = b"", True, True
 
-    def _close(self, rows: list[list[int]], ends: list[int], out: list[Units]) -> None:
+    def _flush(self, rows: list[list[int]], ends: list[int], out: list[Units]) -> None:
         if rows:
             out.append(self._units(rows, ends))
             rows.clear()

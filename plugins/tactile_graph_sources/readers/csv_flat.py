@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,18 @@ _OWN = re.compile(
     r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
 )
 """The comment that a table begins with which the project wrote."""
+
+
+class _Lines(NamedTuple):
+    """How a line becomes a frame.
+
+    ``lead`` counts the columns before the values; ``own`` is what the table says of itself.
+    """
+
+    layout: Layout
+    shape: tuple[int, int]
+    lead: int
+    own: Told
 
 
 def recognises(head: Head) -> bool:
@@ -41,7 +54,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         raise DataError(str(reading.path), layout.trouble)
     lead = max(layout.columns.values(), default=-1) + 1
     own = _own_word(reading.head, layout.width - lead)
-    shape = _shape(reading, own, layout.width - lead)
+    lines = _Lines(layout, _shape(reading, own, layout.width - lead), lead, own)
     reading.report.expect(reading.count_bytes(b"\n"))
     header = layout.header
     for number, line in reading.text():
@@ -54,7 +67,7 @@ def read(reading: Reading) -> Iterator[Frame]:
                 reading.damaged(number, str(error))
             header = False
             continue
-        frame = _frame(reading, layout, number, row, shape, lead, own)
+        frame = _frame(reading, lines, number, row)
         if frame is not None:
             yield frame
 
@@ -83,16 +96,9 @@ def _shape(reading: Reading, own: Told, n_values: int) -> tuple[int, int]:
     return told.shape_of(str(reading.path), n_values)
 
 
-def _frame(
-    reading: Reading,
-    layout: Layout,
-    number: int,
-    row: list[float],
-    shape: tuple[int, int],
-    lead: int,
-    own: Told,
-) -> Frame | None:
+def _frame(reading: Reading, lines: _Lines, number: int, row: list[float]) -> Frame | None:
     """Return the frame of one line; None where its number was there before."""
+    layout, shape, lead, own = lines
     if "frame" in layout.columns:
         index = row[layout.columns["frame"]]
         if reading.is_repeat(number, index, f"frame {index:g}"):

@@ -45,8 +45,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     for k in np.argsort(starts):
         mine = order[ends[k - 1] if k else 0 : ends[k]]
         place = (row[mine] - first) * columns + column[mine] - first
-        inside = (row[mine] < rows + first) & (column[mine] < columns + first)
-        kept = _first_of_each(reading, f"frame {numbers[k]:g}", place, inside, lines[mine])
+        on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
+        kept = _first_of_each(reading, f"frame {numbers[k]:g}", place, on_grid, lines[mine])
         values = np.full(rows * columns, np.nan)
         values[place[kept]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]
@@ -59,15 +59,15 @@ def _first_of_each(
     reading: Reading,
     name: str,
     place: NDArray[np.intp],
-    inside: NDArray[np.bool_],
+    on_grid: NDArray[np.bool_],
     lines: NDArray[np.intp],
 ) -> NDArray[np.intp]:
     """Return which cells of a frame are kept: those on the pad, and the first of each place."""
-    if not inside.all():
-        stray = int(np.flatnonzero(~inside)[0])
-        n = int(np.count_nonzero(~inside))
+    if not on_grid.all():
+        stray = int(np.flatnonzero(~on_grid)[0])
+        n = int(np.count_nonzero(~on_grid))
         reading.damaged(int(lines[stray]), f"{name}: {n} cells outside the told shape")
-    candidates = np.flatnonzero(inside)
+    candidates = np.flatnonzero(on_grid)
     _, first = np.unique(place[candidates], return_index=True)
     if len(first) < len(candidates):
         again = int(np.setdiff1d(np.arange(len(candidates)), first)[0])

@@ -49,13 +49,13 @@ def read(reading: Reading) -> Iterator[Frame]:
             continue
         label = FRAME_LINE.fullmatch(line)
         if label or blanks >= layout.blank_run or (endless and matrix.n_lines == layout.rows):
-            yield from _close(reading, layout, matrix)
+            yield from _flush(reading, layout, matrix)
             matrix = _Matrix(index=int(label[1]) if label else None)
         blanks = 0
         if not label and not is_comment(line) and not header:
             _take(layout, matrix, number, line)
         header = header and is_comment(line)
-    yield from _close(reading, layout, matrix)
+    yield from _flush(reading, layout, matrix)
 
 
 def _take(layout: Layout, matrix: _Matrix, number: int, line: str) -> None:
@@ -70,7 +70,7 @@ def _take(layout: Layout, matrix: _Matrix, number: int, line: str) -> None:
             matrix.rows.append(row)
 
 
-def _close(reading: Reading, layout: Layout, matrix: _Matrix) -> Iterator[Frame]:
+def _flush(reading: Reading, layout: Layout, matrix: _Matrix) -> Iterator[Frame]:
     if not matrix.n_lines:
         return
     if matrix.n_lines != layout.rows and not matrix.wrong:

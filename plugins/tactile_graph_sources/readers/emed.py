@@ -76,9 +76,9 @@ def read(reading: Reading) -> Iterator[Frame]:
         else:
             _body(reading, state, number, line)
         if state.pages and state.number not in (None, state.picture):
-            yield from _close(reading, state)
+            yield from _flush(reading, state)
     _end_page(reading, state)
-    yield from _close(reading, state)
+    yield from _flush(reading, state)
 
 
 def _header(reading: Reading, state: _State, number: int, line: str) -> None:
@@ -161,7 +161,7 @@ def _overlap(page: _Page, others: list[_Page]) -> bool:
     return any(rows & set(o.rows) and columns & set(o.columns) for o in others)
 
 
-def _close(reading: Reading, state: _State) -> Iterator[Frame]:
+def _flush(reading: Reading, state: _State) -> Iterator[Frame]:
     pages, state.pages = state.pages, []
     if not pages or state.picture is None:
         return

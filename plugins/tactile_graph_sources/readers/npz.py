@@ -94,13 +94,13 @@ class Archive:
 
 
 def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
-    where, wanted = str(reading.path), reading.told.sensor
-    if wanted:
-        if wanted not in arrays.names:
-            near = did_you_mean(wanted, arrays.names)
-            raise DataError(where, f"no array {wanted!r}, there are {one_of(arrays.names)}{near}")
-        reading.sensors[wanted] = None
-        return arrays.load(wanted), f"array {wanted!r}"
+    where, asked = str(reading.path), reading.told.sensor
+    if asked:
+        if asked not in arrays.names:
+            near = did_you_mean(asked, arrays.names)
+            raise DataError(where, f"no array {asked!r}, there are {one_of(arrays.names)}{near}")
+        reading.sensors[asked] = None
+        return arrays.load(asked), f"array {asked!r}"
     loaded = {name: arrays.load(name) for name in arrays.names}
     stacks = [n for n, a in loaded.items() if a.ndim in (2, 3) and a.dtype.kind in "buif"]
     if len(stacks) == 1:

@@ -70,7 +70,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         text = line.strip()
         start = _FRAME.match(text)
         if start or text.startswith("@@"):
-            yield from _close(reading, header, block)
+            yield from _flush(reading, header, block)
             block = _open(header, number, text, start) if start else None
             if not start:
                 break
@@ -79,7 +79,7 @@ def read(reading: Reading) -> Iterator[Frame]:
                 reading.damaged(number, f"expected a Frame line, got {text[:40]!r}")
             else:
                 block.rows.append((number, text))
-    yield from _close(reading, header, block)
+    yield from _flush(reading, header, block)
 
 
 def _header(reading: Reading, keys: dict[str, str]) -> _Header:
@@ -118,7 +118,7 @@ def _open(header: _Header, line: int, title: str, start: re.Match[str]) -> _Bloc
     return _Block(line, number, title, time_s)
 
 
-def _close(reading: Reading, header: _Header, block: _Block | None) -> Iterator[Frame]:
+def _flush(reading: Reading, header: _Header, block: _Block | None) -> Iterator[Frame]:
     if block is None:
         return
     name = f"frame {block.number}"

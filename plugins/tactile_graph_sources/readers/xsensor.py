@@ -46,7 +46,6 @@ class _State:
     frame: int | None = None
     time_s: float | None = None
     started_s: float | None = None
-    days: int = 0
     units: str = ""
     sensor: _Sensor | None = None
     in_cells: bool = False
@@ -68,11 +67,11 @@ def read(reading: Reading) -> Iterator[Frame]:
             value = value.strip(separator + ' "')
             key = key.strip().strip('"')
             if key in ("FRAME", "SENSOR", "GROUP"):
-                yield from _close(reading, dialect, state)
+                yield from _flush(reading, dialect, state)
             _keyed(reading, state, number, key, value)
         elif state.in_cells and state.sensor is not None and line.strip(separator + " \t"):
             state.sensor.rows.append((number, line))
-    yield from _close(reading, dialect, state)
+    yield from _flush(reading, dialect, state)
 
 
 def _separator(head: Head) -> str:
@@ -117,7 +116,7 @@ def _time(state: _State, text: str) -> float | None:
     return elapsed if elapsed >= 0.0 else elapsed + _DAY_S  # the recording went past midnight
 
 
-def _close(reading: Reading, dialect: Dialect, state: _State) -> Iterator[Frame]:
+def _flush(reading: Reading, dialect: Dialect, state: _State) -> Iterator[Frame]:
     """Yield the frame of the sensor block that ends here, if it is whole and wanted."""
     sensor, state.sensor, was_in_cells = state.sensor, None, state.in_cells
     state.in_cells = False

@@ -11,9 +11,6 @@ from numpy.typing import NDArray
 Values = NDArray[np.float64]
 Place = tuple[Fraction, Fraction]
 
-ULPS = 8.0
-"""How far a corner may stick out that a hull may leave out, as the hulls promise by default."""
-
 
 def hull_error(xy: Values, corners: Values) -> tuple[float, str]:
     """Return how far a point lies outside the polygon, in cm, and what is wrong with it otherwise.

@@ -18,11 +18,6 @@ class Summary:
     counts: dict[Outcome, int]
     worst: Row | None
 
-    @property
-    def n_cases(self) -> int:
-        """All cases."""
-        return sum(self.counts.values())
-
 
 def summaries(rows: Sequence[Row]) -> list[Summary]:
     """Return a summary of each step, in the order of the rows."""

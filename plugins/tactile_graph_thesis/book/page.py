@@ -52,8 +52,6 @@ def _how(how: Mapping[str, str]) -> str:
 
 
 def _summary(found: Sequence[Outcome]) -> str:
-    told = conclusions(found)
-    holding = sum(f.holds for _, f in told)
     parts = ["<section id=summary><h2>Summary</h2>\n"]
     lines = table_lines(found)
     if lines:
@@ -69,25 +67,28 @@ def _summary(found: Sequence[Outcome]) -> str:
         ]
         heads = ("", "", "numbers", "median of ours / thesis", "thesis' within our range")
         parts.append(_grid(heads, rows, text=2))
-    if told:
-        parts.append(f"<p>{holding} of {len(told)} conclusions come out.")
-        failing = [(o, f) for o, f in told if not f.holds]
-        if failing:
-            parts.append(" These do not:</p>\n<ul>")
-            parts += [
-                f"<li>{_link(o.item.id, o.item.name)}: {escape(f.thesis)}. "
-                f"Here: {escape(f.found)}.</li>\n"
-                for o, f in failing
-            ]
-            parts.append("</ul>\n")
-        else:
-            parts.append("</p>\n")
+    parts += _counted(conclusions(found))
     failed = [o for o in found if o.made is None]
     if failed:
         parts.append("<p class=failed>Could not be made:</p>\n<ul>")
         parts += [f"<li>{_link(o.item.id, o.item.name)}: {escape(o.error)}</li>\n" for o in failed]
         parts.append("</ul>\n")
     return "".join(parts) + "</section>\n"
+
+
+def _counted(told: Sequence[tuple[Outcome, Finding]]) -> list[str]:
+    """Return how many conclusions come out, and those that do not."""
+    if not told:
+        return []
+    holding = f"<p>{sum(f.holds for _, f in told)} of {len(told)} conclusions come out."
+    failing = [
+        f"<li>{_link(o.item.id, o.item.name)}: {escape(f.thesis)}. Here: {escape(f.found)}.</li>\n"
+        for o, f in told
+        if not f.holds
+    ]
+    if not failing:
+        return [holding, "</p>\n"]
+    return [holding, " These do not:</p>\n<ul>", *failing, "</ul>\n"]
 
 
 def _contents(found: Sequence[Outcome]) -> str:

@@ -9,10 +9,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 130
+UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
 def pictures(figure: Figure, kinds: tuple[str, ...] = ("svg", "png")) -> dict[str, bytes]:
-    """Return a figure as SVG and PNG.
+    """Return a figure as SVG and PNG, or other kinds.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def pictures(figure: Figure, kinds: tuple[str, ...] = ("svg", "png")) -> dict[st
     for kind in kinds:
         data = io.BytesIO()
         with mpl.rc_context({"svg.hashsalt": "tactile-graph"}):
-            metadata = {"Date": None} if kind == "svg" else None
+            metadata = UNDATED.get(kind)
             figure.savefig(data, format=kind, dpi=DPI, metadata=metadata)
         made[kind] = data.getvalue()
     return made

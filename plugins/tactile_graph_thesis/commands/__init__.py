@@ -1,1 +1,1 @@
-"""Commands about pads: calibrating one, and the studies of the thesis' chapter on its own."""
+"""The command ``reproduce`` and what it shows."""

@@ -1,18 +1,21 @@
-"""``tactile-graph reproduce``: the thesis' tables and figures, ours beside the thesis'."""
+"""``tactile-graph reproduce``: the thesis' tables, figures and studies, ours beside the thesis'."""
 
 from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph_thesis.commands.targets import BOOK, STDOUT, Targets
+
 if TYPE_CHECKING:
+    from tactile_graph_thesis.item import Item
     from tactile_graph_thesis.making import Outcome
     from tactile_graph_thesis.work import Work
 
-BOOK = "book.html"
+FOLDER = "thesis-book"
 
 
 @click.command()
@@ -21,11 +24,18 @@ BOOK = "book.html"
     "-o",
     "--output",
     type=click.Path(file_okay=False, path_type=Path),
-    default=Path("thesis-book"),
-    show_default=True,
     metavar="DIR",
-    help="Folder of the files; made if it is not there.",
+    help="Folder of the files; made if it is not there.  "
+    f"[default: {FOLDER}, if neither --csv, --plot nor --show-only is given]",
 )
+@click.option("--csv", metavar="FILE.csv", help="The table of one item; - for stdout.")
+@click.option(
+    "--plot",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The figure of one item (.png, .svg, .pdf).",
+)
+@click.option("--show-only", is_flag=True, help="Write no files.")
+@click.option("--pad", default="thesis", show_default=True, help="Name or YAML file.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True)
 @click.option(
     "--readings",
@@ -34,72 +44,75 @@ BOOK = "book.html"
     help="Of each object, for the tables of errors.  [default: 500]",
 )
 @click.option("--quick", is_flag=True, help="Fewer readings, pads and levels: a first look.")
-@click.pass_context
-def reproduce(
-    ctx: click.Context,
-    names: tuple[str, ...],
-    output: Path,
-    seed: int,
-    readings: int | None,
-    quick: bool,
-) -> None:
-    """Make tables and figures of the thesis again; without an ID, list them.
+@click.option("--strict", is_flag=True, help="Exit with 1 also if a conclusion does not come out.")
+def reproduce(names: tuple[str, ...], **given: Any) -> None:
+    """Make tables, figures and studies of the thesis again; without an ID, list them.
 
-    4.5 is both the table and the figure of that number, table-4.5 only the one; 'all' makes the
-    book: one HTML page with everything in it. Figures go into DIR as PNG and SVG, tables as CSV.
+    4.5 is both the table and the figure of that number, table-4.5 only the one; a study has a
+    name, such as weight-area; 'all' makes the book: one HTML page with everything in it. Figures
+    go into DIR as PNG and SVG, tables as CSV.
 
     Ours stands beside the thesis' number with the ratio; conclusions of the thesis are checked.
     The exit code is 1 if something could not be made.
     """
     from tactile_graph.compiled import warm_up
     from tactile_graph_thesis.catalogue import chosen
-    from tactile_graph_thesis.commands.showing import Showing, list_items, show_end
-    from tactile_graph_thesis.making import outcomes
-    from tactile_graph_thesis.work import QUICK_READINGS, READINGS, Work
+    from tactile_graph_thesis.commands.showing import list_items
 
     if not names:
         list_items()
         return
-    wanted = chosen(names)
-    work = Work(seed, readings or (QUICK_READINGS if quick else READINGS), quick)
-    _check(output)
+    items, work, targets = chosen(names), _work(given), _targets(given)
+    targets.check(items)
     warm_up()
+    found = _made(items, work, targets, book="all" in names)
+    failed = any(o.made is None for o in found)
+    missed = any(not f.holds for o in found if o.made for f in o.made.findings)
+    if failed or (missed and given["strict"]):
+        click.get_current_context().exit(1)
+
+
+def _work(given: dict[str, Any]) -> Work:
+    from tactile_graph_pads.pad import load_pad
+    from tactile_graph_thesis.work import QUICK_READINGS, READINGS, Work
+
+    load_pad(given["pad"])  # one that is not there is told before the work
+    quick = given["quick"]
+    readings = given["readings"] or (QUICK_READINGS if quick else READINGS)
+    return Work(given["seed"], readings, quick, given["pad"])
+
+
+def _targets(given: dict[str, Any]) -> Targets:
+    from tactile_graph.errors import UsageError
+
+    folder, csv, plot = given["output"], given["csv"], given["plot"]
+    named = [o for o, to in (("-o", folder), ("--csv", csv), ("--plot", plot)) if to is not None]
+    if given["show_only"] and named:
+        raise UsageError(f"--show-only writes no files, but {named[0]} names one")
+    if not named and not given["show_only"]:
+        folder = Path(FOLDER)
+    return Targets(folder, csv, plot)
+
+
+def _made(items: list[Item], work: Work, targets: Targets, book: bool) -> list[Outcome]:
+    """Make, show and write items, and the book where all were asked for."""
+    from tactile_graph_thesis.commands.showing import Showing
+    from tactile_graph_thesis.making import outcomes
+
     start = time.perf_counter()
     found: list[Outcome] = []
     pictures: dict[str, bytes] = {}
-    with Showing(wanted, tables="all" not in names) as showing:
-        for outcome in outcomes(wanted, work):
-            pictures |= _written(outcome, output)
+    with Showing(items, work, tables=not book, aside=targets.csv == STDOUT) as showing:
+        for outcome in outcomes(items, work):
+            svg = targets.write(outcome)
+            if svg is not None:
+                pictures[outcome.item.id] = svg
             showing.done(outcome)
             found.append(_without_figure(outcome))
-    _write_book(found, pictures, output, work, names)
-    show_end(found, output, BOOK if "all" in names else None, time.perf_counter() - start)
-    if any(o.made is None for o in found):
-        ctx.exit(1)
-
-
-def _check(output: Path) -> None:
-    """Find out before the work whether the folder can be made and written in."""
-    from tactile_graph.errors import UsageError
-    from tactile_graph.files import check_target
-
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"-o {output}: cannot be made: {error.strerror or error}") from error
-    check_target("-o", output / BOOK)
-
-
-def _written(outcome: Outcome, folder: Path) -> dict[str, bytes]:
-    """Write an item's files and return its picture for the book."""
-    from tactile_graph_thesis.book.files import files_of, write_all
-
-    if outcome.made is None:
-        return {}
-    files = files_of(outcome.item.id, outcome.made)
-    write_all(folder, files)
-    svg = files.get(f"{outcome.item.id}.svg")
-    return {} if svg is None else {outcome.item.id: svg}
+    if book and targets.folder is not None:
+        _write_book(found, pictures, targets.folder, work)
+    showing.end(found, targets.written(book), time.perf_counter() - start, book)
+    return found
 
 
 def _without_figure(outcome: Outcome) -> Outcome:
@@ -111,23 +124,16 @@ def _without_figure(outcome: Outcome) -> Outcome:
     return replace(outcome, made=replace(outcome.made, figure=None))
 
 
-def _write_book(
-    found: list[Outcome],
-    pictures: dict[str, bytes],
-    folder: Path,
-    work: Work,
-    names: tuple[str, ...],
-) -> None:
-    """Write what is about all items together, where all were asked for."""
+def _write_book(found: list[Outcome], pictures: dict[str, bytes], folder: Path, work: Work) -> None:
+    """Write what is about all items together."""
     from tactile_graph_thesis.book.files import compared_csv, write_all
     from tactile_graph_thesis.book.page import page
 
-    if "all" in names:
-        files = {
-            BOOK: page(found, pictures, made_how(work)).encode(),
-            "compared.csv": compared_csv(found).encode(),
-        }
-        write_all(folder, files)
+    files = {
+        BOOK: page(found, pictures, made_how(work)).encode(),
+        "compared.csv": compared_csv(found).encode(),
+    }
+    write_all(folder, files)
 
 
 def made_how(work: Work) -> dict[str, str]:
@@ -140,14 +146,14 @@ def made_how(work: Work) -> dict[str, str]:
     import platform
     from importlib.metadata import version
 
-    from tactile_graph.compiled import have_compiler
+    from tactile_graph_thesis.work import PAD
 
     settings = f"--seed {work.seed} --readings {work.readings}" + " --quick" * work.quick
-    packages = ["tactile-graph", "numpy", "scipy", "scikit-image", "matplotlib"]
-    packages += ["numba"] * have_compiler()
+    settings += f" --pad {work.pad_name}" if work.pad_name != PAD else ""
+    packages = ["tactile-graph", "numpy", "scipy", "scikit-image", "matplotlib", "numba"]
     return {
         "command": f"tactile-graph reproduce all {settings}",
-        "pad": "thesis",
+        "pad": work.pad_name,
         "readings": f"{work.readings} of each object, in groups of {work.group}",
         "versions": ", ".join(
             [f"Python {platform.python_version()}", *(f"{p} {version(p)}" for p in packages)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate
-from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +12,11 @@ from tactile_graph_thesis.book.summary import conclusions, table_lines
 from tactile_graph_thesis.book.text import number
 
 if TYPE_CHECKING:
-    from tactile_graph_thesis.item import Item, Made
+    from tactile_graph_thesis.item import Item, Made, Table
     from tactile_graph_thesis.making import Outcome
+    from tactile_graph_thesis.work import Work
 
-MOST_ROWS, MOST_COLUMNS = 24, 12
+MOST_ROWS = 24
 GAP = 2
 """Blanks between two columns."""
 
@@ -31,12 +31,12 @@ def _grid(*heads: str, text: int = 1) -> Any:
 
 
 def list_items() -> None:
-    """Print every item with its title."""
+    """Print every item with the name of its study and its title."""
     from tactile_graph_thesis.catalogue import items
 
-    grid = _grid("", "", text=2)
+    grid = _grid("", "", "", text=3)
     for item in items():
-        grid.add_row(item.id, item.title)
+        grid.add_row(item.id, item.study, item.title)
     console().print(grid)
 
 
@@ -46,12 +46,17 @@ class Showing:
     Parameters
     ----------
     items : sequence of Item
+    work : Work
+        What they are made with.
     tables : bool
         Whether to print each item's numbers; those of the whole book are too many.
+    aside : bool
+        Whether stdout is for a table alone: then everything is said on stderr, the table is not.
     """
 
-    def __init__(self, items: Sequence[Item], tables: bool) -> None:
-        self._items, self._tables, self._n = items, tables, 0
+    def __init__(self, items: Sequence[Item], work: Work, tables: bool, aside: bool) -> None:
+        self._items, self._tables, self._aside, self._n = items, tables, aside, 0
+        self._how = f"pad {work.pad_name}, seed {work.seed}"
         self._say = console(stderr=True)
         self._progress: Any = None
         self._task: Any = None
@@ -103,38 +108,52 @@ class Showing:
         if outcome.made is None:
             self._say.print(f"{outcome.item.name} could not be made: {outcome.error}", style="red")
         elif self._tables:
-            show_item(outcome.item, outcome.made)
+            show_item(outcome.item, outcome.made, self._how, self._aside)
+
+    def end(
+        self, found: Sequence[Outcome], written: Sequence[str], seconds: float, book: bool
+    ) -> None:
+        """Say what was written; of a book, also the tables beside the thesis' in a line each.
+
+        Parameters
+        ----------
+        found : sequence of Outcome
+        written : sequence of str
+            Names of files and folders.
+        seconds : float
+            How long it took.
+        book : bool
+        """
+        say = console(stderr=self._aside)
+        if book:
+            _show_summary(say, found)
+        if written:
+            n = "1 item" if len(found) == 1 else f"{len(found)} items"
+            say.print(f"wrote {', '.join(written)} ({n}, {seconds:.0f} s)", soft_wrap=True)
 
 
-def show_item(item: Item, made: Made) -> None:
+def show_item(item: Item, made: Made, how: str, aside: bool = False) -> None:
     """Print an item's numbers, conclusions, remarks and reasons.
 
     Parameters
     ----------
     item : Item
     made : Made
+    how : str
+        What it was made with.
+    aside : bool
+        Whether to print on stderr, and no table.
     """
     from rich.text import Text
 
-    say = console()
-    say.print(Text.assemble((f"{item.name}  {item.title}", "bold")))
+    say = console(stderr=aside)
+    study = f" ({item.study})" if item.study else ""
+    say.print(Text.assemble((f"{item.name}{study}  {item.title}", "bold"), (f"; {how}", "dim")))
     say.print(item.shows, soft_wrap=True)
     if made.compared:
-        grid = _grid("", "unit", "ours", "5 %", "95 %", "thesis", "ratio", text=2)
-        for c in made.compared:
-            thesis = "–" if c.thesis is None else ("< " if c.limit else "") + f"{c.thesis:g}"
-            grid.add_row(
-                c.what,
-                c.unit,
-                number(c.ours),
-                number(c.low),
-                number(c.high),
-                thesis,
-                number(c.ratio),
-            )
-        say.print(grid)
-    elif made.table is not None:
-        _show_table(say, made)
+        say.print(_compared_grid(made))
+    elif made.table is not None and not aside:
+        _show_table(say, made.table)
     for finding in made.findings:
         mark = ("comes out", "green") if finding.holds else ("DOES NOT COME OUT", "bold red")
         say.print(Text.assemble((finding.thesis, "bold"), ": ", mark), soft_wrap=True)
@@ -145,54 +164,67 @@ def show_item(item: Item, made: Made) -> None:
     say.print()
 
 
-def _show_table(say: Any, made: Made) -> None:
-    assert made.table is not None
-    columns, rows = made.table.columns[:MOST_COLUMNS], made.table.rows
-    step = max(1, -(-len(rows) // MOST_ROWS))
-    cells = [[number(v) if isinstance(v, float) else str(v) for v in row] for row in rows[::step]]
-    heads = [column.replace("_", " ") for column in columns]
+def _compared_grid(made: Made) -> Any:
+    grid = _grid("", "unit", "ours", "5 %", "95 %", "thesis", "ratio", text=2)
+    for c in made.compared:
+        thesis = "–" if c.thesis is None else ("< " if c.limit else "") + f"{c.thesis:g}"
+        between = number(c.low), number(c.high)
+        grid.add_row(c.what, c.unit, number(c.ours), *between, thesis, number(c.ratio))
+    return grid
+
+
+# -- tables ----------------------------------------------------------------------------------
+
+
+def _show_table(say: Any, table: Table) -> None:
+    """Print as many columns as there is room for, and rows from the first to the last."""
+    rows = [[_cell(v) for v in table.rows[k]] for k in _spread(len(table.rows))]
+    heads = [column.replace("_", " ") for column in table.columns]
     # Words of a heading may stand one below the other, but no number is broken.
-    least = [max(map(len, [*head.split(), *(row[k] for row in cells)]))
-             for k, head in enumerate(heads)]  # fmt: skip
-    room = sum(end - GAP <= say.width for end in accumulate(w + GAP for w in least))
-    columns = columns[: max(1, room)]
-    folded = ["\n".join(wrap(h, w)) for h, w in zip(heads, least, strict=True)]
-    grid = _grid(*folded[: len(columns)], text=0)
-    for row in cells:
-        grid.add_row(*row[: len(columns)])
+    least = [
+        max(map(len, [*head.split(), *cells]))
+        for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
+    ]
+    ends = accumulate(width + GAP for width in least)
+    n = max(1, sum(end - GAP <= say.width for end in ends))
+    folded = ["\n".join(wrap(h, w)) for h, w in zip(heads[:n], least, strict=False)]
+    grid = _grid(*folded, text=0)
+    for row in rows:
+        grid.add_row(*row[:n])
     say.print(grid)
-    if step > 1 or len(columns) < len(made.table.columns):
-        shown = f"{len(rows[::step])} of {len(rows)} rows"
-        shown += f" and {len(columns)} of {len(made.table.columns)} columns"
-        say.print(f"{shown}; all are in the CSV file", style="dim", soft_wrap=True)
+    if n < len(heads):
+        gone = ", ".join(table.columns[n:])
+        say.print(f"not shown, for want of width: {gone}", style="dim", soft_wrap=True)
+    if n < len(heads) or len(rows) < len(table.rows):
+        shown = f"{len(rows)} of {len(table.rows)} rows"
+        say.print(f"{shown}; a CSV file has all", style="dim", soft_wrap=True)
 
 
-def show_end(found: Sequence[Outcome], folder: Path, book: str | None, seconds: float) -> None:
-    """Print the tables beside the thesis' in a line each, and where the files are.
+def _spread(n: int) -> list[int]:
+    """Return which rows to show: all, or so many spread evenly from first to last."""
+    if n <= MOST_ROWS:
+        return list(range(n))
+    return [round(k * (n - 1) / (MOST_ROWS - 1)) for k in range(MOST_ROWS)]
 
-    Parameters
-    ----------
-    found : sequence of Outcome
-    folder : Path
-    book : str, optional
-        Name of the book's file.
-    seconds : float
-        How long it took.
-    """
-    say = console()
-    if book is not None:
-        lines = table_lines(found)
-        if lines:
-            grid = _grid("", "", "numbers", "median of ours/thesis", "thesis' in our range", text=2)
-            for x in lines:
-                within = f"{x.within} of {x.with_range}" if x.with_range else "–"
-                grid.add_row(x.name, x.title, str(x.numbers), number(x.median_ratio), within)
-            say.print(grid)
-        told = conclusions(found)
-        holding = sum(f.holds for _, f in told)
-        say.print(f"{holding} of {len(told)} conclusions of the thesis come out")
-        failed = [o.item.name for o in found if o.made is None]
-        if failed:
-            say.print(f"could not be made: {', '.join(failed)}", style="red")
-    where = folder / book if book else folder
-    say.print(f"wrote {where} ({len(found)} items, {seconds:.0f} s)", soft_wrap=True)
+
+def _cell(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+# -- the book --------------------------------------------------------------------------------
+
+
+def _show_summary(say: Any, found: Sequence[Outcome]) -> None:
+    lines = table_lines(found)
+    if lines:
+        grid = _grid("", "", "numbers", "median of ours/thesis", "thesis' in our range", text=2)
+        for x in lines:
+            within = f"{x.within} of {x.with_range}" if x.with_range else "–"
+            grid.add_row(x.name, x.title, str(x.numbers), number(x.median_ratio), within)
+        say.print(grid)
+    told = conclusions(found)
+    holding = sum(f.holds for _, f in told)
+    say.print(f"{holding} of {len(told)} conclusions of the thesis come out")
+    failed = [o.item.name for o in found if o.made is None]
+    if failed:
+        say.print(f"could not be made: {', '.join(failed)}", style="red")

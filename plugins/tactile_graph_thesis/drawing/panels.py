@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 FOUND, TRUE, OTHER = "#d81b60", "#00838f", "#5e35b1"
 """Colours of what was found, of what is true, and of a second thing found."""
+BOUNDARY = "#f9a825"
+"""Colour of boundary points that are drawn over a mask."""
 ON, OFF = "#37474f", "#eceff1"
 _PANEL_IN = 3.1
 MOST_DRAWN = 400

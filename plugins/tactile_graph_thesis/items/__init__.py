@@ -1,1 +1,1 @@
-"""The tables and figures, by chapter and subject."""
+"""Every table, figure and study, by chapter; a file's name says which it makes."""

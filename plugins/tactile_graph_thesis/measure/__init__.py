@@ -1,1 +1,1 @@
-"""What is measured for the tables and figures: errors of pipelines on simulated readings."""
+"""What several items, or the benchmarks, measure: errors of pipelines on simulated readings."""

@@ -1,4 +1,4 @@
-"""Errors of circle pipelines on discs whose place and radius are known: tables 4.3 to 4.5."""
+"""Errors of circle pipelines on discs whose place and radius are known."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from tactile_graph import Frame
 
 Array = NDArray[np.float64]
-PIPELINES = {"table-4.3": "circle-1", "table-4.4": "circle-2", "table-4.5": "circle-3"}
-"""Which pipeline a table of the thesis belongs to."""
 
 
 def circle_errors(frames: Sequence[Frame], runners: Sequence[Any], objects: Sequence[str]) -> Array:
@@ -63,31 +61,3 @@ def _error(circle: Any, true: Any) -> tuple[float, ...]:
         circle.y_cm - true.y_cm,
         circle.radius_cm - true.radius_cm,
     )
-
-
-def grouped(errors: Array, group: int) -> Array:
-    """Return the readings of each object in groups, shape (..., groups, group, 3).
-
-    Parameters
-    ----------
-    errors : ndarray, shape (..., readings, 3)
-    group : int
-        Readings that are left over are left out.
-    """
-    n = errors.shape[-2] // group
-    kept = errors[..., : n * group, :]
-    return kept.reshape(*errors.shape[:-2], n, group, errors.shape[-1])
-
-
-def max_and_average(errors: Array, group: int) -> Array:
-    """Return maximum and average errors as the thesis tabulates them, shape (..., 6).
-
-    Parameters
-    ----------
-    errors : ndarray, shape (..., readings, 3)
-        Absolute errors.
-    group : int
-        The maximum is the mean over groups of so many readings of each group's maximum.
-    """
-    largest, mean = grouped(errors, group).max(axis=-2).mean(axis=-2), errors.mean(axis=-2)
-    return np.stack([largest, mean], axis=-1).reshape(*errors.shape[:-2], 6)

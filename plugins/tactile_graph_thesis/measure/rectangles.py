@@ -1,10 +1,10 @@
-"""The experiments of thesis section 4.3 on the simulated pad: tables 4.7 and 4.8."""
+"""Errors of rectangle pipelines on the two rectangles of table 4.6."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,65 +13,9 @@ if TYPE_CHECKING:
     from tactile_graph import Frame
 
 Array = NDArray[np.float64]
+OBJECTS = ("RECTANGLE I", "RECTANGLE II")
 PITCH_CM, STATED_CELL_CM = 1.3, 1.0
 """The pad's pitch, and what thesis section 4.3.8 calls a pixel."""
-GROUP = 20
-"""Readings of an object whose maximum a table gives: the thesis' choice in section 4.1."""
-QUANTITIES = (("angle", "degrees"), ("length", "cm"), ("breadth", "cm"))
-# Tables 4.7 and 4.8: (maximum, average) of angle, length and breadth.
-THESIS: Mapping[str, Mapping[str, tuple[tuple[float, float], ...]]] = {
-    "rectangle-1": {
-        "RECTANGLE I": ((21.0, 10.6), (4.9, 3.9), (1.9, 1.1)),
-        "RECTANGLE II": ((9.0, 4.8), (3.4, 1.9), (3.4, 1.7)),
-    },
-    "rectangle-2": {
-        "RECTANGLE I": ((21.0, 10.6), (4.9, 3.8), (1.7, 1.0)),
-        "RECTANGLE II": ((9.0, 4.8), (3.3, 1.6), (1.6, 1.3)),
-    },
-}
-OBJECTS = tuple(THESIS["rectangle-1"])
-
-
-class Compared(NamedTuple):
-    """One number of a table beside the thesis'.
-
-    Parameters
-    ----------
-    object : str
-        ``RECTANGLE I`` or ``RECTANGLE II``.
-    quantity, statistic, unit : str
-        Such as ``length``, ``average`` and ``cm``.
-    ours, thesis : float
-    """
-
-    object: str
-    quantity: str
-    statistic: str
-    unit: str
-    ours: float
-    thesis: float
-
-    @property
-    def ratio(self) -> float:
-        """Ours over the thesis'."""
-        return self.ours / self.thesis
-
-
-class ErrorTable(NamedTuple):
-    """A table of the thesis beside ours.
-
-    Parameters
-    ----------
-    rows : tuple of Compared
-    missing : mapping
-        Object -> readings without an answer, which are left out.
-    n : int
-        Readings of each object.
-    """
-
-    rows: tuple[Compared, ...]
-    missing: Mapping[str, int]
-    n: int
 
 
 def rectangle_frames(n: int, seed: int = 0, **source: Any) -> list[Frame]:
@@ -86,7 +30,7 @@ def rectangle_frames(n: int, seed: int = 0, **source: Any) -> list[Frame]:
     """
     from tactile_graph import load
 
-    settings: dict[str, Any] = {"scene": "rectangles", **source, "frames": 2 * n}
+    settings: dict[str, Any] = {"scene": "rectangles", **source, "frames": len(OBJECTS) * n}
     return list(load("rectangle-1").with_source("simulate", **settings).frames(seed))
 
 
@@ -124,10 +68,10 @@ def signed_errors(
         found = result.get("rectangle")
         row: tuple[float, ...] = (math.nan,) * 4
         if found is not None:
-            angle_rad = _angle_rad(result, found)
+            off_degree = angle_error_degree(result, true)
             found = found.corrected if corrected else found
             row = (
-                math.degrees(math.remainder(angle_rad - true.angle_rad, math.pi)),
+                off_degree,
                 found.length_cm * cell_cm / PITCH_CM - true.length_cm,
                 found.breadth_cm * cell_cm / PITCH_CM - true.breadth_cm,
                 math.hypot(found.x_cm - true.x_cm, found.y_cm - true.y_cm),
@@ -136,79 +80,14 @@ def signed_errors(
     return {name: np.array(some).reshape(-1, 4) for name, some in rows.items()}
 
 
-def _angle_rad(result: Any, found: Any) -> float:
-    if "axis" in result:
-        return float(result["axis"].angle_rad)
-    return float(found.angle_rad)
-
-
-def beside_thesis(pipeline: str, errors: Mapping[str, Array]) -> ErrorTable:
-    """Return maximum and average of absolute errors beside the thesis' table.
+def angle_error_degree(result: Any, true: Any) -> float:
+    """Return by how much an angle is off, modulo 180: the axis' where there is one.
 
     Parameters
     ----------
-    pipeline : str
-        ``rectangle-1`` for table 4.7, ``rectangle-2`` for table 4.8.
-    errors : mapping
-        From `signed_errors`.
-
-    Notes
-    -----
-    "Maximum" is the mean over groups of 20 readings of each group's maximum.
+    result : Result
+        With a ``rectangle`` that is there, and perhaps an ``axis``.
+    true : Rectangle
     """
-    rows: list[Compared] = []
-    for name in OBJECTS:
-        for k, (quantity, unit) in enumerate(QUANTITIES):
-            for statistic, ours, thesis in zip(
-                ("maximum", "average"),
-                _maximum_and_average(np.abs(errors[name][:, k])),
-                THESIS[pipeline][name][k],
-                strict=True,
-            ):
-                rows.append(Compared(name, quantity, statistic, unit, ours, thesis))
-    missing = {name: int(np.isnan(errors[name][:, 0]).sum()) for name in OBJECTS}
-    return ErrorTable(tuple(rows), missing, len(errors[OBJECTS[0]]))
-
-
-def _maximum_and_average(off: Array) -> tuple[float, float]:
-    good = off[np.isfinite(off)]
-    if not len(good):
-        return math.nan, math.nan
-    n = max(len(good) // GROUP, 1)
-    largest = [float(part.max()) for part in np.array_split(good, n)]
-    return float(np.mean(largest)), float(good.mean())
-
-
-def table_4_7(n: int = 500, seed: int = 0, cell_cm: float = PITCH_CM) -> ErrorTable:
-    """Return the errors of the first rectangular localisation beside the thesis'.
-
-    Parameters
-    ----------
-    n : int
-        Readings of each rectangle.
-    seed : int
-    cell_cm : float
-        `PITCH_CM`, or `STATED_CELL_CM` to read cells as thesis section 4.3.8 does.
-    """
-    return _table("rectangle-1", n, seed, cell_cm)
-
-
-def table_4_8(n: int = 500, seed: int = 0, cell_cm: float = PITCH_CM) -> ErrorTable:
-    """Return the errors of the second rectangular localisation beside the thesis'.
-
-    Parameters
-    ----------
-    n : int
-        Readings of each rectangle.
-    seed : int
-    cell_cm : float
-        `PITCH_CM`, or `STATED_CELL_CM` to read cells as thesis section 4.3.8 does.
-    """
-    return _table("rectangle-2", n, seed, cell_cm)
-
-
-def _table(pipeline: str, n: int, seed: int, cell_cm: float) -> ErrorTable:
-    from tactile_graph import load
-
-    run = load(pipeline).runner()
-    return beside_thesis(pipeline, signed_errors(run, rectangle_frames(n, seed), cell_cm))
+    found = result["axis"] if "axis" in result else result["rectangle"]
+    return math.degrees(math.remainder(float(found.angle_rad) - true.angle_rad, math.pi))

@@ -38,7 +38,7 @@ outputs: [features]
 """
 
 
-def weighing(kind: str, seed: int = 0) -> Any:
+def weighing(kind: str, seed: int = 0, pad: str = "thesis") -> Any:
     """Return the pipeline that measures discs: ``curve`` as in the thesis, or ``decoupled``.
 
     Parameters
@@ -46,12 +46,14 @@ def weighing(kind: str, seed: int = 0) -> Any:
     kind : "curve" or "decoupled"
     seed : int
         Of the calibration's placements.
+    pad : str
+        On which it is calibrated.
     """
     from tactile_graph import loads
 
     if kind == "decoupled":
         return loads(DECOUPLED_WEIGHING)
-    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed)})
+    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed, pad)})
 
 
 def calibration_curve(seed: int = 0, pad: str = "thesis", groups: int = 9) -> list[list[float]]:

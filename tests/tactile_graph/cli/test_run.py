@@ -11,12 +11,14 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
-from helpers_cli import DISCS, call
+from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, load
 from tactile_graph.cli.live_table import LiveTable
 from tactile_graph.engine.columns import columns_of
@@ -193,17 +195,14 @@ def test_infinity_and_nan_are_null_for_json_has_neither():
     assert cleaned == {"a": [{"b": None, "c": None}]}
 
 
-def test_private_fields_of_records_are_not_written():
-    from dataclasses import dataclass
-
-    from tactile_graph.engine.rows import as_data
-
-    @dataclass
-    class Kept:
-        shown: int = 1
-        _whole: int = 2
-
-    assert as_data(Kept()) == {"shown": 1}
+def test_lines_tell_a_big_array_by_its_shape_and_in_full_by_its_numbers(monkeypatch):
+    monkeypatch.setattr("tactile_graph.engine.rows.MOST_NUMBERS", 23)
+    args = ["run", "discs", "--only", "footprint", "-o", "-"]
+    short, full = (lines(call(*args, *more).stdout)[0] for more in ([], ["--full"]))
+    assert short["outputs"]["footprint"]["values"] == {"shape": [4, 6]}
+    assert full["outputs"]["footprint"]["values"][1] == [True, True, False, False, False, False]
+    without = {k: v for k, v in full["outputs"]["footprint"].items() if k != "values"}
+    assert without.items() <= short["outputs"]["footprint"].items()
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path):
@@ -257,6 +256,30 @@ def test_a_source_that_ends_early_is_told(tmp_path):
     assert "the source ended after 1 of 5 frames" in got.stdout
 
 
+def test_recordings_are_read_by_whatever_step_its_plugin_offers_for_it(tmp_path, monkeypatch):
+    def lines_read(*, lines_of: list[Path] | Path) -> Iterator[Frame]:
+        for text in Path(str(lines_of)).read_text().split():
+            yield Frame.of(np.full((2, 2), float(text)), quantity="volt")
+
+    readers = {"recording": "path", "lines_read": "lines_of"}
+    install(monkeypatch, tmp_path, steps={"lines_read": lines_read}, readers=readers)
+    (tmp_path / "a.txt").write_text("1\n2\n")
+    steps = []
+    for choice in ([], ["--source", "lines_read"]):
+        got = call("run", "loads", "a.txt", *choice, "-o", tmp_path / "out.jsonl")
+        assert got.exit_code == 0, got.stderr
+        meta = json.loads((tmp_path / "out.jsonl.meta.json").read_text())
+        steps.append((meta["source"]["step"], meta["result"]["frames"]))
+    assert steps == [("recording", 2), ("lines_read", 2)]
+
+
+def test_without_a_step_that_reads_recordings_it_is_said(tmp_path, monkeypatch):
+    install(monkeypatch, tmp_path, ("torn", "torn-package", "1", broken_plugin), readers={})
+    got = call("run", "loads", "a.txt")
+    assert got.exit_code == 2
+    assert "no plugin offers a step that reads recordings (plugins failed to load" in got.stderr
+
+
 @pytest.mark.parametrize(
     ("args", "message"),
     [
@@ -285,6 +308,8 @@ def test_a_source_that_ends_early_is_told(tmp_path):
         (["-o", "."], "-o .: is a folder; name a file in it"),
         (["--plot", "strip.gif"], "--plot strip.gif: its name must end in .png, .svg"),
         (["a.csv", "-o", "a.csv"], "-o a.csv: would overwrite the recording it is made from"),
+        (["--full"], "--full: a table holds single numbers only; give -o FILE.jsonl or -o -"),
+        (["--full", "-o", "out.csv"], "--full: CSV holds single numbers only"),
         (["--seed", "-1"], "'--seed'"),
         (["--bogus"], "--bogus"),
     ],

@@ -27,9 +27,10 @@ from helpers_draw import (
     registry,
 )
 from tactile_graph import Ellipse, Image, Points, Polygon, Rectangle, loads
-from tactile_graph.draw.picture import FAILED, cell_edges
+from tactile_graph.api.result import Result
+from tactile_graph.draw.colours import FAILED
+from tactile_graph.draw.display import cell_edges
 from tactile_graph.draw.strip import figure_png, picture_format, save_strip, strip_figure
-from tactile_graph.engine.result import Result
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Mask, TrueObject
 
@@ -362,7 +363,8 @@ def test_a_notebook_shows_a_result_by_its_picture(results) -> None:
 def test_the_rim_of_a_mask_follows_its_cells() -> None:
     values = np.zeros((3, 3), bool)
     values[1, 1] = values[1, 2] = True
-    edges = cell_edges(Mask(values, (2.0, 1.0), (10.0, 5.0)))
+    found = cell_edges(Mask(values, (2.0, 1.0), (10.0, 5.0)))
+    edges = [tuple(map(tuple, e)) for e in found.tolist()]
     assert len(edges) == 6
     assert {(12.0, 6.0), (16.0, 6.0), (16.0, 7.0), (12.0, 7.0)} <= {p for e in edges for p in e}
     assert ((14.0, 6.0), (14.0, 7.0)) not in edges, "no line between two cells that are on"

@@ -10,7 +10,7 @@ import pytest
 from helpers_graphs import CALLS, STEPS, frame, registry
 from tactile_graph import Degenerate, Frame, Image, loads
 from tactile_graph.engine.outcome import DONE, Failed, Skipped
-from tactile_graph.engine.result import NoResult
+from tactile_graph.engine.outcomes import NoResult
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import TimeGap
 

@@ -11,8 +11,8 @@ import pytest
 
 from helpers_graphs import STEPS, registry
 from tactile_graph import Image, Mask, loads
+from tactile_graph.api.pipeline import load
 from tactile_graph.errors import PipelineError, UsageError
-from tactile_graph.pipeline.load import load
 
 
 def pressed(image: Image) -> Mask:

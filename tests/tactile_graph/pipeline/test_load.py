@@ -15,8 +15,8 @@ from annotated_types import Ge, Gt, Len, MultipleOf
 
 from helpers_graphs import STEPS, Count, registry
 from tactile_graph import Frame, Image, Mask, loads
+from tactile_graph.api.pipeline import load
 from tactile_graph.errors import PipelineError, PluginError, UsageError
-from tactile_graph.pipeline.load import load
 from tactile_graph.steps import Grid, Quantity
 
 

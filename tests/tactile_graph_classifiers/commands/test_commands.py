@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from tactile_graph.api.pipeline import load
 from tactile_graph.cli import cli
 from tactile_graph.cli.endings import ending
-from tactile_graph.pipeline.load import load
 from tactile_graph_sources.writers.write_npz import write_npz
 
 DISCS = {"small": (500.0, 3.8), "large": (2500.0, 6.9), "strange": (5000.0, 5.0)}

@@ -1,11 +1,10 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers_filters import ORIGIN, PITCH, drawn, image_of
+from helpers_panel import panel_frames, real_panel_frames
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.contacts.sharpen_contacts import sharpen_contacts
@@ -65,16 +64,10 @@ def test_a_single_cell_is_a_smaller_cell_about_its_middle():
     assert sharpen_contacts(one.contacts, share=0.999, finer=2).contacts[0] is one.contacts[0]
 
 
-def test_on_a_capacitive_panel_the_areas_are_right_in_the_middle_and_none_is_missed():
-    folder = Path(__file__).parents[2].parent / "shared/data/capcontact"
-    if not folder.is_dir():
-        pytest.skip("the CapContact recordings are not here")
-    from tactile_graph.steps import Report
-    from tactile_graph_sources.recording import recording
-
+@pytest.mark.parametrize("real", [True, False], ids=["real", "look-alike"])
+def test_on_a_capacitive_panel_the_areas_are_right_in_the_middle_and_none_is_missed(real, tmp_path):
     ratios = []
-    for path in sorted(folder.glob("*.npz"))[::6]:
-        frame = next(recording(path=path, report=Report()))
+    for frame in real_panel_frames(slice(None, None, 6)) if real else panel_frames(tmp_path):
         got = found(frame.image, level=100.0).contacts
         assert len(got) == len(frame.truth)
         for one in got:

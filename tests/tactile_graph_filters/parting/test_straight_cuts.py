@@ -12,8 +12,10 @@ from tactile_graph_filters.parting.hull_terms import (
     LONG,
     NOTCHES,
     WEAK,
+    Levels,
     hull_terms,
 )
+from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 from tactile_graph_filters.parting.straight_cuts import joined_and_cut
 from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
@@ -31,6 +33,7 @@ SLAB = drawn("""
     ######.####
     ###########
 """)
+LEVELS = Levels(weak=0.5, full=0.5, floor=1e-3)
 
 
 def groups_of(mask, *lefts):
@@ -44,15 +47,15 @@ def odds(mask, at, values=None):
     owner = groups_of(mask, at)
     load = mask.values.astype(float) if values is None else values
     known = np.ones(mask.shape, bool)
-    both = hull_terms(owner, 1, 2, load, known, 0.5, 1e-3)
-    return log_odds(owner, 1, 2, load, known, 0.5, 0.5, 1e-3, both)
+    cells = Partition(owner, load, known)
+    return log_odds(cells, 1, 2, LEVELS, hull_terms(cells, 1, 2, LEVELS))
 
 
 def recut(mask, owner, values=None, **limits):
     load = mask.values.astype(float) if values is None else values
     known = np.ones(mask.shape, bool)
     cut_above, join_below = limits.get("cut_above", 0.0), limits.get("join_below", -1.0)
-    joined_and_cut(owner, load, known, 0.5, 0.5, cut_above, join_below)
+    joined_and_cut(Partition(owner, load, known), 0.5, 0.5, cut_above, join_below)
     return [np.count_nonzero(owner == k) for k in np.unique(owner[owner > 0])]
 
 
@@ -65,7 +68,8 @@ def test_the_terms_of_a_square_with_a_notch_and_a_weak_cell(twin):
     values = np.where(owner == 1, np.e, 0.0)
     values[2, 2] = 0.25
     known = np.ones((5, 5), bool)
-    terms = getattr(hull_terms, twin)(owner, 1, 1, values, known, 0.5, 1e-3)
+    cells = Partition(owner, values, known)
+    terms = getattr(hull_terms, twin)(cells, 1, 1, LEVELS)
     mean = (21 * np.e + 0.25) / 22
     assert terms[CELLS] == 22
     assert terms[LOGS] == pytest.approx(21 + np.log(0.25))
@@ -73,19 +77,19 @@ def test_the_terms_of_a_square_with_a_notch_and_a_weak_cell(twin):
     assert terms[NOTCHES] == 1.0  # the cell held by another is no notch, nor the hole inside
     assert terms[WEAK] == pytest.approx(1 - 0.25 / (0.5 * mean))
     known[0, 2] = False
-    assert getattr(hull_terms, twin)(owner, 1, 1, values, known, 0.5, 1e-3)[NOTCHES] == 0.0
+    assert getattr(hull_terms, twin)(cells, 1, 1, LEVELS)[NOTCHES] == 0.0
 
 
 def test_a_bar_is_as_long_as_its_second_moments_say():
     owner = np.ones((2, 8), np.int32)
-    terms = hull_terms(owner, 1, 1, owner * 1.0, owner > 0, 0.5, 1e-3)
+    terms = hull_terms(Partition(owner, owner * 1.0, owner > 0), 1, 1, LEVELS)
     assert terms[LONG] == pytest.approx(np.log(8 / 2))
 
 
 def test_a_seam_is_as_long_as_what_meets_across_it_is_pressed():
     owner = np.array([[1, 2], [1, 2]], np.int32)
     values = np.array([[1.0, 1.0], [1.0, 0.25]])
-    length, cells, logs = seam(owner, 1, 2, values, 0.5, 1e-3)
+    length, cells, logs = seam(Partition(owner, values, owner > 0), 1, 2, LEVELS)
     assert length == pytest.approx(1.0 + 0.5 + 0.7 * 0.5 + 0.7)
     assert (cells, logs) == (4, pytest.approx(np.log(0.25)))
 
@@ -100,9 +104,8 @@ def test_the_odds_weigh_what_the_terms_say():
     """A square of 4 by 4, even and whole, cut in a row of four and three rows of four."""
     owner = np.ones((4, 4), np.int32)
     owner[0] = 2
-    load, known = np.ones((4, 4)), np.ones((4, 4), bool)
-    both = hull_terms(owner, 1, 2, load, known, 0.5, 1e-3)
-    settings = (owner, 1, 2, load, known, 0.5, 0.5, 1e-3, both)
+    cells = Partition(owner, np.ones((4, 4)), np.ones((4, 4), bool))
+    settings = (cells, 1, 2, LEVELS, hull_terms(cells, 1, 2, LEVELS))
     terms = dict(zip(NAMES, cut_terms(*settings), strict=True))
     assert terms["constant"] == 1.0
     assert terms["hull gap"] == pytest.approx((9 - 6 - 0) / 4)
@@ -164,7 +167,8 @@ def test_compiled_and_plain_agree(scene):
         first = SplitContacts(recut=False)(frame.image, mask).contacts[0]._labels
         owners = [first.copy(), first.copy()]
         for owner, twin in zip(owners, ("loops", "compiled"), strict=True):
-            getattr(joined_and_cut, twin)(owner, values * mask.values, known, 0.5, 0.3, -0.5, -1.0)
+            cells = Partition(owner, values * mask.values, known)
+            getattr(joined_and_cut, twin)(cells, 0.5, 0.3, -0.5, -1.0)
         assert np.array_equal(*owners)
 
 

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_fitters.circle.even_load import OK, even_disc
+from tactile_graph_fitters.circle.even_load import OK, Readings, even_disc
 from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
@@ -138,7 +137,6 @@ def test_wrong_images_are_refused():
         FitCircleLoad()(Image(np.full((4, 4), np.nan), quantity="gram"))
 
 
-@pytest.mark.skipif(not have_compiler(), reason="needs numba")
 @pytest.mark.parametrize("sigma", [0.0, 0.5])
 def test_the_compiled_kernel_finds_the_same(sigma):
     rng = np.random.default_rng(5)
@@ -146,8 +144,8 @@ def test_the_compiled_kernel_finds_the_same(sigma):
     for _ in range(5):
         loads = np.array(loaded(some_disc(rng), rng, sigma).values)
         usable = np.ones(loads.shape, np.bool_)
-        plain = even_disc.reference(loads, usable, grid, 5.0)
-        compiled = even_disc.compiled(loads, usable, grid, 5.0)
+        readings = Readings(loads, usable, grid, 5.0)
+        plain, compiled = even_disc.reference(readings), even_disc.compiled(readings)
         assert compiled[0] == plain[0]
         if plain[0] == OK:
             assert compiled[1:8] == pytest.approx(plain[1:8], rel=1e-6, abs=1e-7)

@@ -10,7 +10,7 @@ from helpers_rectangles import off_rad, points, rectangle_xy, seeds, some_ellips
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points, Rectangle
 from tactile_graph_fitters.ellipse.ellipse_sweep import ellipse_sweep, straight
-from tactile_graph_fitters.ellipse.fit_ellipse_origin import origin_fit, polar
+from tactile_graph_fitters.ellipse.fit_ellipse_origin import Polar, origin_fit, polar
 from tactile_graph_fitters.orientation.orientation import Orientation
 
 
@@ -31,8 +31,8 @@ def test_straight_to_the_axes_that_the_simplex_finds():
         rng = np.random.default_rng(seed)
         xy = some_ellipse(rng).outline_cm(30) + rng.normal(0, 0.2, (30, 2))
         x, y = (xy - xy.mean(axis=0)).T
-        scale, a, b, r, cos2, sin2 = polar(x, y)
-        a, b, error = straight.loops(r, cos2, sin2, a, b)
+        scale, a, b, points = polar(x, y)
+        a, b, error = straight.loops(points, a, b)
         _, first, second, rms, _ = origin_fit(x, y, 1e-8, 1000)
         if a > 0.0:
             assert (scale * a, scale * b) == pytest.approx((first, second), rel=1e-6)
@@ -44,7 +44,7 @@ def test_straight_to_the_axes_that_the_simplex_finds():
 
 def test_it_goes_straight_nowhere_from_far_away():
     r, t = np.ones(12), np.linspace(0, 2 * np.pi, 12)
-    assert straight.loops(r, np.cos(t) ** 2, np.sin(t) ** 2, 30.0, 0.01) == (0.0, 0.0, 0.0)
+    assert straight.loops(Polar(r, np.cos(t) ** 2, np.sin(t) ** 2), 30.0, 0.01) == (0.0, 0.0, 0.0)
 
 
 def test_without_refining_the_angle_is_one_of_the_steps():

@@ -84,10 +84,10 @@ def test_finds_the_minimum_scipy_finds(seed):
 def test_where_the_search_starts_makes_no_difference(times):
     for seed in range(5):
         x, y = np.random.default_rng(seed).normal(0.0, [[4.0], [1.5]], (2, 40))
-        scale, a, b, r, cos2, sin2 = polar(x, y)
-        _, a, b, _, _ = settled = simplex_search(r, cos2, sin2, a, b, 1e-8, 2000)
-        other = simplex_search(r, cos2, sin2, times[0] * a, times[1] * b, 1e-8, 2000)
-        again = simplex_search(r, cos2, sin2, other[1], other[2], 1e-8, 2000)
+        scale, a, b, points = polar(x, y)
+        _, a, b, _, _ = settled = simplex_search(points, a, b, 1e-8, 2000)
+        other = simplex_search(points, times[0] * a, times[1] * b, 1e-8, 2000)
+        again = simplex_search(points, other[1], other[2], 1e-8, 2000)
         assert again[1:3] == pytest.approx(settled[1:3], rel=1e-5)
         assert scale > 0.0
 

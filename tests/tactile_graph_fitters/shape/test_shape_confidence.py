@@ -15,22 +15,22 @@ from tactile_graph_fitters.shape.shape_confidence import (
 
 
 def test_features_are_logarithms_of_length_and_squared_distances_in_cells():
-    misfits = np.array([0.3, 0.2, 0.1, 0.5, 0.4, 0.2, 0.1])
-    found = features(52.0, misfits, 1.3)
+    mean_squares = np.array([0.3, 0.2, 0.1, 0.5, 0.4, 0.2, 0.1])
+    found = features(52.0, mean_squares, 1.3)
     assert found[:2] == pytest.approx([1.0, math.log(2.0)])
-    assert found[2:] == pytest.approx(np.log(misfits / 1.69 + 0.01))
+    assert found[2:] == pytest.approx(np.log(mean_squares / 1.69 + 0.01))
 
 
 def test_a_hull_of_few_corners_is_its_own_polygon_and_what_does_not_fit_is_far_off():
-    misfits = np.array([0.3, np.inf, 0.1, 0.5, 0.002, np.inf, np.inf])
-    found = features(26.0, misfits, 1.0)
+    mean_squares = np.array([0.3, np.inf, 0.1, 0.5, 0.002, np.inf, np.inf])
+    found = features(26.0, mean_squares, 1.0)
     assert found[3] == pytest.approx(math.log(5.01))
     assert found[6] == found[7] == found[8] == pytest.approx(math.log(0.012))
 
 
 def test_only_polygons_of_up_to_six_corners_count():
-    misfits = np.linspace(0.7, 0.1, MOST_CORNERS + 3)
-    assert np.array_equal(features(30.0, misfits, 1.3), features(30.0, misfits[:-2], 1.3))
+    mean_squares = np.linspace(0.7, 0.1, MOST_CORNERS + 3)
+    assert np.array_equal(features(30.0, mean_squares, 1.3), features(30.0, mean_squares[:-2], 1.3))
 
 
 def test_confidences_are_a_logistic_regression_and_sum_to_1():
@@ -43,10 +43,10 @@ def test_confidences_are_a_logistic_regression_and_sum_to_1():
 
 @pytest.mark.parametrize("row", range(3))
 def test_the_nearer_a_shape_the_likelier_it_is(row):
-    misfits = np.full(7, 0.2)
-    before = confidences(features(30.0, misfits, 1.3))[row]
-    misfits[row] = 0.1
-    assert confidences(features(30.0, misfits, 1.3))[row] > before
+    mean_squares = np.full(7, 0.2)
+    before = confidences(features(30.0, mean_squares, 1.3))[row]
+    mean_squares[row] = 0.1
+    assert confidences(features(30.0, mean_squares, 1.3))[row] > before
 
 
 def test_the_weights_are_those_of_every_kind():

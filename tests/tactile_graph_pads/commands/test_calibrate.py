@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 from helpers_calibration import GRAMS, counting_pad, frame, many_files, on_four, one_file
 from tactile_graph.errors import DataError, UsageError
+from tactile_graph.plugins import registry
 from tactile_graph.wires import Frame
 from tactile_graph_pads.calibration.calibration import load_calibration
 from tactile_graph_pads.commands.calibrate import calibrate
@@ -176,3 +177,16 @@ def test_a_group_has_rows_and_columns() -> None:
     result = CliRunner().invoke(calibrate, ["a.npz=1", "--group", "four"])
     assert result.exit_code == 2
     assert "must be ROWSxCOLUMNS or 'all', got 'four'" in result.output
+
+
+def test_without_a_source_of_recordings_it_says_which_plugin_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = one_file(tmp_path / "one.npz")
+    monkeypatch.setenv(registry.ENVIRONMENT, "-sources")
+    monkeypatch.setattr(registry, "_override", None)
+    registry.installed.cache_clear()
+    try:
+        refused(UsageError, "recordings need the step 'recording': .*blocked", given)
+    finally:
+        registry.installed.cache_clear()

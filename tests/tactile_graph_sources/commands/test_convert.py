@@ -12,7 +12,7 @@ from tactile_graph import Frame
 from tactile_graph.cli import cli
 from tactile_graph.steps.injected import Report
 from tactile_graph_sources.commands.convert import convert
-from tactile_graph_sources.frames_of import frames_of
+from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -39,7 +39,7 @@ def test_there_and_back_again_nothing_is_lost(tmp_path: Path, made: list[Frame])
     run(tmp_path / "a.npz", tmp_path / "b.zarr")
     run(tmp_path / "b.zarr", tmp_path / "c.npz")
     for name in ("b.zarr", "c.npz"):
-        read = list(frames_of(tmp_path / name, Report()))
+        read = list(recording(path=tmp_path / name, report=Report()))
         for a, b in zip(made, read, strict=True):
             np.testing.assert_array_equal(a.image.values, b.image.values)
             assert (a.time_s, a.gap, a.image.quantity) == (b.time_s, b.gap, b.image.quantity)
@@ -52,7 +52,7 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
     assert "left out, as a table has no place for it: gaps" in output
     told = ("--rows", 3, "--columns", 5, "--quantity", "volt", "--pitch-cm", 1.3)
     run(tmp_path / "b.csv", tmp_path / "c.zarr", *told)
-    read = list(frames_of(tmp_path / "c.zarr", Report()))
+    read = list(recording(path=tmp_path / "c.zarr", report=Report()))
     for a, b in zip(made, read, strict=True):
         np.testing.assert_array_equal(a.image.values, b.image.values)
         assert a.image.pitch_cm == b.image.pitch_cm

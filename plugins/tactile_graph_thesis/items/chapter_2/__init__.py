@@ -1,0 +1,1 @@
+"""Chapter 2: the pad: converter, bias resistors, footprints, calibration."""

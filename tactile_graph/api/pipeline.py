@@ -1,0 +1,246 @@
+"""``Pipeline``: a graph that runs, draws and varies itself; ``load`` and ``loads`` make one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import cached_property
+from pathlib import Path
+from threading import get_ident
+from typing import TYPE_CHECKING, Any
+
+from tactile_graph.errors import PipelineError, Problem, UsageError
+from tactile_graph.pipeline.graph import FRAME, Graph
+from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
+from tactile_graph.pipeline.resolve import SourceOverride
+from tactile_graph.pipeline.scope import Overrides
+from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.injected import Report
+from tactile_graph.wires.frame import Frame
+
+if TYPE_CHECKING:
+    import networkx
+    import numpy as np
+    from numpy.typing import NDArray
+    from rich.console import RenderableType
+
+    from tactile_graph.api.result import Result
+    from tactile_graph.engine.promises import Promises
+    from tactile_graph.engine.runner import Runner
+
+
+def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline of that name or in that file.
+
+    Parameters
+    ----------
+    name : str or Path
+        A name some plugin offers, or a path ending in ``.yaml`` or ``.yml``.
+    registry : Registry, optional
+        Where steps and names are looked up; the installed plugins if not given.
+
+    Raises
+    ------
+    PipelineError
+        With every problem of the file.
+    UsageError
+        If there is no such pipeline or file.
+    """
+    return Pipeline.of(load_graph(name, registry))
+
+
+def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> Pipeline:
+    """Return the pipeline that YAML text declares.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        The name its errors carry.
+    registry : Registry, optional
+        As in `load`.
+
+    Raises
+    ------
+    PipelineError
+        With every problem of the text.
+    """
+    return Pipeline.of(parse_graph(text, file, registry))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Pipeline(Graph):
+    """A resolved, checked, frozen graph, ready to run. Make one with `tactile_graph.load`."""
+
+    @classmethod
+    def of(cls, graph: Graph) -> Pipeline:
+        """Return the pipeline of a graph."""
+        return cls(**{f.name: getattr(graph, f.name) for f in fields(graph)})
+
+    # -- running -----------------------------------------------------------------------------
+
+    def run(
+        self, frame: Frame | NDArray[np.generic], only: Sequence[str] | None = None, seed: int = 0
+    ) -> Result:
+        """Return the result for one frame; stateful steps start anew.
+
+        Parameters
+        ----------
+        frame : Frame or ndarray, shape (rows, columns)
+            A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
+        only : sequence of str, optional
+            Nodes or ``node.field`` to ask for instead of the pipeline's outputs.
+        seed : int
+            Seed of the steps that take randomness.
+
+        Raises
+        ------
+        RuleError
+            If the frame's quantity, shape or pitch breaks a rule of a step.
+        """
+        result = self._runner(tuple(only or ()), seed)(_as_frame(frame))
+        if self.promises.waiting:
+            self.promises.check(result)
+        return result
+
+    def stream(
+        self,
+        frames: Iterable[Frame | NDArray[np.generic]] | None = None,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+    ) -> Iterator[Result]:
+        """Yield the result of each frame, in order; stateful steps keep their state.
+
+        Parameters
+        ----------
+        frames : iterable of Frame or ndarray, optional
+            The pipeline's own source if not given.
+        only, seed
+            As in `run`.
+        """
+        runner = self.runner(only, seed)
+        for frame in self.frames(seed) if frames is None else frames:
+            result = runner(_as_frame(frame))
+            if self.promises.waiting:
+                self.promises.check(result)
+            yield result
+
+    def runner(self, only: Sequence[str] | None = None, seed: int = 0) -> Runner[Result]:
+        """Return a callable of frames that keeps state, for loops of your own."""
+        from tactile_graph.api.result import Result
+        from tactile_graph.engine.runner import Runner
+
+        return Runner(self, tuple(only or self.outputs), seed, Result)
+
+    def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
+        """Return a fresh runner, or the last one where no step keeps state."""
+        kept: dict[Any, Runner[Result]] = self._kept
+        key = (only, seed, get_ident())  # a runner serves one thread
+        runner = kept.get(key)
+        if runner is None or runner.stateful:
+            runner = kept[key] = self.runner(only, seed)
+            if len(kept) > 16:
+                kept.pop(next(iter(kept)))
+        return runner
+
+    @cached_property
+    def _kept(self) -> dict[Any, Runner[Result]]:
+        return {}
+
+    @cached_property
+    def promises(self) -> Promises:
+        """What the steps promise and have not been seen to keep yet."""
+        from tactile_graph.engine.promises import Promises
+
+        return Promises(self.nodes.values(), self.registry)
+
+    def frames(self, seed: int = 0, report: Report | None = None) -> Iterator[Frame]:
+        """Return the frames of the pipeline's own source.
+
+        Raises
+        ------
+        UsageError
+            If the pipeline declares none.
+        DataError
+            If the source raises what is not for people.
+        """
+        if self.source is None:
+            raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
+        from tactile_graph.engine.sources import open_source
+
+        return open_source(self.source, seed, report or Report())
+
+    # -- variants ----------------------------------------------------------------------------
+
+    def with_settings(self, settings: Mapping[str, Any]) -> Pipeline:
+        """Return the pipeline with some settings replaced, checked like a file.
+
+        Parameters
+        ----------
+        settings : mapping
+            ``{"node.setting": value}``; ``"node/inner.setting"`` inside an embedded pipeline.
+
+        Raises
+        ------
+        PipelineError
+            If a node, a setting or a value is not allowed.
+        """
+        overrides = {k: dict(v) for k, v in self.overrides.items()}
+        for name, value in settings.items():
+            node, dot, setting = name.rpartition(".")
+            if not dot:
+                raise PipelineError([Problem(None, f"setting {name!r}: it is named node.setting")])
+            overrides.setdefault(node, {})[setting] = value
+        return self._again(overrides, self.source_override)
+
+    def with_source(self, step: str, **settings: Any) -> Pipeline:
+        """Return the pipeline with another source; rules about quantities are checked again."""
+        return self._again(self.overrides, (step, settings))
+
+    def _again(self, overrides: Overrides, source: SourceOverride) -> Pipeline:
+        return Pipeline.of(resolve_again(self, overrides, source))
+
+    # -- looking in --------------------------------------------------------------------------
+
+    def graph(self) -> networkx.DiGraph[str]:
+        """Return the graph for networkx: nodes by name, an edge for each wire."""
+        import networkx as nx
+
+        graph: nx.DiGraph[str] = nx.DiGraph(name=self.name)
+        graph.add_node(FRAME, kind="frame")
+        for name, node in self.nodes.items():
+            graph.add_node(name, kind=node.kind.value, step=node.what, output=name in self._asked)
+            for binding in node.inputs:
+                for ref in binding.refs:
+                    graph.add_edge(ref.node, name, port=binding.port.name, kind="data")
+            for ref in node.choices:
+                graph.add_edge(ref.node, name, kind="choice")
+            for ref in node.guard.refs if node.guard else ():
+                if not graph.has_edge(ref.node, name):
+                    graph.add_edge(ref.node, name, kind="guard")
+        return graph
+
+    @cached_property
+    def _asked(self) -> set[str]:
+        return {r.node for r in self.outputs.values()}
+
+    def svg(self) -> str:
+        """Return the graph as SVG text, laid out from left to right."""
+        from tactile_graph.draw.svg import graph_svg
+
+        return graph_svg(self)
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def __rich__(self) -> RenderableType:
+        from tactile_graph.draw.tables import pipeline_table
+
+        return pipeline_table(self)
+
+    def __repr__(self) -> str:
+        return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
+
+
+def _as_frame(frame: Any) -> Frame:
+    return frame if frame.__class__ is Frame else Frame.of(frame)

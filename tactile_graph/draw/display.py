@@ -1,0 +1,247 @@
+"""The display list: what drawing a value shows on the pad, made once, painted in several ways.
+
+`display_list` is the one place that knows the kinds of values. What comes out are plain records
+in cm from the pad's top left corner, x right, y down; `paint_strip` puts them into matplotlib
+axes, `paint_svg` into SVG.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.engine.outcome import Done, Failed, Skipped
+from tactile_graph.engine.rows import scalars
+from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
+
+Role = Literal["found", "true"]
+MOST_NUMBERED = 20
+"""Items of a list that are numbered, at most."""
+_SCALAR = (bool, int, float, str, np.generic)
+
+
+@dataclass(frozen=True)
+class Heat:
+    """An image, its values as colours."""
+
+    image: Image
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A mask, its cells dark where they are on."""
+
+    mask: Mask
+
+
+@dataclass(frozen=True)
+class Rim:
+    """The edges between the cells of a mask that are on and all others.
+
+    ``edges_cm`` has the shape (edges, 2 ends, 2).
+    """
+
+    edges_cm: NDArray[np.float64]
+    role: Role = "found"
+
+
+@dataclass(frozen=True)
+class Dots:
+    """Points; ``xy_cm`` has the shape (points, 2)."""
+
+    xy_cm: NDArray[np.float64]
+    role: Role = "found"
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A closed line through ``xy_cm``, shape (corners, 2), the first not repeated.
+
+    Where it is a circle, ``circle`` is it, for who can draw one exactly.
+    """
+
+    xy_cm: NDArray[np.float64]
+    circle: Circle | None = None
+    role: Role = "found"
+
+
+@dataclass(frozen=True)
+class Cross:
+    """A mark at a place."""
+
+    x_cm: float
+    y_cm: float
+    role: Role = "found"
+
+
+@dataclass(frozen=True)
+class Number:
+    """The number of a list's item, where it lies."""
+
+    x_cm: float
+    y_cm: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Note:
+    """A value without a place on the pad; ``name`` is its field's, ``a.b`` where nested."""
+
+    name: str
+    value: Any
+
+
+Record = Heat | Cells | Rim | Dots | Outline | Cross | Number | Note
+
+
+def display_list(value: Any, role: Role = "found") -> list[Record]:
+    """Return what drawing a value shows, in the order of drawing; empty for an outcome without one.
+
+    Parameters
+    ----------
+    value : object
+        A record of the wires, a plugin's own with an ``outline_cm()``, a view (``provides``) or a
+        place (``x_cm``, ``y_cm``); lists and NamedTuples of these; numbers and texts.
+    role : str
+        Whether it was found or is true.
+    """
+    listing = _Listing(role)
+    listing.add(value, alone=True)
+    return listing.records
+
+
+def truth_list(objects: Iterable[TrueObject]) -> list[Record]:
+    """Return what drawing the true objects of a frame shows."""
+    return [record for thing in objects for record in display_list(thing.shape, "true")]
+
+
+def is_picture(value: Any) -> bool:
+    """Return whether a value has a place on the pad, as against a bare number."""
+    return any(not isinstance(r, Note) for r in display_list(value))
+
+
+def images_in(value: Any) -> list[Image]:
+    """Return the images that drawing a value shows as heat maps."""
+    return [r.image for r in display_list(value) if isinstance(r, Heat)]
+
+
+class _Listing:
+    def __init__(self, role: Role) -> None:
+        self.role: Role = role
+        self.records: list[Record] = []
+
+    def add(self, value: Any, alone: bool) -> None:
+        """Add a value of any kind; a mask that does not stand alone shows as its rim."""
+        if isinstance(value, Frame):
+            self.records.append(Heat(value.image))
+        elif isinstance(value, Image):
+            self.records.append(Heat(value))
+        elif isinstance(value, Mask):
+            self.records.append(Cells(value) if alone else Rim(cell_edges(value), self.role))
+        elif isinstance(value, Points):
+            self.records.append(Dots(value.xy_cm, self.role))
+        elif hasattr(value, "outline_cm"):
+            self._outline(value)
+        elif hasattr(value, "_fields"):
+            self._fields(value)
+        elif isinstance(value, list | tuple):
+            self._items(value)
+        else:
+            self._other(value)
+
+    def _outline(self, value: Any) -> None:
+        with np.errstate(invalid="ignore"):  # of a shape that is nowhere
+            xy_cm = np.asarray(value.outline_cm(), dtype=np.float64).reshape(-1, 2)
+        circle = value if isinstance(value, Circle) else None
+        self.records.append(Outline(xy_cm, circle, self.role))
+        self._cross(value)
+
+    def _cross(self, value: Any) -> bool:
+        """Mark the place a record names, if it names one."""
+        at = place(value)
+        if at is not None:
+            self.records.append(Cross(*at, self.role))
+        return at is not None
+
+    def _fields(self, value: Any) -> None:
+        marked = self._cross(value)
+        for name, field in zip(value._fields, value, strict=True):
+            told = marked and name in ("x_cm", "y_cm")
+            if told or field is None or isinstance(field, Skipped | Failed | Done):
+                continue
+            if isinstance(field, _SCALAR):
+                self.records.append(Note(name, field))
+            else:
+                self.add(field, alone=all(isinstance(r, Note) for r in self.records))
+
+    def _items(self, items: Sequence[Any]) -> None:
+        if not items:
+            self.records.append(Note("", "none"))
+        for number, item in enumerate(items, 1):
+            self.add(item, alone=False)
+            at = _middle(item) if 1 < len(items) <= MOST_NUMBERED else None
+            if at is not None:
+                self.records.append(Number(*at, str(getattr(item, "number", number))))
+
+    def _other(self, value: Any) -> None:
+        for kind in (Mask, Points, Image):
+            seen = view(value, kind)
+            if seen is not None:
+                self.add(seen, alone=False)
+                return
+        self._cross(value)
+        found = scalars("", value) or {"": value}
+        self.records += [Note(name.lstrip("."), v) for name, v in found.items()]
+
+
+def place(value: Any) -> tuple[float, float] | None:
+    """Return the place on the pad that a record names as ``x_cm`` and ``y_cm``, or None."""
+    x, y = getattr(value, "x_cm", None), getattr(value, "y_cm", None)
+    numbers = isinstance(x, int | float) and isinstance(y, int | float)
+    return (float(x), float(y)) if numbers else None  # type: ignore[arg-type]
+
+
+def view(value: Any, kind: type) -> Any:
+    """Return a record's own view as ``kind`` (``provides``), or None."""
+    name = getattr(value, "provides", {}).get(kind)
+    return getattr(value, name) if name else None
+
+
+def _middle(item: Any) -> tuple[float, float] | None:
+    """Return where an item's number belongs."""
+    at = place(item)
+    if at is not None:
+        return at
+    mask = item if isinstance(item, Mask) else view(item, Mask)
+    if mask is not None and mask.values.any():
+        rows, columns = np.nonzero(mask.values)
+        return float(mask.x_cm[columns].mean()), float(mask.y_cm[rows].mean())
+    image = item if isinstance(item, Image) else view(item, Image)
+    if image is not None:
+        return float(image.x_cm.mean()), float(image.y_cm.mean())
+    return None
+
+
+def cell_edges(mask: Mask) -> NDArray[np.float64]:
+    """Return the edges between cells that are on and cells that are not, (edges, 2 ends, 2)."""
+    padded = np.pad(mask.values, 1)
+    rows, columns = np.nonzero(padded[:, 1:] != padded[:, :-1])
+    upright = np.stack([np.stack([columns, rows - 1], 1), np.stack([columns, rows], 1)], 1)
+    rows, columns = np.nonzero(padded[1:] != padded[:-1])
+    level = np.stack([np.stack([columns - 1, rows], 1), np.stack([columns, rows], 1)], 1)
+    corners = np.concatenate([upright, level])
+    return np.asarray(np.array(mask.origin_cm) + corners * np.array(mask.pitch_cm))
+
+
+def printed(value: Any, longest: int) -> str:
+    """Return a bare value, short."""
+    if isinstance(value, bool | np.bool_):
+        return "yes" if value else "no"
+    if isinstance(value, float | np.floating):
+        return f"{value:.4g}"
+    text = str(value)
+    return text if len(text) <= longest else text[: longest - 1] + "…"

@@ -1,0 +1,247 @@
+"""``Graph``: a resolved pipeline as a frozen record of its nodes and what is wired to them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property, partial
+from typing import Any
+
+from tactile_graph.errors import Mark, UsageError
+from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.plain import plain
+from tactile_graph.pipeline.references import ConditionError, resolve_reference
+from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.rules import GridFact, Quantity
+from tactile_graph.steps.signature import Kind, Port, Signature
+from tactile_graph.wires.frame import Frame
+
+FRAME = "frame"
+
+
+class NodeKind(Enum):
+    """What a node does."""
+
+    STEP = "step"
+    FIRST_OF = "first_of"
+    PASS = "pass"
+    """Hands an embedded pipeline's output on."""
+    MAP = "map"
+    """Runs an embedded pipeline over the items of a list."""
+
+
+@dataclass(frozen=True)
+class Binding:
+    """What is wired to a port: one reference, or several for a list port fed item by item.
+
+    Where it ``iterates``, the wire carries a list and the step runs once for each item.
+    """
+
+    port: Port
+    refs: tuple[Ref, ...]
+    collects: bool = False
+    iterates: bool = False
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the loader knows of a node's image before the first frame.
+
+    ``quantity`` is the name of a quantity, or `FRAME` for "that of the frame", or "". With
+    ``of_frame`` it is the frame's, whether the source names it or not: who runs the pipeline on
+    other frames is told.
+    """
+
+    quantity: str = ""
+    grid: GridFact | None = None
+    of_frame: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """One node of a resolved graph."""
+
+    name: str
+    kind: NodeKind
+    output: Any
+    mark: Mark
+    signature: Signature | None = None
+    settings: dict[str, Any] = field(default_factory=dict)
+    inputs: tuple[Binding, ...] = ()
+    choices: tuple[Ref, ...] = ()
+    guard: Guard | None = None
+    each: bool = False
+    inner: Graph | None = None
+    facts: Facts = Facts()
+    key: str = ""
+    callable: Callable[..., Any] | None = None
+
+    @property
+    def stateful(self) -> bool:
+        """Whether the node keeps something from frame to frame."""
+        return self.signature is not None and self.signature.stateful
+
+    @property
+    def is_sink(self) -> bool:
+        """Whether the node gives no value: it writes, shows or sends."""
+        return self.output is type(None) or (self.kind is NodeKind.STEP and self.output is None)
+
+    @property
+    def what(self) -> str:
+        """Step, pipeline or choice, as tables show it."""
+        if self.kind is NodeKind.FIRST_OF:
+            return "first of " + ", ".join(str(c) for c in self.choices)
+        if self.inner is not None:
+            return f"each {self.inner.name}"
+        if self.signature is None:
+            return "pass"
+        return ("each " if self.each else "") + self.signature.name
+
+    def wires(self) -> list[Ref]:
+        """Return every reference the node reads, guard first."""
+        guard = list(self.guard.refs) if self.guard else []
+        return guard + [r for b in self.inputs for r in b.refs] + list(self.choices)
+
+    def bound(self, **injected: Any) -> Callable[..., Any]:
+        """Return the callable of the ports, settings filled in; new state for a stateful step."""
+        signature = self.signature
+        assert signature is not None, f"{self.name} is no step"
+        if signature.kind is not Kind.CLASS:
+            settings = signature.arguments(self.settings)
+            return partial(signature.target, **settings) if settings else signature.target
+        if self.callable is not None and not signature.stateful:
+            return self.callable
+        settings = signature.arguments(self.settings)
+        made: Callable[..., Any] = signature.target(**settings, **injected)
+        return made
+
+    def resolved(self) -> dict[str, Any]:
+        """Return the node as provenance keeps it, every setting spelled out."""
+        data: dict[str, Any] = {}
+        if self.kind is NodeKind.STEP and self.signature is not None:
+            data["step"] = self.signature.name
+        elif self.inner is not None:
+            data["use"] = self.inner.resolved()
+        if self.choices:
+            data["first_of"] = [str(c) for c in self.choices]
+        if self.inputs:
+            data["in"] = {
+                b.port.name: [str(r) for r in b.refs] if b.collects else str(b.refs[0])
+                for b in self.inputs
+            }
+        if self.settings:
+            data["with"] = plain(self.settings)
+        if self.guard is not None:
+            data["when"] = self.guard.text
+        if self.each:
+            data["each"] = True
+        return data
+
+
+def node_key(*parts: object) -> str:
+    """Return a digest that is equal for nodes of equal step, settings, guard and inputs."""
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class FrameRule:
+    """A demand on the frames themselves that is left to check when one comes."""
+
+    node: str
+    port: str
+    step: str
+    quantity: Quantity | None = None
+    rows: int | None = None
+    columns: int | None = None
+    pitch_cm: float | None = None
+    min_rows: int = 1
+    min_columns: int = 1
+    setting: str = ""
+
+
+@dataclass(frozen=True)
+class Source:
+    """The source step a pipeline takes its frames from unless told otherwise."""
+
+    signature: Signature
+    settings: dict[str, Any]
+    mark: Mark
+
+    @property
+    def name(self) -> str:
+        """Name of the source step."""
+        return self.signature.name
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """A resolved, checked, frozen pipeline: plain data, which engine and drawings work on."""
+
+    name: str
+    about: str
+    evolves: str
+    source: Source | None
+    nodes: Mapping[str, Node]
+    outputs: Mapping[str, Ref]
+    file: str
+    text: str
+    frame_rules: tuple[FrameRule, ...] = ()
+    overrides: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    source_override: tuple[str, dict[str, Any]] | None = None
+    registry: Registry | None = None
+
+    @cached_property
+    def types(self) -> dict[str, Any]:
+        """Type of each node's value."""
+        return {FRAME: Frame, **{n: node.output for n, node in self.nodes.items()}}
+
+    def ref(self, text: str) -> Ref:
+        """Return the reference that ``node`` or ``node.field`` spells.
+
+        Raises
+        ------
+        UsageError
+            If there is no such node or field.
+        """
+        if text in self.types:
+            return Ref(text)
+        try:
+            return resolve_reference(tuple(text.split(".")), self.types, [])[0]
+        except ConditionError as error:
+            raise UsageError(f"pipeline {self.name!r}: {error.message}") from None
+
+    def type_of(self, ref: Ref) -> Any:
+        """Return the type of the value at a reference."""
+        return resolve_reference((ref.node, *ref.path), self.types, [])[1]
+
+    @cached_property
+    def key(self) -> str:
+        """Digest that is equal for pipelines that compute the same."""
+        return node_key([(k, self.nodes[r.node].key if r.node in self.nodes else r.node, r.path)
+                         for k, r in self.outputs.items()])  # fmt: skip
+
+    @cached_property
+    def unused(self) -> list[str]:
+        """Nodes that no output needs; they run only when asked for."""
+        needed: set[str] = set()
+        waiting = [r.node for r in self.outputs.values()]
+        while waiting:
+            name = waiting.pop()
+            if name not in needed and name in self.nodes:
+                needed.add(name)
+                waiting += [r.node for r in self.nodes[name].wires()]
+        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
+
+    def resolved(self) -> dict[str, Any]:
+        """Return the graph as plain data with every setting spelled out, as provenance keeps it."""
+        return {
+            "pipeline": self.name,
+            "source": None
+            if self.source is None
+            else {"step": self.source.name, "with": plain(self.source.settings)},
+            "nodes": {name: node.resolved() for name, node in self.nodes.items()},
+            "outputs": {name: str(ref) for name, ref in self.outputs.items()},
+        }

@@ -1,0 +1,92 @@
+"""What drawing a value shows, whoever paints it."""
+
+from __future__ import annotations
+
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, Frame, Image, Mask, Points, Rectangle
+from tactile_graph.draw.display import (
+    Cells,
+    Cross,
+    Dots,
+    Heat,
+    Note,
+    Number,
+    Outline,
+    Rim,
+    display_list,
+    images_in,
+    is_picture,
+    truth_list,
+)  # fmt: skip
+from tactile_graph.engine.outcome import Skipped
+from tactile_graph.wires import TrueObject
+
+ON = Mask(np.ones((1, 2), bool), (2.0, 1.0), (10.0, 5.0))
+IMAGE = Image(np.ones((2, 2)))
+POINTS = Points(np.array([[1.0, 2.0]]))
+
+
+class Both(NamedTuple):
+    mask: Mask
+    score: float
+
+
+class Placed(NamedTuple):
+    x_cm: float
+    y_cm: float
+    mask: Mask
+    kept: Skipped
+
+
+class Seen:
+    provides: ClassVar = {Points: "points"}
+    points = POINTS
+
+
+@pytest.mark.parametrize(
+    ("value", "kinds"),
+    [
+        (Frame(IMAGE), [Heat]),
+        (IMAGE, [Heat]),
+        (ON, [Cells]),
+        ([ON], [Rim]),
+        (POINTS, [Dots]),
+        (Circle(1, 2, 3), [Outline, Cross]),
+        (Both(ON, 2.0), [Cells, Note]),
+        (Placed(1.0, 2.0, ON, Skipped("a", "b")), [Cross, Rim]),
+        (Seen(), [Dots]),
+        ([Circle(1, 2, 3), Circle(4, 5, 6)], [Outline, Cross, Number] * 2),
+        ([], [Note]),
+        (2.5, [Note]),
+    ],
+    ids=lambda v: type(v).__name__,
+)
+def test_every_kind_of_value_is_listed(value: object, kinds: list[type]) -> None:
+    assert [type(r) for r in display_list(value)] == kinds
+
+
+def test_what_is_true_is_marked_so() -> None:
+    true = truth_list([TrueObject(Circle(1, 2, 3)), TrueObject(Rectangle(4, 5, 6, 7, 0.0))])
+    assert [getattr(r, "role", "") for r in true] == ["true"] * 4
+
+
+def test_an_outline_is_in_cm_and_keeps_its_circle() -> None:
+    circle = Circle(1.0, 2.0, 3.0)
+    outline = display_list(circle)[0]
+    assert isinstance(outline, Outline)
+    assert outline.circle is circle
+    np.testing.assert_allclose(np.hypot(*(outline.xy_cm - (1.0, 2.0)).T), 3.0)
+
+
+@pytest.mark.parametrize("value", [3, "a", True, [], [1, 2], (1.0,)])
+def test_bare_values_are_no_picture(value: object) -> None:
+    assert not is_picture(value)
+    assert is_picture([value, IMAGE])
+
+
+def test_the_images_of_a_value_are_those_shown_as_heat() -> None:
+    assert images_in([IMAGE, ON, Frame(IMAGE)]) == [IMAGE, IMAGE]

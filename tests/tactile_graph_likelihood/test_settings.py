@@ -1,0 +1,54 @@
+"""The settings that the steps share: flat in YAML, told in the same words, with their defaults."""
+
+import pytest
+
+from tactile_graph import load, loads
+from tactile_graph.errors import PipelineError
+from tactile_graph.plugins.registry import installed
+
+STEPS = {
+    "footprint_disc": ("partly", 0.15, None),
+    "fit_footprint": ("partly", 0.15, None),
+    "footprint_by_order": ("partly", 0.15, None),
+    "follow_footprint": ("partly", 0.15, None),
+    "choose_shape": ("partly", 0.2, None),
+    "identify_footprint": ("partly", 0.2, None),
+    "fit_footprints": ("whole", None, 1.0),
+}
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_step_takes_the_shared_settings_as_its_own(step):
+    settings = {s.name: s for s in installed().step(step).settings}
+    on_pad, precision, smallest_cm = STEPS[step]
+    assert settings["pad"].default == "thesis"
+    assert settings["on_pad"].default == on_pad
+    assert settings["smallest_cm"].default == smallest_cm
+    assert (settings["precision"].default if "precision" in settings else None) == precision
+
+
+TEXT = """
+pipeline: settings
+nodes:
+  disc: {{step: footprint_disc, in: frame, with: {{{settings}}}}}
+outputs: [disc]
+"""
+
+
+@pytest.mark.parametrize(
+    ("settings", "what"),
+    [
+        ("smallest_cm: 5, largest_cm: 2", "smallest_cm: must be below largest_cm, got 5 and 2"),
+        ("sigma: -1", "sigma: must be > 0"),
+        ("sgima: 1", "unknown setting 'sgima'"),
+    ],
+)
+def test_what_is_wrong_with_them_is_told_with_its_place(settings, what):
+    with pytest.raises(PipelineError, match=what):
+        loads(TEXT.format(settings=settings))
+
+
+def test_a_pipeline_hands_them_on():
+    pipeline = load("circle-likelihood")
+    model = pipeline.nodes["circle"].callable.model
+    assert (model.whole, model.precision) == (True, 0.2)

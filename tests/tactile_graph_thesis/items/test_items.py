@@ -1,0 +1,119 @@
+"""Items made in a tiny version: they come out, with numbers, figures and conclusions."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from tactile_graph_thesis.catalogue import chosen, items
+from tactile_graph_thesis.items.chapter_4.figures_4_22_to_4_28_rectangles import (
+    lone_cells,
+    with_strays,
+)
+from tactile_graph_thesis.making import outcomes
+from tactile_graph_thesis.measure import noise_response
+from tactile_graph_thesis.measure.shown_reading import stages, typical_rectangle
+from tactile_graph_thesis.work import Work
+
+NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
+
+
+@pytest.fixture(scope="module")
+def work() -> Work:
+    return Work(seed=0, readings=20, quick=True)
+
+
+@pytest.mark.parametrize("name", [i.id for i in items() if i.id not in NOISES])
+def test_each_comes_out(name: str, work: Work) -> None:
+    (outcome,) = outcomes(chosen((name,)), work)
+    assert outcome.made is not None, outcome.trace
+    made = outcome.made
+    assert made.figure is not None or made.svg
+    for finding in made.findings:
+        assert isinstance(finding.holds, bool)
+        assert "nan" not in finding.found
+    if made.table is not None:
+        assert all(len(row) == len(made.table.columns) for row in made.table.rows)
+    if made.figure is not None:
+        for axes in made.figure.axes:
+            drawn = axes.lines or axes.images or axes.collections
+            assert drawn or axes.get_label() == "<colorbar>", name
+            assert not drawn or axes.get_xlabel() or axes.get_ylabel() or axes.get_title(), name
+
+
+@pytest.mark.parametrize("name", NOISES)
+def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(noise_response, "QUICK_READINGS", 2)
+    (outcome,) = outcomes(chosen((name,)), Work(readings=20, quick=True))
+    assert outcome.made is not None, outcome.trace
+    assert outcome.made.table is not None
+    assert {row[1] for row in outcome.made.table.rows} >= {
+        "noise on the image",
+        "cells switched on",
+    }
+
+
+@pytest.mark.parametrize("name", ["table-4.3", "table-4.4", "table-4.5", "table-4.7", "table-4.8"])
+def test_tables_stand_beside_the_thesis(name: str, work: Work) -> None:
+    (outcome,) = outcomes(chosen((name,)), work)
+    assert outcome.made is not None
+    compared = outcome.made.compared
+    assert len(compared) == (12 if name in ("table-4.7", "table-4.8") else 18)
+    for largest, average in zip(compared[::2], compared[1::2], strict=True):
+        assert "max" in largest.what
+        assert "avg" in average.what
+        assert largest.ours >= average.ours > 0.0
+        for one in (largest, average):
+            assert one.low is not None
+            assert one.high is not None
+            assert one.low <= one.ours + 1e-9
+            assert one.ours <= one.high + 1e-9
+            assert one.thesis is not None
+
+
+def test_the_convex_hull_betters_the_radius(work: Work) -> None:
+    (outcome,) = outcomes(chosen(("table-4.5",)), work)
+    assert outcome.made is not None
+    finding = outcome.made.findings[0]
+    assert "dramatically" in finding.thesis
+    assert finding.holds
+
+
+def test_the_comparison_is_tried_on_a_footprint_that_has_noise_points(work: Work) -> None:
+    frame = with_strays(typical_rectangle(work), work.seed)
+    result = stages("rectangle-1", frame, work.seed)
+    before, after = lone_cells(result["footprint"]), lone_cells(result["clean"])
+    assert before >= 3
+    assert after < before
+    read = typical_rectangle(work).image.values
+    on = read >= 0.01
+    np.testing.assert_array_equal(frame.image.values[on], read[on])
+
+
+def test_hulls_of_areas_a_fifth_apart_are_not_called_very_similar(work: Work) -> None:
+    (outcome,) = outcomes(chosen(("figure-5.14",)), work)
+    assert outcome.made is not None
+    (finding,) = outcome.made.findings
+    areas = [float(n) for n in re.findall(r"(\d+)(?: and| cm²)", finding.found)]
+    assert len(areas) == 4
+    close = all(0.9 < a / b < 1.0 / 0.9 for a, b in zip(areas[::2], areas[1::2], strict=True))
+    assert finding.holds == close
+
+
+def test_the_seed_decides_everything() -> None:
+    def rows(seed: int) -> object:
+        (outcome,) = outcomes(chosen(("table-4.5",)), Work(seed, 20))
+        assert outcome.made is not None
+        return outcome.made.compared
+
+    assert rows(1) == rows(1) != rows(2)
+
+
+def test_what_an_item_gives_does_not_depend_on_what_was_made_before(work: Work) -> None:
+    (alone,) = outcomes(chosen(("figure-4.3",)), Work(seed=0, readings=20, quick=True))
+    (after,) = outcomes(chosen(("figure-4.3",)), work)
+    assert alone.made is not None
+    assert after.made is not None
+    assert alone.made.compared == after.made.compared
