@@ -122,6 +122,18 @@ def test_what_cannot_be_read_says_why(target, trouble):
     assert summary_of("tg_no_such:x") == ""
 
 
+def test_a_summary_is_read_without_parsing_and_by_parsing_where_code_tells_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    target = "tactile_graph.cli.run:run"
+    quick = summary_of(target)
+    assert quick == "Run PIPELINE, a name or a YAML file, over recordings or another source."
+    assert summary_of("tg_outline:renamed") == "Elsewhere.", "handed on from module to module"
+    assert summary_of("tactile_graph.cli.group:Group").startswith("Commands by name;"), "a class"
+    monkeypatch.setattr("tactile_graph.plugins.outline._compiled_doc", lambda target: "")
+    assert summary_of(target) == quick
+
+
 @pytest.mark.parametrize(
     ("doc", "sentence"),
     [
