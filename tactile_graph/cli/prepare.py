@@ -37,8 +37,8 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
 
+    from tactile_graph.api.pipeline import load
     from tactile_graph.cli.terminal import console
-    from tactile_graph.pipeline.load import load
 
     names = pipelines or tuple(registry.installed().names("pipelines"))
     if not names:
@@ -55,9 +55,9 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
 
 def prepared(name: str) -> str:
     """Compile what a pipeline's first frames need; return what to say of it."""
+    from tactile_graph.api.pipeline import load
     from tactile_graph.compiled import warm_up
     from tactile_graph.errors import TactileGraphError
-    from tactile_graph.pipeline.load import load
 
     start = time.monotonic()
     warm_up()

@@ -7,7 +7,6 @@ from tactile_graph.compiled.kernel import (
     compiled_as_is,
     compiled_later,
     compiled_twin_of,
-    have_compiler,
     mode,
     warm_up,
 )
@@ -19,7 +18,6 @@ __all__ = [
     "compiled_as_is",
     "compiled_later",
     "compiled_twin_of",
-    "have_compiler",
     "mode",
     "warm_up",
 ]

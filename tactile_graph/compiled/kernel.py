@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from functools import cache
-from importlib.util import find_spec
 from typing import Any, Generic, ParamSpec, TypeVar
 
 from tactile_graph.errors import UsageError, did_you_mean
@@ -28,12 +26,6 @@ R = TypeVar("R")
 
 _kernels: list[Kernel[Any, Any]] = []
 _warm = False
-
-
-@cache
-def have_compiler() -> bool:
-    """Return whether numba is installed; does not import it."""
-    return find_spec("numba") is not None
 
 
 def mode() -> str:

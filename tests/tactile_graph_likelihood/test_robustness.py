@@ -8,7 +8,7 @@ import pytest
 from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
 
 from helpers_likelihood import GRID, NOISE, drawn
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
@@ -23,8 +23,7 @@ DISCS = Model(DISC, noise=NOISE, whole=True)
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def discs(n, seed):
