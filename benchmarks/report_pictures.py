@@ -23,8 +23,7 @@ from PIL import Image
 
 from tactile_graph.cli import cli
 from tactile_graph_compare import Comparison, compare
-from tactile_graph_compare.report.markup import Html, tag
-from tactile_graph_compare.report.parts import plots
+from tactile_graph_compare.report.markup import Html, plots, tag
 from tactile_graph_compare.report.scatter import scatter
 from tactile_graph_compare.report.style import STYLE
 

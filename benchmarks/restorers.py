@@ -1,7 +1,7 @@
 """Restorers: energy against time, beside peers, all in one run.
 
 Run ``python benchmarks/restorers.py``; some minutes. Every result, ours or a peer's, is scored by
-the one energy of `tactile_graph_mrf.energy.model`: a truncated parabola, lambda 4, truncation 30,
+the one energy of `tactile_graph_mrf.energy.total`: a truncated parabola, lambda 4, truncation 30,
 200 levels. Up to `PROVED` cells the least energy is bounded by tree-reweighted messages. The
 images: synthetic ones of 16 to 256 cells a side, the simulated pad, and frames of the bed mat and
 of the capacitive panel, whole and 16 by 16 cells of them. gco-wrapper (``pip install gco-wrapper``;
@@ -34,7 +34,9 @@ from tactile_graph_mrf.descent.icm import icm
 from tactile_graph_mrf.descent.mean_field import mean_field
 from tactile_graph_mrf.descent.restore import restore
 from tactile_graph_mrf.descent.trw import trw
-from tactile_graph_mrf.energy.model import Model, Problem, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.total import energy
 from tactile_graph_mrf.samplers.gibbs import gibbs
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.simulate import simulate
@@ -134,7 +136,7 @@ def gco(folder: str, algorithm: str = "swap") -> Run:
     def run(problem: Problem) -> tuple[float, float, float | None]:
         with tempfile.TemporaryDirectory() as where:
             file = str(Path(where) / "problem.npz")
-            np.savez(file, observed=problem.observed, smooth=problem.smooth)
+            np.savez(file, observed=problem.observed, smooth=problem.pairwise.smooth)
             done = subprocess.run(
                 [sys.executable, "-c", GCO, folder, file, algorithm],
                 capture_output=True, text=True, check=False, timeout=300,
@@ -153,7 +155,7 @@ def pymaxflow(problem: Problem) -> tuple[float, float, float | None]:
     from maxflow import fastmin
 
     x = np.arange(problem.n_levels)
-    unary, pair = problem.unary(), problem.smooth[np.abs(x[:, None] - x)]
+    unary, pair = problem.own_costs(), problem.pairwise.smooth[np.abs(x[:, None] - x)]
     start = time.process_time()
     labels = np.asarray(fastmin.aexpansion_grid(unary, pair), np.int64)
     return time.process_time() - start, energy(problem, labels), None
@@ -200,7 +202,7 @@ def cutters(gco_folder: str) -> dict[str, tuple[Run, int]]:
 def race(model: Model, scenes: Scenes, rivals: dict[str, tuple[Run, int]], plot: str) -> None:
     points: dict[str, list[tuple[float, float]]] = {name: [] for name in rivals}
     for title, image in scenes:
-        problem = model.prepare(image)
+        problem = prepare(model, image)
         size = image.rows * image.columns
         found: dict[str, tuple[float, float]] = {}
         bound = None

@@ -9,6 +9,7 @@ import numpy as np
 
 from helpers_rectangles import turned
 from tactile_graph import compiled
+from tactile_graph.wires import Points
 
 WELL = ("outline", "arc", "exact", "flat", "far", "cells", "blob")
 DEGENERATE = (
@@ -104,4 +105,5 @@ def drawn(kind, seed):
         case "thin cluster":
             xy = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])[rng.integers(0, 4, n)]
             xy = anywhere(rng, *(xy + rng.normal(0, 1e-6, xy.shape)).T)
-    return np.ascontiguousarray(xy, dtype=np.float64)
+    # Never written to, as a step's points are: arrays that may be are compiled for once more.
+    return Points(np.ascontiguousarray(xy, dtype=np.float64)).xy_cm

@@ -6,6 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from tactile_graph.wires import Points
+
 KINDS = 9
 
 
@@ -32,7 +34,8 @@ def random_set(rng, kind):
         xy = np.round(rng.random((n, 2)), 1) * np.array([1.0, 1e-9]) + 1e3
     else:  # neighbouring doubles around the diagonal, where rounding decides if anything does
         xy = 0.5 + rng.integers(0, 12, (n, 2)) * 2.0**-53
-    return np.ascontiguousarray(xy)
+    # Never written to, as a step's points are: arrays that may be are compiled for once more.
+    return Points(np.ascontiguousarray(xy)).xy_cm
 
 
 def exact_turn(a, b, c):

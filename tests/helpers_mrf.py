@@ -10,7 +10,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from tactile_graph.wires import Image
-from tactile_graph_mrf.energy.model import Model, Problem
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
 
 RHO = {
     "quadratic": lambda d, t: d * d,
@@ -51,7 +52,7 @@ def ways(a: tuple[int, int], b: tuple[int, int]) -> list[list[tuple[int, int]]]:
 def counted(problem: Problem, labels: Any, lines_h: Any, lines_v: Any) -> float:
     """The energy from its definition, pair by pair; explicit or no lines, whole field."""
     model, (rows, columns) = problem.model, problem.shape
-    own = problem.unary()
+    own = problem.own_costs()
     cells = [(i, j) for i, j in product(range(rows), range(columns)) if problem.in_field[i, j]]
     energy = sum(own[i, j, labels[i, j]] for i, j in cells)
     reach = {1: 1, 2: 2, 3: 4}[model.order]
@@ -104,13 +105,13 @@ def label_energies(problem: Problem, states: np.ndarray) -> np.ndarray:
     """The energy of each labelling without lines."""
     rows, columns = problem.shape
     cells = np.arange(rows * columns)
-    own = problem.unary().reshape(rows * columns, -1)
+    own = problem.own_costs().reshape(rows * columns, -1)
     energies = own[cells, states].sum(axis=1)
     reach = {1: 1, 2: 2, 3: 4}[problem.model.order]
     for a, b in product(cells, cells):
         far = (a // columns - b // columns) ** 2 + (a % columns - b % columns) ** 2
         if a < b and far <= reach:
-            energies += problem.smooth[np.abs(states[:, a] - states[:, b])] / far
+            energies += problem.pairwise.smooth[np.abs(states[:, a] - states[:, b])] / far
     return energies
 
 
@@ -132,4 +133,4 @@ def tiny(rows: int = 3, columns: int = 3, n_levels: int = 4, **settings: Any) ->
     values = rng.integers(0, n_levels, (rows, columns)).astype(float)
     values[0, 0], values[-1, -1] = 0.0, n_levels - 1.0
     settings = {"sigma": 0.8, "truncation": 1.5, "lambda_d": 0.7, "lambda_l": 0.6, **settings}
-    return Model(n_levels=n_levels, **settings).prepare(Image(values))
+    return prepare(Model(n_levels=n_levels, **settings), Image(values))

@@ -8,7 +8,9 @@ from functools import cache
 import numpy as np
 
 from tactile_graph.wires import Image
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 
 
 def square(sigma: float = 15.0, size: int = 16, seed: int = 1) -> Image:
@@ -37,12 +39,14 @@ def tiny_model(**changes: object) -> Model:
 @cache
 def least_energy(model: Model, seed: int) -> float:
     """The least energy of all 4^9 labellings without lines, counted term by term."""
-    problem = model.prepare(tiny(seed))
+    problem = prepare(model, tiny(seed))
     x = np.array([*itertools.product(range(4), repeat=9)]).reshape(-1, 3, 3)
-    unary, rho = problem.unary(), problem.smooth
+    unary, rho = problem.own_costs(), problem.pairwise.smooth
     i, j = np.indices((3, 3))
     costs = unary[i, j, x].sum(axis=(1, 2))
-    for (di, dj), weight in zip(problem.offsets.tolist(), problem.weights.tolist(), strict=True):
+    for (di, dj), weight in zip(
+        problem.pairwise.offsets.tolist(), problem.pairwise.weights.tolist(), strict=True
+    ):
         a = x[:, : 3 - di, max(-dj, 0) : 3 - max(dj, 0)]
         b = x[:, di:, max(dj, 0) : 3 - max(-dj, 0)]
         costs += weight * rho[np.abs(a - b)].sum(axis=(1, 2))
@@ -59,7 +63,7 @@ def never_rises(trace: tuple[float, ...]) -> bool:
 
 def own_energy(model: Model, image: Image, restored: object) -> float:
     """The model's energy of a restored image, labels read back from its values."""
-    problem = model.prepare(image)
+    problem = prepare(model, image)
     values = restored.image.values  # type: ignore[attr-defined]
     labels = np.rint((values - problem.low) / problem.step).astype(np.int64)
     labels = np.where(problem.in_field, labels, 0)

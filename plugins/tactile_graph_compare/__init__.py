@@ -7,13 +7,16 @@ from tactile_graph import hookimpl
 
 if TYPE_CHECKING:
     from tactile_graph_compare.records.comparison import Comparison as Comparison
-    from tactile_graph_compare.run.side_by_side import compare as compare
-    from tactile_graph_compare.variants.request import Wanted as Wanted
+    from tactile_graph_compare.run.compare import compare as compare
+    from tactile_graph_compare.variants.request import VariantRequest as VariantRequest
 
 # Name -> module, loaded on first use: listing the plugins must stay quick.
-_HOMES = {"Comparison": "records.comparison", "Wanted": "variants.request",
-          "compare": "run.side_by_side"}  # fmt: skip
-__all__ = ["Comparison", "Wanted", "compare"]
+_HOMES = {
+    "Comparison": "records.comparison",
+    "VariantRequest": "variants.request",
+    "compare": "run.compare",
+}
+__all__ = ["Comparison", "VariantRequest", "compare"]
 
 
 @hookimpl

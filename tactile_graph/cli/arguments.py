@@ -129,6 +129,7 @@ def open_pipeline(
         If the file or a setting is wrong.
     """
     from tactile_graph.api.pipeline import load
+    from tactile_graph.pipeline.document import assignment
 
     found = registry.installed()
     if name is None:
@@ -163,6 +164,8 @@ def sourced(
     UsageError
         If there is none, or it is not allowed.
     """
+    from tactile_graph.pipeline.document import assignment
+
     own = pipeline.source
     base: dict[str, Any] = {}
     if recordings:
@@ -175,7 +178,7 @@ def sourced(
             )
         step = own.name
     if own is not None and step == own.name and not recordings:
-        base = {k: v for k, v in own.settings.items() if not _is_default(own, k, v)}
+        base = own.given
     base.update(assignment("--with", text) for text in given)
     wanted = {text.partition("=")[0].strip() for text in given}
     if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
@@ -195,11 +198,6 @@ def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
     if not found.has("readers", named):
         raise UsageError(f"give recordings or --source {named}, not both: {recordings[0]}")
     return named, str(found.offer("readers", named).target)
-
-
-def _is_default(source: Any, name: str, value: Any) -> bool:
-    default = next(s.default for s in source.signature.settings if s.name == name)
-    return default is value
 
 
 def _counts(step: str) -> bool:
@@ -239,25 +237,3 @@ def _is_source(name: str) -> bool:
     from tactile_graph.plugins.outline import outline
 
     return outline(registry.installed().offer("steps", name).target).kind == "source"
-
-
-def assignment(option: str, text: str) -> tuple[str, Any]:
-    """Return name and value of ``name=value``, the value read as YAML.
-
-    Raises
-    ------
-    UsageError
-        If there is no ``=``, or the value is no plain YAML.
-    """
-    from tactile_graph.pipeline.document import read_document
-
-    name, sign, value = text.partition("=")
-    form = "node.setting=value" if option == "--set" else "key=value"
-    if not sign or not name.strip():
-        raise UsageError(f"{option} {text}: must be {form}")
-    if not value.strip():
-        return name.strip(), ""
-    document = read_document(value, f"{option} {name.strip()}")
-    if document.problems:
-        raise UsageError(f"{option} {text}: {document.problems[0].message}")
-    return name.strip(), document.data

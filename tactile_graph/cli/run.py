@@ -270,7 +270,7 @@ class _Run:
             save_strip(self.kept, Path(self.plot))
 
     def _provenance(self, complete: bool) -> None:
-        from tactile_graph.cli.provenance import provenance, write_provenance
+        from tactile_graph.provenance import provenance, write_provenance
 
         if self.output in (None, "-") or not is_plain(str(self.output)):
             return  # nothing stands beside a pipe or a device

@@ -31,6 +31,10 @@ class Skipped:
         """Why, in words."""
         return self._reason if isinstance(self._reason, str) else self._reason(self._values)
 
+    def at(self, origin: str) -> Skipped:
+        """Return the same, begun at a node of another name."""
+        return Skipped(origin, self._reason, self._values)
+
     def __repr__(self) -> str:
         return f"<skipped at {self.origin!r}: {self.reason}>"
 
@@ -74,6 +78,10 @@ class Failed:
         if isinstance(self.error, Degenerate):
             return str(self.error)
         return f"{type(self.error).__name__}: {self.error}"
+
+    def at(self, origin: str) -> Failed:
+        """Return the same, begun at a node of another name."""
+        return Failed(origin, self.error, self.where, self.inputs, self.step)
 
     def __repr__(self) -> str:
         return f"<failed at {self.origin!r}: {self.reason}>"

@@ -17,11 +17,22 @@ from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
+from tactile_graph.pipeline.wiring import Ref
+
+FieldOf = Callable[[Ref], Callable[[Any], Any]]
 
 IMMUTABLE = frozenset({bool, int, float, str})
 
 
-def make_program(plan: Plan, call_of: Callable[[Node], Call], blank: State) -> list[Operation]:
+def _getter(ref: Ref) -> Callable[[Any], Any]:
+    get = ref.getter
+    assert get is not None
+    return get
+
+
+def make_program(
+    plan: Plan, call_of: Callable[[Node], Call], blank: State, field_of: FieldOf = _getter
+) -> list[Operation]:
     """Return the operations of a plan's main part.
 
     Parameters
@@ -31,11 +42,16 @@ def make_program(plan: Plan, call_of: Callable[[Node], Call], blank: State) -> l
         Gives each step node's callable of its ports; stateful ones get their instance here.
     blank : list
         The state every frame starts from; outcomes that depend on no frame are kept in it.
+    field_of : callable, optional
+        Gives what makes a field of a node's value; taken from the value if not given.
     """
     operations: list[Operation] = [_nothing] * plan.n_slots
     times_placed = _times_placed(plan)
     for item in plan.items[1:]:
-        operation = _operation(item, plan, call_of, operations, blank)
+        if item.view is not None:
+            operation = _view(item, field_of(item.view))
+        else:
+            operation = _operation(item, plan, call_of, operations, blank)
         if times_placed[item.slot] > 1:
             operation = _unless_settled(item.slot, operation)
         operations[item.slot] = operation
@@ -68,8 +84,6 @@ def _operation(
     operations: list[Operation],
     blank: State,
 ) -> Operation:
-    if item.view is not None:
-        return _view(item)
     node = item.node
     assert node is not None
     blocks = [tuple(operations[s] for s in port.lazy) for port in item.inputs]
@@ -111,11 +125,9 @@ def _unless_settled(slot: int, body: Operation) -> Operation:
     return operation
 
 
-def _view(item: Item) -> Operation:
+def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
     """Settle a field of a node, and return it: a guard reads it by this."""
-    assert item.view is not None
-    get, source, slot = item.view.getter, item.source, item.slot
-    assert get is not None
+    source, slot = item.source, item.slot
 
     def operation(state: State) -> Any:
         value = state[source]

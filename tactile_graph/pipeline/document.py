@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from tactile_graph.errors import Mark, Problem, shown
+from tactile_graph.errors import Mark, Problem, UsageError, shown
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
@@ -244,3 +244,23 @@ class _Reader:
             self.document._keys[(*path, key)] = mark
             result[key] = self.read(value_node, (*path, key))
         return result
+
+
+def assignment(option: str, text: str) -> tuple[str, Any]:
+    """Return name and value of ``name=value``, the value read as YAML.
+
+    Raises
+    ------
+    UsageError
+        If there is no ``=``, or the value is no plain YAML.
+    """
+    name, sign, value = text.partition("=")
+    form = "node.setting=value" if option == "--set" else "key=value"
+    if not sign or not name.strip():
+        raise UsageError(f"{option} {text}: must be {form}")
+    if not value.strip():
+        return name.strip(), ""
+    document = read_document(value, f"{option} {name.strip()}")
+    if document.problems:
+        raise UsageError(f"{option} {text}: {document.problems[0].message}")
+    return name.strip(), document.data

@@ -34,7 +34,13 @@ class Embedding:
 def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
     """Return the inner nodes under ``name/…`` and one passing node per output, and troubles."""
     rename, troubles = _renamer(at.name, at.ref, at.kind)
-    nodes = [_moved(node, at.name, rename, at.facts) for node in inner.nodes.values()]
+    nodes = [
+        replace(
+            node.rewired(f"{at.name}/{node.name}", rename),
+            facts=embedded_facts(node.facts, at.facts),
+        )
+        for node in inner.nodes.values()
+    ]
     single = len(inner.outputs) == 1
     for output, source in inner.outputs.items():
         nodes.append(
@@ -75,20 +81,6 @@ def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list
         return Ref(ref.node, ref.path)
 
     return rename, troubles
-
-
-def _moved(node: Node, name: str, rename: Callable[[Ref], Ref], outer: Facts) -> Node:
-    guard = node.guard
-    if guard is not None:
-        guard = replace(guard, refs=tuple(rename(r) for r in guard.refs))
-    return replace(
-        node,
-        name=f"{name}/{node.name}",
-        inputs=tuple(replace(b, refs=tuple(rename(r) for r in b.refs)) for b in node.inputs),
-        choices=tuple(rename(c) for c in node.choices),
-        guard=guard,
-        facts=embedded_facts(node.facts, outer),
-    )
 
 
 def map_node(inner: Graph, at: Embedding) -> tuple[Node, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property, partial
 from typing import Any
@@ -20,6 +20,8 @@ from tactile_graph.steps.signature import Kind, Port, Signature
 from tactile_graph.wires.frame import Frame
 
 FRAME = "frame"
+Moved = Callable[[Ref], Ref]
+"""Where a reference points in another graph."""
 
 
 class NodeKind(Enum):
@@ -105,6 +107,19 @@ class Node:
         guard = list(self.guard.refs) if self.guard else []
         return guard + [r for b in self.inputs for r in b.refs] + list(self.choices)
 
+    def rewired(self, name: str, moved: Moved) -> Node:
+        """Return the node under another name, each of its references moved."""
+        guard = self.guard
+        if guard is not None:
+            guard = replace(guard, refs=tuple(moved(r) for r in guard.refs))
+        return replace(
+            self,
+            name=name,
+            inputs=tuple(replace(b, refs=tuple(moved(r) for r in b.refs)) for b in self.inputs),
+            choices=tuple(moved(c) for c in self.choices),
+            guard=guard,
+        )
+
     def bound(self, **injected: Any) -> Callable[..., Any]:
         """Return the callable of the ports, settings filled in; new state for a stateful step."""
         signature = self.signature
@@ -174,6 +189,12 @@ class Source:
     def name(self) -> str:
         """Name of the source step."""
         return self.signature.name
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """Those of its settings that are not the defaults."""
+        defaults = {s.name: s.default for s in self.signature.settings}
+        return {k: v for k, v in self.settings.items() if v is not defaults.get(k)}
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,9 @@ from tactile_graph_fitters.ellipse.fit_ellipse_origin import fit_ellipse_origin
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import nearest
 from tactile_graph_fitters.orientation.orientation import Orientation
 from tactile_graph_fitters.orientation.rotate_points import rotate_points
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 from tactile_graph_pads.pad import load_pad
 
 PAGE = Path(__file__).parents[2] / "docs" / "errata.md"
@@ -151,7 +153,7 @@ def test_5_9_is_the_same_with_the_whole_energy_as_with_the_cliques_at_the_cell()
 
 
 def test_a_difference_counts_once_and_not_where_the_line_is_on() -> None:
-    problem = Model(n_levels=10, lambda_d=3.0, lambda_l=0.0).prepare(Image(np.array([[0.0, 9.0]])))
+    problem = prepare(Model(n_levels=10, lambda_d=3.0, lambda_l=0.0), Image(np.array([[0.0, 9.0]])))
     labels = np.array([[0, 9]])
     across, down = (np.zeros(sites.shape, np.bool_) for sites in problem.sites())
     assert energy(problem, labels, across, down) == pytest.approx(3.0 * 81.0)
@@ -160,14 +162,14 @@ def test_a_difference_counts_once_and_not_where_the_line_is_on() -> None:
 
 def test_energies_are_2_sigma_squared_times_minus_the_log_of_the_posterior() -> None:
     sigma, image = 4.0, Image(np.array([[0.0, 9.0, 5.0]]))
-    problem = Model(n_levels=10, lambda_d=0.0, sigma=sigma).prepare(image)
+    problem = prepare(Model(n_levels=10, lambda_d=0.0, sigma=sigma), image)
     a, b = np.array([[0, 9, 5]]), np.array([[1, 7, 5]])
     log_ratio = -((b - a) ** 2).sum() / (2.0 * sigma**2)
     assert energy(problem, b) - energy(problem, a) == pytest.approx(-2.0 * sigma**2 * log_ratio)
 
 
 def test_every_cost_is_finite_so_that_every_image_has_a_probability_above_0() -> None:
-    problem = Model(n_levels=20).prepare(Image(np.arange(20.0).reshape(4, 5)))
+    problem = prepare(Model(n_levels=20), Image(np.arange(20.0).reshape(4, 5)))
     assert all(np.isfinite(t).all() for t in (problem.table, problem.bare_smooth, problem.pattern))
 
 

@@ -164,6 +164,7 @@ def test_the_plugin_shown_is_one() -> None:
     assert [(f.index, f.time_s, f.image.peak) for f in frames] == [
         (k, 0.01 * k, k) for k in range(3)
     ]
+    assert set(spaces[3]["alone"].times_us) < set(spaces[3]["both"].times_us)
 
 
 def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -20,7 +20,13 @@ PUBLIC = (
     "tactile_graph.files",
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",
+    "tactile_graph.inspect",
+    "tactile_graph.provenance",
 )
+"""What third parties may use: of steps, and (the last two) of whatever looks into pipelines and
+their outcomes and says how it was made, as comparisons do."""
+PUBLIC_ROOMS = ("tactile_graph.wires.", "tactile_graph.steps.", "tactile_graph.draw.")
+"""Rooms whose every module is public: values, steps, and how both are drawn for people."""
 SHARED = ("tactile_graph.plugins.registry", "tactile_graph.pipeline.document")
 """Also to be had by plugins: where pads, presets and steps are looked up by name, and YAML whose
 mistakes are told with their places."""
@@ -59,9 +65,7 @@ def test_a_family_imports_no_private_name_and_only_what_third_parties_may_use() 
         for module, name in imports(path):
             if module.partition(".")[0] != "tactile_graph":
                 continue
-            public = module in (*PUBLIC, *SHARED) or module.startswith(
-                ("tactile_graph.wires.", "tactile_graph.steps.")
-            )
+            public = module in (*PUBLIC, *SHARED) or module.startswith(PUBLIC_ROOMS)
             hidden = any(p.startswith("_") for p in (*module.split("."), name))
             if hidden or not (public or commands):
                 found.append(f"{path.relative_to(ROOT)}: {module} {name}")

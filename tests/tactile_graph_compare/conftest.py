@@ -1,4 +1,4 @@
-"""The hand-made plugin stands in for the installed ones."""
+"""The hand-made plugin and the family itself stand in for the installed ones."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from helpers_cli import install
+from helpers_compare import COMPARE
 from tactile_graph.plugins import registry
 
 NEXT = """\
@@ -30,7 +31,7 @@ outputs: [circle]
 @pytest.fixture
 def hand_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder with ``next.yaml``, which evolves from the plugin's ``discs``."""
-    install(monkeypatch, tmp_path)
+    install(monkeypatch, tmp_path, COMPARE)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "next.yaml").write_text(NEXT)
     # It would compile the kernels for every test that comes after.

@@ -20,7 +20,9 @@ from tactile_graph_mrf.descent.graph_cuts import graph_cuts
 from tactile_graph_mrf.descent.mean_field import mean_field
 from tactile_graph_mrf.descent.restore import restore
 from tactile_graph_mrf.descent.trw import trw
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 
 pytest.importorskip("maxflow", reason="graph_cuts needs PyMaxflow")
 
@@ -126,7 +128,7 @@ def test_small_grids_are_restored(step, shape):
 def test_every_noise_is_restored_to_less_than_the_observation_costs(step, noise):
     image = square(5.0, size=8)
     model = Model(n_levels=40, noise=noise, sigma=2.0, lines="marginal", lambda_l=100.0)
-    problem = model.prepare(image)
+    problem = prepare(model, image)
     restored = step(image, model=model)
     assert restored.energy < energy(problem, problem.start())
 

@@ -23,9 +23,9 @@ from helpers_mrf import (
     patterns,
     tiny,
 )
-from tactile_graph_mrf.energy.model import energy
-from tactile_graph_mrf.samplers.annealing import observed_state, random_state, run
-from tactile_graph_mrf.samplers.schedules import temperatures
+from tactile_graph_mrf.energy.state import observed_state, random_state
+from tactile_graph_mrf.energy.total import energy
+from tactile_graph_mrf.samplers.annealing import annealed, temperatures
 
 BETA = 0.5
 
@@ -34,9 +34,9 @@ def samples(problem, n, every, seed=1):
     """States of the sampler, ``every`` sweeps apart, after a burn-in."""
     rng = np.random.default_rng(seed)
     state = random_state(problem, rng)
-    run(problem, state, np.full(100, BETA), rng)
+    annealed(problem, state, np.full(100, BETA), rng)
     for _ in range(n):
-        run(problem, state, np.full(every, BETA), rng)
+        annealed(problem, state, np.full(every, BETA), rng)
         yield state
 
 
@@ -76,9 +76,9 @@ def joint():
     problem = tiny()
     states = label_states(9, 4)
     grid = states.reshape(-1, 3, 3)
-    base = problem.unary()[*np.indices((3, 3)), grid].sum(axis=(1, 2))
-    h_cost = problem.smooth[np.abs(np.diff(grid, axis=1))].reshape(-1, 6)
-    v_cost = problem.smooth[np.abs(np.diff(grid, axis=2))].reshape(-1, 6)
+    base = problem.own_costs()[*np.indices((3, 3)), grid].sum(axis=(1, 2))
+    h_cost = problem.pairwise.smooth[np.abs(np.diff(grid, axis=1))].reshape(-1, 6)
+    v_cost = problem.pairwise.smooth[np.abs(np.diff(grid, axis=2))].reshape(-1, 6)
     bits = np.array([*product((False, True), repeat=6)])
     both = np.array(
         [[patterns(problem, h.reshape(2, 3), v.reshape(3, 2)) for v in bits] for h in bits]
@@ -151,7 +151,7 @@ def test_long_annealing_ends_at_the_very_minimum(seed):
     least = min(base[x] + (h_off[x][:, None] + between + v_off[x]).min() for x in near)
     rng = np.random.default_rng(seed)
     state = random_state(problem, rng)
-    trace = run(problem, state, 1 / temperatures("geometric", 5.0, 0.9995, 16000), rng)
+    trace = annealed(problem, state, 1 / temperatures("geometric", 5.0, 0.9995, 16000), rng)
     assert trace[-1] == pytest.approx(least, abs=1e-9)
     assert counted(problem, *state) == pytest.approx(least, abs=1e-9)
 
@@ -162,5 +162,5 @@ def test_long_annealing_without_lines_too(smoothness):
     least = label_energies(problem, label_states(9, 4)).min()
     rng = np.random.default_rng(0)
     state = observed_state(problem)
-    trace = run(problem, state, 1 / temperatures("geometric", 20.0, 0.99, 1500), rng)
+    trace = annealed(problem, state, 1 / temperatures("geometric", 20.0, 0.99, 1500), rng)
     assert trace[-1] == pytest.approx(least, abs=1e-9)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -21,8 +21,7 @@ from tactile_graph.files import check_target
 
 if TYPE_CHECKING:
     from tactile_graph_compare.output.tables import Table
-    from tactile_graph_compare.records.audit import Audit, GuardAudit
-    from tactile_graph_compare.run.audit import Auditor
+    from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
 EPILOG = """\b
 Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C; what was done is shown.
@@ -39,18 +38,7 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C; what was done is show
               help="Take this share of the frames, drawn at random; all where a step keeps "
               "state.")  # fmt: skip
 @click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
-def audit(
-    pipeline: str | None,
-    recordings: tuple[str, ...],
-    source: str | None,
-    source_settings: tuple[str, ...],
-    settings: tuple[str, ...],
-    seed: int,
-    only: tuple[str, ...],
-    span: Span,
-    sample: float,
-    json_path: str | None,
-) -> None:
+def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Tell what each guard of PIPELINE saves in time, and what error it brings in.
 
     On a sample of the frames all that a guard keeps from running is run besides, one guard at a
@@ -59,26 +47,43 @@ def audit(
     from tactile_graph.cli.terminal import console
     from tactile_graph_compare.run.audit import Auditor
 
-    if json_path is not None:
-        check_target("--json", json_path)
-    opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    auditor = Auditor(opened, tuple(only), sample, seed)
-    if not auditor.shadows:
+    asked = _Options(**options)
+    if asked.json_path is not None:
+        check_target("--json", asked.json_path)
+    opened = open_pipeline(
+        pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
+    )
+    auditor = Auditor(opened, tuple(asked.only), asked.sample, asked.seed)
+    if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
-    interrupted = _frames(auditor, span, seed)
-    found = auditor.close(interrupted)
+    interrupted = _frames(auditor, span, asked.seed)
+    found = auditor.summarise(interrupted)
     if not found.n_frames:
         raise UsageError(
-            f"none of {found.n_seen} frames is in the sample of {sample:g}: give a larger --sample"
+            f"none of {found.n_seen} frames is in the sample of {asked.sample:g}: give a larger "
+            "--sample"
         )
     out = console()
     _show(found, out)
-    if json_path is not None:
-        _write(found, json_path)
-        out.print(f"wrote {json_path}", style="dim", soft_wrap=True)
+    if asked.json_path is not None:
+        _write(found, asked.json_path)
+        out.print(f"wrote {asked.json_path}", style="dim", soft_wrap=True)
     if interrupted:
         out.print("interrupted", style="bold red")
         click.get_current_context().exit(INTERRUPTED)
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What the command line says beside pipeline and frames."""
+
+    source: str | None
+    source_settings: tuple[str, ...]
+    settings: tuple[str, ...]
+    seed: int
+    only: tuple[str, ...]
+    sample: float
+    json_path: str | None
 
 
 def _frames(auditor: Auditor, span: Span, seed: int) -> bool:

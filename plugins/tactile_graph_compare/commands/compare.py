@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.records.comparison import Comparison
     from tactile_graph_compare.run.session import Session
-    from tactile_graph_compare.variants.request import Wanted
-    from tactile_graph_compare.variants.variants import Prepared
+    from tactile_graph_compare.variants.prepare import PreparedVariant
+    from tactile_graph_compare.variants.request import VariantRequest
 
 EPILOG = """\b
 A variant is a pipeline's name or file, or one with settings, as one quoted word:
@@ -130,19 +130,20 @@ def _check_files(options: _Options) -> None:
 
 def _prepared(
     words: Sequence[str], span: Span, options: _Options
-) -> tuple[list[Prepared], list[str]]:
-    from tactile_graph.cli.arguments import assignment, offered, sourced
-    from tactile_graph_compare.variants.one_source import first_source, given_of, on_source
+) -> tuple[list[PreparedVariant], list[str]]:
+    from tactile_graph.cli.arguments import offered, sourced
+    from tactile_graph.pipeline.document import assignment
+    from tactile_graph_compare.variants.one_source import first_source, on_source
+    from tactile_graph_compare.variants.prepare import prepare
     from tactile_graph_compare.variants.sweeps import parse_sweep
-    from tactile_graph_compare.variants.variants import prepare
 
-    wanted, recordings = _told_apart(words)
-    if not wanted:
+    requests, recordings = _told_apart(words)
+    if not requests:
         raise UsageError(f"name the pipelines to compare, or files of them\n{offered()}")
     if options.only:
-        wanted = [w if w.only else replace(w, only=options.only) for w in wanted]
+        requests = [r if r.only else replace(r, only=options.only) for r in requests]
     prepared = prepare(
-        wanted,
+        requests,
         registry.installed(),
         dict(assignment("--set", s) for s in options.settings),
         [parse_sweep(s) for s in options.sweeps],
@@ -154,26 +155,25 @@ def _prepared(
         base, notes = first_source(prepared)
     placed = sourced(base.pipeline, recordings, options.source, options.source_settings, span)
     assert placed.source is not None
-    step, settings = given_of(placed.source)
-    return on_source(prepared, step, settings), notes
+    return on_source(prepared, placed.source.name, placed.source.given), notes
 
 
-def _told_apart(words: Sequence[str]) -> tuple[list[Wanted], list[str]]:
+def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
     """Return the variants and the recordings among the words of a command line."""
-    from tactile_graph_compare.variants.request import parse_wanted
+    from tactile_graph_compare.variants.request import parse_request
 
     found = registry.installed()
-    wanted: list[Wanted] = []
+    requests: list[VariantRequest] = []
     recordings: list[str] = []
     for word in words:
         name = _first(word)
         if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
-            wanted.append(parse_wanted(word, found))
+            requests.append(parse_request(word, found))
         elif Path(word).exists():
             recordings.append(word)
         else:
             raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
-    return wanted, recordings
+    return requests, recordings
 
 
 def _first(word: str) -> str:
@@ -190,7 +190,7 @@ class _Run:
     """One comparison from its first frame to its files."""
 
     def __init__(
-        self, prepared: list[Prepared], notes: list[str], span: Span, options: _Options
+        self, prepared: list[PreparedVariant], notes: list[str], span: Span, options: _Options
     ) -> None:
         from tactile_graph.cli.terminal import console
         from tactile_graph.steps.injected import Report
@@ -212,7 +212,7 @@ class _Run:
             interrupted, error = self._frames(held)
         with held:
             if self.session.n:
-                self._close(interrupted)
+                self._finish(interrupted)
             elif error is None and not interrupted:
                 got = self.report.counts["frames"]
                 error = UsageError(f"there is nothing to compare: the source gave {got} frames")
@@ -222,14 +222,13 @@ class _Run:
 
     def _frames(self, held: Any) -> tuple[bool, Exception | None]:
         from tactile_graph.cli.progress import Bar
-        from tactile_graph_compare.run.side_by_side import warmed
 
         bar = Bar(self.stderr, "compare")
         source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)
         frames: Iterator[Frame] = self.span.of(source)
         try:
             bar.now(self.span.expected(None))
-            for frame in warmed(self.session, frames):
+            for frame in self.session.warmed(frames):
                 with held:
                     self.session.add(frame)
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))
@@ -243,11 +242,11 @@ class _Run:
 
     # -- the end -----------------------------------------------------------------------------
 
-    def _close(self, interrupted: bool) -> None:
+    def _finish(self, interrupted: bool) -> None:
         from tactile_graph_compare.output.shown import show
-        from tactile_graph_compare.run.summarise import close
+        from tactile_graph_compare.run.summarise import summarise
 
-        comparison = close(self.session, self.report, interrupted, self.notes, self.span.start)
+        comparison = summarise(self.session, self.report, interrupted, self.notes, self.span.start)
         if interrupted:
             self.people.print("interrupted", style="bold red")
         try:

@@ -11,11 +11,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.engine.rows import without_nan
 from tactile_graph.files import said, write_whole
-from tactile_graph.pipeline.plain import plain
-from tactile_graph_compare.records.comparison import Comparison, Variant
-from tactile_graph_compare.records.lineage import Evolution
+from tactile_graph.inspect import plain, without_nan
+from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.scores import Score
 
 Row = Sequence[Any]

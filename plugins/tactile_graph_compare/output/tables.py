@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from tactile_graph_compare.records.comparison import Comparison
-from tactile_graph_compare.records.lineage import Evolution
+from tactile_graph_compare.records.comparison import Comparison, Evolution
 from tactile_graph_compare.records.scores import Difference, Score
 from tactile_graph_compare.score.quantities import DECIMALS
 

@@ -9,7 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
+from tactile_graph.inspect import NOT_ASKED, Failed, Skipped
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,13 @@ class Saving:
 
 STATES = ("not asked", "ran", "skipped", "failed")
 """What the codes 0 to 3 of `Timeline.states` mean."""
+
+
+def state_of(outcome: Any) -> int:
+    """Return the code of what a node came to."""
+    if outcome is NOT_ASKED:
+        return 0
+    return {Skipped: 2, Failed: 3}.get(outcome.__class__, 1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,8 @@ from tactile_graph.draw.svg_boxes import Mark
 from tactile_graph_compare.output.tables import saving, us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.graph import MergedNode
-from tactile_graph_compare.report.markup import Html, tag
-from tactile_graph_compare.report.parts import details, scroll
-from tactile_graph_compare.report.people import chip, legend, paint_of
+from tactile_graph_compare.report.badges import chip, legend, paint_of
+from tactile_graph_compare.report.markup import Html, details, scroll, tag
 
 MOST_MARKS = 8
 SMALLEST = 0.85

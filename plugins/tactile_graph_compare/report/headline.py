@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from tactile_graph_compare.output.tables import number, us
 from tactile_graph_compare.records.comparison import Comparison, Variant
 from tactile_graph_compare.records.scores import Difference, Score
-from tactile_graph_compare.report.markup import Child, Html, tag
-from tactile_graph_compare.report.parts import counted
-from tactile_graph_compare.report.people import chip, named, of
+from tactile_graph_compare.report.badges import chip, named, of
+from tactile_graph_compare.report.markup import Child, Html, counted, tag
 
 MOST_NAMED = 3
 

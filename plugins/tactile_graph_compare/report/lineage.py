@@ -11,14 +11,12 @@ from tactile_graph.draw.grid_png import change_uri
 from tactile_graph.draw.paint_svg import View
 from tactile_graph.wires import Image, Mask
 from tactile_graph_compare.output.tables import signed, signed_us
-from tactile_graph_compare.records.comparison import Comparison
+from tactile_graph_compare.records.comparison import Comparison, Evolution, NodeChange
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
-from tactile_graph_compare.records.lineage import Evolution, NodeChange
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.report.album import Album
-from tactile_graph_compare.report.markup import Child, Html, join, tag
-from tactile_graph_compare.report.parts import scroll
-from tactile_graph_compare.report.people import named
+from tactile_graph_compare.report.badges import named
+from tactile_graph_compare.report.markup import Child, Html, join, scroll, tag
 from tactile_graph_compare.report.strips import cell, head_of, node_order, told_choices
 
 MOST_FRAMES = 2

@@ -6,14 +6,13 @@ from tactile_graph_compare.output import tables
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.report import strips, timeline
 from tactile_graph_compare.report.album import Album
-from tactile_graph_compare.report.cells import table
+from tactile_graph_compare.report.badges import legend, of
+from tactile_graph_compare.report.data_tables import table
 from tactile_graph_compare.report.graph import graph
 from tactile_graph_compare.report.headline import headline, warnings
 from tactile_graph_compare.report.lineage import lineage
-from tactile_graph_compare.report.making import making
-from tactile_graph_compare.report.markup import Html, join, tag
-from tactile_graph_compare.report.parts import figure, plots, scroll, section
-from tactile_graph_compare.report.people import legend, of
+from tactile_graph_compare.report.markup import Html, figure, join, plots, scroll, section, tag
+from tactile_graph_compare.report.provenance import provenance
 from tactile_graph_compare.report.scatter import scatter
 from tactile_graph_compare.report.spread import error_spread, intervals, time_spread
 from tactile_graph_compare.report.style import STYLE
@@ -35,7 +34,7 @@ def page(comparison: Comparison) -> str:
         ("lineage", "Lineage", _lineage(comparison, album)),
         ("frames", "Chosen frames", _frames(comparison, album)),
         ("timeline", "What ran", _timeline(comparison, album)),
-        ("making", "How it was made", making(comparison)),
+        ("making", "How it was made", provenance(comparison)),
     ]
     shown = [(name, title, body) for name, title, body in found if body]
     links = (tag("li", tag("a", title, href=f"#{name}")) for name, title, _ in shown[1:])

@@ -9,8 +9,8 @@ from tactile_graph_compare.output.tables import number, us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Score
 from tactile_graph_compare.report.axes import Scale, bottom_axis, left_axis, plot, scale_of
+from tactile_graph_compare.report.badges import class_of
 from tactile_graph_compare.report.markup import Html, tag
-from tactile_graph_compare.report.people import class_of
 
 WIDTH, HEIGHT = 380.0, 330.0
 LEFT, RIGHT, TOP, BOTTOM = 62.0, 368.0, 14.0, 284.0

@@ -12,8 +12,8 @@ from tactile_graph_compare.output.tables import signed
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.report.axes import Scale, bottom_axis, plot, scale_of, tick_text
+from tactile_graph_compare.report.badges import class_of
 from tactile_graph_compare.report.markup import Html, tag
-from tactile_graph_compare.report.people import class_of
 from tactile_graph_compare.report.scatter import error_title
 
 WIDTH, LEFT, RIGHT, TOP = 380.0, 14.0, 366.0, 8.0

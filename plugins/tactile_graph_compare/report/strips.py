@@ -9,9 +9,8 @@ from tactile_graph_compare.output.tables import signed
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import Choice, ChosenFrame, NodeStory
 from tactile_graph_compare.report.album import Album, Range
-from tactile_graph_compare.report.markup import Html, join, tag
-from tactile_graph_compare.report.parts import counted, details, scroll
-from tactile_graph_compare.report.people import named
+from tactile_graph_compare.report.badges import named
+from tactile_graph_compare.report.markup import Html, counted, details, join, scroll, tag
 from tactile_graph_compare.score.quantities import QUANTITIES
 
 MOST_BYTES = 1_600_000
@@ -74,8 +73,8 @@ def _title(frame: ChosenFrame) -> Html:
 
 def _strip(comparison: Comparison, album: Album, frame: ChosenFrame) -> Html:
     stories = [s for of in frame.stories.values() for s in of.values()]
-    wanted = album.pictured | {s.node for s in stories if s.state in ("skipped", "failed")}
-    columns = [n for n in node_order(frame, comparison.labels) if n in wanted]
+    shown = album.pictured | {s.node for s in stories if s.state in ("skipped", "failed")}
+    columns = [n for n in node_order(frame, comparison.labels) if n in shown]
     rows = [_row(comparison, album, frame, label, columns) for label in comparison.labels]
     return tag(
         "table",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tactile_graph.draw.colours import BEFORE, FOUND, TRUE
-from tactile_graph_compare.report.people import DARK, LIGHT
+from tactile_graph_compare.report.badges import DARK, LIGHT
 
 
 def _paints(paints: tuple[str, ...]) -> str:

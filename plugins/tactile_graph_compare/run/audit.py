@@ -1,177 +1,91 @@
-"""Audit what is skipped: run guarded-off nodes in shadow, and tell what each guard is worth.
+"""Audit what is skipped: run guarded-off nodes besides, and tell what each guard is worth.
 
-For every guard a shadow of the pipeline is made in which the guard always holds, for every
-``first_of`` one in which only its later choices are left. Pipeline and shadows are compared like
-any variants: merged into one graph, so that only what a guard keeps from running is run besides.
+Pipeline and ablations (each without one guard, or without the first choices of a ``first_of``)
+are compared like any variants: merged into one graph, so that only what a guard keeps from running
+is run besides.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.rows import as_data
+from tactile_graph import Pipeline
+from tactile_graph.inspect import NO_VALUE, as_data
 from tactile_graph.wires.frame import Frame
-from tactile_graph_compare.records.audit import Audit, GuardAudit
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
-from tactile_graph_compare.run.frame_choice import Keeper
-from tactile_graph_compare.run.session import WARM_FRAMES, Session, VariantLog
-from tactile_graph_compare.run.summarise import close
-from tactile_graph_compare.run.variant_result import OwnResult
-from tactile_graph_compare.variants.shadows import shadows_of
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph_compare.run.frame_choice import FrameChooser
+from tactile_graph_compare.run.logs import VariantLog
+from tactile_graph_compare.run.session import WARM_FRAMES, Session
+from tactile_graph_compare.run.summarise import summarise
+from tactile_graph_compare.variants.ablations import Ablation, ablations_of
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 
-class Auditor:
-    """Takes frames and a sample of them through a pipeline and its shadows.
+@dataclass(frozen=True)
+class GuardAudit:
+    """What one guard, or one hand-over, saved and what it cost.
 
     Parameters
     ----------
-    pipeline : Pipeline
-    asked : tuple of str
-        Outputs or nodes asked for; the pipeline's outputs where empty.
-    sample : float
-        Share of the frames that is taken, 0 to 1; all of them where a step keeps state.
-    seed : int
-        Of the sample, and of the steps that take randomness.
+    node : str
+        The guarded node, or the ``first_of``.
+    kind : str
+        ``when`` or ``first_of``.
+    text : str
+        The condition, or the choices that were left out.
+    n_stopped : int
+        Frames in which it kept something from running.
+    saved_us : float
+        Time saved per frame, mean over all frames of the sample: that of the nodes which ran in
+        the ablation only, less that of nodes only the guard itself needs.
+    saved_share : float
+        The same as a share of the time per frame without it.
+    saved_when_us : float
+        Time saved per frame in which it stopped something.
+    differences : tuple of Difference
+        For each quantity, the pipeline's absolute error less the ablation's: what the guard brought
+        in. ``n_only_reference`` counts the answers it cost.
+    n_false_prevented : int
+        Frames in which truly nothing lay on the pad and only the ablation answered.
+    n_failed_prevented : int
+        Frames in which an output failed in the ablation only.
+    n_changed : int
+        Frames in which an output came out otherwise in any way.
     """
 
-    def __init__(
-        self, pipeline: Pipeline, asked: tuple[str, ...] = (), sample: float = 1.0, seed: int = 0
-    ) -> None:
-        self.pipeline = pipeline
-        self.shadows = shadows_of(pipeline)
-        asked = asked or tuple(pipeline.outputs)
-        rows = [(pipeline.name, pipeline)]
-        rows += [(s.label, s.pipeline) for s in self.shadows]
-        prepared = [Prepared(label, p, asked, pipeline.name) for label, p in rows]
-        self.session = Session(prepared, seed, Keeper(n_regular=0, most=0))
-        self.whole = self.session.stateful
-        self.sample = sample
-        self.n_seen = 0
-        self._rng = np.random.default_rng(seed)
-        self._waiting: list[Frame] | None = []
-        n = len(self.shadows)
-        self._more_us: list[list[float]] = [[] for _ in self.shadows]
-        self._stopped: list[list[bool]] = [[] for _ in self.shadows]
-        self._counts = {k: [0] * n for k in ("false", "failed", "changed")}
-
-    def add(self, frame: Frame) -> bool:
-        """Look at a frame; return whether it is in the sample."""
-        self.n_seen += 1
-        taken = bool(self._rng.random() < self.sample) or self.whole
-        if not taken:
-            return False
-        if self._waiting is None:
-            self._take(frame)
-        else:
-            self._waiting.append(frame)
-            if len(self._waiting) == WARM_FRAMES:
-                self._start()
-        return True
-
-    def _start(self) -> None:
-        """Warm up with the first frames of the sample, and then take them."""
-        waiting, self._waiting = self._waiting or [], None
-        self.session.warm_up(waiting)
-        for frame in waiting:
-            self._take(frame)
-
-    def _take(self, frame: Frame) -> None:
-        result = self.session.add(frame)
-        times_us = result.times_us
-        logs = self.session.logs
-        plain, spent = OwnResult(result, logs[0].member), _spent_us(logs[0], times_us)
-        for i, log in enumerate(logs[1:]):
-            self._compare(i, result, plain, OwnResult(result, log.member))
-            # Node by node: what both run takes the same, whatever the clock says.
-            its = _spent_us(log, times_us)
-            more = [its[n] for n in its if n not in spent]
-            self._more_us[i].append(sum(more) - sum(spent[n] for n in spent if n not in its))
-            self._stopped[i].append(bool(more))
-
-    def _compare(self, i: int, result: Result, plain: OwnResult, shadow: OwnResult) -> None:
-        ours = [plain.merged_outcome(r) for r in plain.member.asked]
-        theirs = [shadow.merged_outcome(r) for r in shadow.member.asked]
-        told = [(_told(a), _told(b)) for a, b in zip(ours, theirs, strict=True) if a is not b]
-        changed = any(a != b for a, b in told)
-        self._counts["changed"][i] += changed
-        self._counts["failed"][i] += any(b == "Failed" and a != b for a, b in told)
-        empty = result.frame.truth == ()
-        found = any(
-            a.__class__ in NO_VALUE and b.__class__ not in NO_VALUE
-            for a, b in zip(ours, theirs, strict=True)
-        )
-        self._counts["false"][i] += empty and found
-
-    def close(self, interrupted: bool = False) -> Audit:
-        """Return what the guards came to over the frames so far."""
-        if self._waiting:
-            self._start()
-        found = close(self.session, interrupted=interrupted)
-        return Audit(
-            pipeline=self.pipeline,
-            guards=tuple(self._guards(found)),
-            n_frames=found.frames.n,
-            n_seen=self.n_seen,
-            median_us=found.variants[0].times.median_us,
-            everything=found,
-            whole=self.whole,
-        )
-
-    def _guards(self, found: Comparison) -> Iterator[GuardAudit]:
-        n = max(1, found.frames.n)
-        plain_us = float(np.nansum(found.variants[0].times.per_frame_us))
-        for i, (shadow, variant) in enumerate(zip(self.shadows, found.variants[1:], strict=True)):
-            more = np.array(self._more_us[i])
-            stopped = np.array(self._stopped[i], dtype=np.bool_)
-            without = plain_us + float(more.sum())
-            yield GuardAudit(
-                shadow.node,
-                shadow.kind,
-                shadow.text,
-                int(stopped.sum()),
-                float(more.sum()) / n,
-                float(more.sum()) / without if without > 0.0 else 0.0,
-                float(more[stopped].mean()) if stopped.any() else 0.0,
-                tuple(_turned(d) for d in found.differences if d.variant == variant.label),
-                self._counts["false"][i],
-                self._counts["failed"][i],
-                self._counts["changed"][i],
-            )
+    node: str
+    kind: str
+    text: str
+    n_stopped: int
+    saved_us: float
+    saved_share: float
+    saved_when_us: float
+    differences: tuple[Difference, ...]
+    n_false_prevented: int
+    n_failed_prevented: int
+    n_changed: int
 
 
-def _spent_us(log: VariantLog, times_us: Mapping[str, float]) -> dict[str, float]:
-    """Return the time of each node that a variant's last frame needed and that ran."""
-    return {
-        node: time
-        for node, code in zip(log.nodes, log.states[-1], strict=True)
-        if code and (time := times_us[log.member.names[node]]) > 0.0
-    }
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """All guards of a pipeline, on one sample of frames.
 
+    ``everything`` is the comparison of the pipeline with its ablations; ``whole`` tells that a step
+    keeps state, so that every frame had to be taken.
+    """
 
-def _told(outcome: Any) -> Any:
-    """Return an outcome as plain data; of skips and failures only that they are."""
-    return outcome.__class__.__name__ if outcome.__class__ in NO_VALUE else as_data(outcome)
-
-
-def _turned(d: Difference) -> Difference:
-    """Return the difference the other way round: the pipeline's error less its shadow's."""
-
-    def less(x: float | None) -> float | None:
-        return None if x is None else -x + 0.0
-
-    return replace(
-        d, variant=d.reference, reference=d.variant, mean=less(d.mean), low=less(d.high),
-        high=less(d.low), n_only_variant=d.n_only_reference, n_only_reference=d.n_only_variant,
-    )  # fmt: skip
+    pipeline: Pipeline
+    guards: tuple[GuardAudit, ...]
+    n_frames: int
+    n_seen: int
+    median_us: float
+    everything: Comparison
+    whole: bool
 
 
 def audit(
@@ -208,4 +122,153 @@ def audit(
     auditor = Auditor(pipeline, asked, sample, seed)
     for frame in frames:
         auditor.add(frame)
-    return auditor.close()
+    return auditor.summarise()
+
+
+class Auditor:
+    """Takes frames, or a sample of them, through a pipeline and its ablations.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    asked : tuple of str
+        Outputs or nodes asked for; the pipeline's outputs where empty.
+    sample : float
+        Share of the frames that is taken, 0 to 1; all of them where a step keeps state.
+    seed : int
+        Of the sample, and of the steps that take randomness.
+    """
+
+    def __init__(
+        self, pipeline: Pipeline, asked: tuple[str, ...] = (), sample: float = 1.0, seed: int = 0
+    ) -> None:
+        self.pipeline = pipeline
+        self.guards = [_GuardLog(ablation) for ablation in ablations_of(pipeline)]
+        asked = asked or tuple(pipeline.outputs)
+        rows = [(pipeline.name, pipeline)]
+        rows += [(g.ablation.label, g.ablation.pipeline) for g in self.guards]
+        prepared = [PreparedVariant(label, p, asked, pipeline.name) for label, p in rows]
+        self.session = Session(prepared, seed, FrameChooser(n_regular=0, most=0))
+        self.whole = self.session.stateful
+        self.sample = sample
+        self.n_seen = 0
+        self._rng = np.random.default_rng(seed)
+        self._waiting: list[Frame] | None = []
+
+    def add(self, frame: Frame) -> bool:
+        """Look at a frame; return whether it is in the sample."""
+        self.n_seen += 1
+        taken = bool(self._rng.random() < self.sample) or self.whole
+        if not taken:
+            return False
+        if self._waiting is None:
+            self._take(frame)
+        else:
+            self._waiting.append(frame)
+            if len(self._waiting) == WARM_FRAMES:
+                self._start()
+        return True
+
+    def _start(self) -> None:
+        """Warm up with the first frames of the sample, and then take them."""
+        waiting, self._waiting = self._waiting or [], None
+        self.session.warm_up(waiting)
+        for frame in waiting:
+            self._take(frame)
+
+    def _take(self, frame: Frame) -> None:
+        self.session.add(frame)
+        whole, *ablations = self.session.logs
+        for guard, log in zip(self.guards, ablations, strict=True):
+            guard.add(frame, whole, log)
+
+    def summarise(self, interrupted: bool = False) -> Audit:
+        """Return what the guards came to over the frames so far."""
+        if self._waiting:
+            self._start()
+        found = summarise(self.session, interrupted=interrupted)
+        return Audit(
+            pipeline=self.pipeline,
+            guards=tuple(guard.audited(found) for guard in self.guards),
+            n_frames=found.frames.n,
+            n_seen=self.n_seen,
+            median_us=found.variants[0].times.median_us,
+            everything=found,
+            whole=self.whole,
+        )
+
+
+@dataclass
+class _GuardLog:
+    """What one guard did so far, frame by frame."""
+
+    ablation: Ablation
+    saved_us: list[float] = field(default_factory=list)
+    stopped: list[bool] = field(default_factory=list)
+    n_false_prevented: int = 0
+    n_failed_prevented: int = 0
+    n_changed: int = 0
+
+    def add(self, frame: Frame, whole: VariantLog, ablated: VariantLog) -> None:
+        """Note the last frame of the pipeline and of its ablation."""
+        # Node by node: what both run takes the same, whatever the clock says.
+        with_it, without = _spent_us(whole), _spent_us(ablated)
+        more = [without[n] for n in without if n not in with_it]
+        self.saved_us.append(sum(more) - sum(with_it[n] for n in with_it if n not in without))
+        self.stopped.append(bool(more))
+        pairs = list(zip(_asked_of(whole), _asked_of(ablated), strict=True))
+        compared = [(_comparable(a), _comparable(b)) for a, b in pairs if a is not b]
+        self.n_changed += any(a != b for a, b in compared)
+        self.n_failed_prevented += any(b == "Failed" and a != b for a, b in compared)
+        self.n_false_prevented += frame.truth == () and any(
+            a.__class__ in NO_VALUE and b.__class__ not in NO_VALUE for a, b in pairs
+        )
+
+    def audited(self, found: Comparison) -> GuardAudit:
+        """Return what it came to in all frames, which that comparison is of."""
+        ablation = self.ablation
+        saved, stopped = np.array(self.saved_us), np.array(self.stopped, dtype=np.bool_)
+        total_us = float(saved.sum())
+        without_us = float(np.nansum(found.variants[0].times.per_frame_us)) + total_us
+        return GuardAudit(
+            node=ablation.node,
+            kind=ablation.kind,
+            text=ablation.text,
+            n_stopped=int(stopped.sum()),
+            saved_us=total_us / max(1, found.frames.n),
+            saved_share=total_us / without_us if without_us > 0.0 else 0.0,
+            saved_when_us=float(saved[stopped].mean()) if stopped.any() else 0.0,
+            differences=tuple(
+                _reversed(d) for d in found.differences if d.variant == ablation.label
+            ),
+            n_false_prevented=self.n_false_prevented,
+            n_failed_prevented=self.n_failed_prevented,
+            n_changed=self.n_changed,
+        )
+
+
+def _asked_of(log: VariantLog) -> list[Any]:
+    """Return the outcomes of what was asked of a variant in its last frame."""
+    return [log.last.outcome_at(ref) for ref in log.member.asked]
+
+
+def _spent_us(log: VariantLog) -> dict[str, float]:
+    """Return the time of each node that ran for a variant's last frame."""
+    return {node: time for node, time in log.last.times_us.items() if time > 0.0}
+
+
+def _comparable(outcome: Any) -> Any:
+    """Return an outcome as plain data; of skips and failures only that they are."""
+    return outcome.__class__.__name__ if outcome.__class__ in NO_VALUE else as_data(outcome)
+
+
+def _reversed(d: Difference) -> Difference:
+    """Return the difference the other way round: the pipeline's error less its ablation's."""
+
+    def less(x: float | None) -> float | None:
+        return None if x is None else -x + 0.0
+
+    return replace(
+        d, variant=d.reference, reference=d.variant, mean=less(d.mean), low=less(d.high),
+        high=less(d.low), n_only_variant=d.n_only_reference, n_only_reference=d.n_only_variant,
+    )  # fmt: skip

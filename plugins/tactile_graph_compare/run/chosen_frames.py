@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from tactile_graph.api.result import Result
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph import Result
+from tactile_graph.inspect import NO_VALUE, Ref
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
-from tactile_graph_compare.records.graph import STATES
-from tactile_graph_compare.run.session import Session, VariantLog
-from tactile_graph_compare.run.variant_result import NOT_SETTLED, RAN, OwnResult
+from tactile_graph_compare.records.graph import STATES, state_of
+from tactile_graph_compare.run.logs import VariantLog
+from tactile_graph_compare.run.session import Session
 
 
 def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
-    """Return the frames a session's keeper has chosen, in order."""
+    """Return the frames a session's chooser has chosen, in order."""
     errors = {log.prepared.label: _errors(log) for log in session.logs}
     return tuple(
         ChosenFrame(
@@ -23,30 +23,25 @@ def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
             {log.prepared.label: stories(result, log) for log in session.logs},
             {label: of.get(position, {}) for label, of in errors.items()},
         )
-        for position, result, choices in session.keeper.chosen()
+        for position, result, choices in session.chooser.chosen()
     )
 
 
 def stories(result: Result, log: VariantLog) -> dict[str, NodeStory]:
     """Return what each node of a variant came to in one frame, as it alone would have."""
-    own = OwnResult(result, log.member)
-    states, times_us = own.states(), result.times_us
+    alone = log.member.alone(result)
+    times_us = alone.times_us
     found = {}
     for name in log.nodes:
-        merged = log.member.names[name]
-        state = states.get(name, NOT_SETTLED)
-        if state == NOT_SETTLED:
-            found[name] = NodeStory(name, merged, STATES[0], "nothing asked for it", "", 0.0, None)
-            continue
-        outcome = own.outcome_at(Ref(name))
-        ran = state == RAN
+        outcome = alone.outcome_at(Ref(name))
+        ran = outcome.__class__ not in NO_VALUE
         found[name] = NodeStory(
             name,
-            merged,
-            STATES[state],
+            log.member.names[name],
+            STATES[state_of(outcome)],
             "" if ran else outcome.reason,
             "" if ran else outcome.origin,
-            times_us[merged],
+            times_us[name],
             outcome if ran else None,
         )
     return found
@@ -55,8 +50,8 @@ def stories(result: Result, log: VariantLog) -> dict[str, NodeStory]:
 def _errors(log: VariantLog) -> dict[int, dict[str, float]]:
     """Return by frame and quantity the signed error that is largest."""
     found: dict[int, dict[str, float]] = {}
-    for quantity, targets in log.scorer.targets.items():
-        for position, error in zip(targets.positions, targets.errors, strict=True):
+    for quantity, errors in log.scorer.errors.items():
+        for position, error in zip(errors.positions, errors.errors, strict=True):
             if math.isnan(error):
                 continue
             here = found.setdefault(position, {})

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from tactile_graph.api.result import Result
+from tactile_graph import Result
 from tactile_graph_compare.records.frames import Choice
 
 
@@ -18,7 +18,7 @@ class _Worst:
 
 
 @dataclass
-class Keeper:
+class FrameChooser:
     """Chooses frames while they go by; holds a bounded number of results at any time.
 
     Parameters

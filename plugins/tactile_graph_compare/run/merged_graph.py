@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.pipeline.graph import Node
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.inspect import Node, plain
 from tactile_graph_compare.records.graph import MergedEdge, MergedGraph, MergedNode
 from tactile_graph_compare.run.session import Session
 
@@ -16,10 +15,8 @@ from tactile_graph_compare.run.session import Session
 def merged_graph(session: Session) -> MergedGraph:
     """Return the graph of a session, with what each node came to over the frames so far."""
     pipeline = session.merged.pipeline
-    names = session.merged_nodes
-    states = np.frombuffer(b"".join(session.merged_states), dtype=np.uint8)
-    states = states.reshape(session.n, len(names))
-    times = session.times_by_node()
+    log = session.merged_log
+    names, states, times = log.nodes, log.states(), log.times_us()
     owners = _owners(session)
     nodes = tuple(
         _node(session, pipeline.nodes[name], owners[name], states[:, i], times[:, i])
@@ -31,7 +28,7 @@ def merged_graph(session: Session) -> MergedGraph:
 
 def _owners(session: Session) -> dict[str, dict[str, tuple[str, ...]]]:
     """Return for each merged node the variants that have it, and their names for it."""
-    found: dict[str, dict[str, tuple[str, ...]]] = {n: {} for n in session.merged_nodes}
+    found: dict[str, dict[str, tuple[str, ...]]] = {n: {} for n in session.merged_log.nodes}
     for log in session.logs:
         for own in log.nodes:
             owners = found[log.member.names[own]]

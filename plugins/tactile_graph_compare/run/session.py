@@ -2,97 +2,43 @@
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from itertools import chain, islice
 
 import numpy as np
 
-from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
-from tactile_graph.engine.runner import Runner, check_frame
+from tactile_graph import Result
+from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.wires.frame import Frame
-from tactile_graph_compare.run.frame_choice import Keeper
-from tactile_graph_compare.run.run_orders import orders
-from tactile_graph_compare.run.variant_result import OwnResult
-from tactile_graph_compare.score.answers import answers_of
-from tactile_graph_compare.score.scoring import Scorer
-from tactile_graph_compare.variants.merge import Member, merge
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph_compare.run.frame_choice import FrameChooser
+from tactile_graph_compare.run.logs import MergedLog, VariantLog
+from tactile_graph_compare.variants.merge import merge
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 WARM_FRAMES = 8
 WARM_S = 1.0
-MOST_TURNS = 8
+MOST_ORDERS = 8
 """Orders in which the variants run, at most."""
 
 
-class VariantLog:
-    """What one variant came to so far.
-
-    Attributes
-    ----------
-    nodes : tuple of str
-        Those its outputs need, in the order of its file.
-    states : list of bytes
-        For each frame, a code for each node, as `graph_records.STATES`.
-    times_us : list of float
-        Time of each frame; NaN where it was reused.
-    """
-
-    def __init__(self, prepared: Prepared, member: Member) -> None:
-        self.prepared = prepared
-        self.member = member
-        self.nodes = tuple(i.name for i in member.plan.nodes)
-        self.scorer = Scorer(answers_of(prepared.pipeline, prepared.asked))
-        self.states: list[bytes] = []
-        self.times_us: list[float] = []
-        self.n_ok = self.n_skipped = self.n_failed = 0
-        self.reasons: dict[tuple[str, str, str], list[Any]] = {}
-        self._merged = [member.names[n] for n in self.nodes]
-
-    def add(self, position: int, result: Result, times_us: dict[str, float]) -> dict[str, float]:
-        """Note a frame; return its worst error of each quantity."""
-        own = OwnResult(result, self.member)
-        codes = own.states()
-        self.states.append(bytes([codes.get(n, 0) for n in self.nodes]))
-        spent = sum(
-            times_us[m] for n, m in zip(self.nodes, self._merged, strict=True) if n in codes
-        )
-        self.times_us.append(math.nan if result.reused else spent)
-        self._count(own)
-        return self.scorer.add(position, result.frame, own.merged_outcome)
-
-    def _count(self, own: OwnResult) -> None:
-        refs = self.member.asked
-        kinds = {own.merged_outcome(r).__class__ for r in refs}
-        self.n_failed += Failed in kinds
-        self.n_skipped += Skipped in kinds and Failed not in kinds
-        self.n_ok += not kinds & NO_VALUE
-        if not kinds & NO_VALUE:
-            return
-        for name, ref in zip(self.prepared.asked, refs, strict=True):
-            outcome = own.outcome_at(ref)
-            if isinstance(outcome, Skipped | Failed):
-                word = "failed" if outcome.__class__ is Failed else "skipped"
-                first = [outcome.reason.partition("\n")[0], 0]
-                self.reasons.setdefault((word, name, outcome.origin), first)[1] += 1
-
-
 class Session:
-    """A comparison under way: add frames, then let `close.close` make the `Comparison`.
+    """A comparison under way: add frames, then let `summarise` make the `Comparison`.
 
     Parameters
     ----------
-    prepared : sequence of Prepared
+    prepared : sequence of PreparedVariant
     seed : int
         Seed of the steps that take randomness.
-    keeper : Keeper, optional
+    chooser : FrameChooser, optional
         Chooses the frames that are kept whole.
     """
 
     def __init__(
-        self, prepared: Sequence[Prepared], seed: int = 0, keeper: Keeper | None = None
+        self,
+        prepared: Sequence[PreparedVariant],
+        seed: int = 0,
+        chooser: FrameChooser | None = None,
     ) -> None:
         self.prepared = tuple(prepared)
         self.seed = seed
@@ -103,20 +49,12 @@ class Session:
         self.runners = self._runners(first)
         self._runner: Runner[Result] | None = None
         self.promises = self.merged.pipeline.promises
-        self._turns = np.random.default_rng(seed)
+        self._order_rng = np.random.default_rng(seed)
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
-        self.keeper = keeper or Keeper()
-        self.merged_nodes = tuple(i.name for i in self.plan.nodes)
-        self.node_times_us: list[list[float]] = []
-        self.merged_states: list[bytes] = []
-        self.fixed_us: list[float] = []
-        self.indices: list[int] = []
-        self.times_s: list[float] = []
-        self.labels: list[str] = []
-        self.n_true: list[int] = []
-        self.reused: list[bool] = []
+        self.chooser = chooser or FrameChooser()
+        self.merged_log = MergedLog(first.plan)
         self.started = time.perf_counter()
         self.last = self.started
 
@@ -130,13 +68,13 @@ class Session:
         """
         if first.stateful:
             return [first]
-        turns = orders(len(self.prepared), MOST_TURNS)
-        return [self.merged.in_order(turn).runner(seed=self.seed) for turn in turns]
+        found = balanced_orders(len(self.prepared), MOST_ORDERS)
+        return [self.merged.in_order(order).runner(seed=self.seed) for order in found]
 
     @property
     def n(self) -> int:
         """Frames so far."""
-        return len(self.indices)
+        return self.merged_log.n
 
     def warm_up(self, frames: Sequence[Frame]) -> None:
         """Run some frames through a copy, so that what is compiled or made once is not timed.
@@ -155,6 +93,12 @@ class Session:
             copy(frame)
             if time.perf_counter() > until:
                 break
+
+    def warmed(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Yield the frames, having warmed up with the first of them."""
+        first = list(islice(frames, WARM_FRAMES))
+        self.warm_up(first)
+        return chain(first, frames)
 
     def _check(self, frame: Frame) -> None:
         """Check the rules that only a frame can settle, each variant's in its own name."""
@@ -176,11 +120,10 @@ class Session:
         whole_us = 1e6 * (time.perf_counter() - start)
         if self.promises.waiting:
             self.promises.check(result)
-        times_us = result.times_us
         position = self.n
-        worst = {log.prepared.label: log.add(position, result, times_us) for log in self.logs}
-        self.keeper.add(position, result, worst)
-        self._note(frame, result, whole_us, times_us)
+        worst = {log.prepared.label: log.add(position, result) for log in self.logs}
+        self.chooser.add(position, result, worst)
+        self.merged_log.add(frame, result, whole_us)
         self.last = time.perf_counter()
         return result
 
@@ -191,32 +134,29 @@ class Session:
         """
         last = self._runner
         if last is None or not last.repeats(frame):
-            self._runner = self.runners[int(self._turns.integers(len(self.runners)))]
+            self._runner = self.runners[int(self._order_rng.integers(len(self.runners)))]
             self._runner.forget()  # what it saw last was not the frame before
         assert self._runner is not None
         return self._runner
 
-    def _note(
-        self, frame: Frame, result: Result, whole_us: float, times_us: dict[str, float]
-    ) -> None:
-        times = [times_us[n] for n in self.merged_nodes]
-        self.node_times_us.append(times)
-        self.merged_states.append(bytes([_code(result.outcome(n)) for n in self.merged_nodes]))
-        self.fixed_us.append(math.nan if result.reused else whole_us - sum(times))
-        self.indices.append(frame.index)
-        self.times_s.append(math.nan if frame.time_s is None else frame.time_s)
-        self.labels.append(frame.label)
-        self.n_true.append(-1 if frame.truth is None else len(frame.truth))
-        self.reused.append(result.reused)
 
-    def times_by_node(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """Return microseconds, shape (n_frames, n_merged_nodes)."""
-        return np.array(self.node_times_us).reshape(self.n, len(self.merged_nodes))
+def balanced_orders(n: int, most: int) -> list[tuple[int, ...]]:
+    """Return orders of ``n`` variants in which none is favoured.
 
+    Parameters
+    ----------
+    n : int
+    most : int
+        So many orders at most.
 
-def _code(outcome: Any) -> int:
-    from tactile_graph.engine.outcome import NOT_ASKED
-
-    if outcome is NOT_ASKED:
-        return 0
-    return {Skipped: 2, Failed: 3}.get(outcome.__class__, 1)
+    Returns
+    -------
+    list of tuples of int
+        Each comes at each place, and behind each other, equally often: a Latin square for an even
+        number, two for an odd one (Williams 1949). Beyond ``most`` some of them, evenly taken.
+    """
+    zigzag = [0, *(k for pair in zip(range(1, n), range(n - 1, 0, -1), strict=True) for k in pair)]
+    rows = [tuple((z + k) % n for z in zigzag[:n]) for k in range(n)]
+    if n % 2 and n > 1:
+        rows += [row[::-1] for row in rows]
+    return [rows[round(i * len(rows) / most)] for i in range(most)] if len(rows) > most else rows

@@ -9,29 +9,27 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.steps.injected import Report
-from tactile_graph_compare.records.comparison import Comparison, FrameTable, Variant
+from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.graph import Saving, Timeline
-from tactile_graph_compare.records.lineage import Evolution
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
 from tactile_graph_compare.run.chosen_frames import chosen_frames
+from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.run.merged_graph import merged_graph
-from tactile_graph_compare.run.session import Session, VariantLog
+from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.score.statistics import (
     difference_of,
-    frozen,
     score_of,
     time_difference_of,
     times_of,
     with_pareto,
 )
 from tactile_graph_compare.variants.lineage import difference_images, nodes_between
-from tactile_graph_compare.variants.one_source import given_of
 from tactile_graph_compare.variants.request import as_yaml
 
 LONGEST_SOURCE = 120
 
 
-def close(
+def summarise(
     session: Session,
     report: Report | None = None,
     interrupted: bool = False,
@@ -66,11 +64,11 @@ def close(
     chosen = chosen_frames(session)
     return Comparison(
         variants=variants,
-        frames=_frames(session),
+        frames=session.merged_log.frames(),
         source=_source(session),
         graph=merged_graph(session),
         saving=_saving(session, variants),
-        fixed_us=times_of(session.fixed_us).median_us,
+        fixed_us=times_of(session.merged_log.fixed_us).median_us,
         scores=scores,
         differences=differences,
         time_differences=times,
@@ -85,7 +83,7 @@ def close(
 
 def _scored(log: VariantLog) -> dict[str, Any]:
     """Return the targets of each quantity that something was there to answer for."""
-    return {q: t for q, t in log.scorer.targets.items() if t.positions or t.n_extra}
+    return {q: t for q, t in log.scorer.errors.items() if t.positions or t.n_extra}
 
 
 def _variant(number: int, log: VariantLog) -> Variant:
@@ -108,21 +106,11 @@ def _variant(number: int, log: VariantLog) -> Variant:
     )
 
 
-def _frames(session: Session) -> FrameTable:
-    return FrameTable(
-        frozen(session.indices, np.int64),
-        frozen(session.times_s),
-        tuple(session.labels),
-        frozen(session.n_true, np.int64),
-        frozen(session.reused, np.bool_),
-    )
-
-
 def _source(session: Session) -> str:
     source = session.merged.pipeline.source
     if source is None:
         return "frames handed in"
-    name, given = given_of(source)
+    name, given = source.name, source.given
     told = ", ".join(f"{k}: {as_yaml(v)}" for k, v in given.items())
     told = told if len(told) <= LONGEST_SOURCE else told[: LONGEST_SOURCE - 1] + "…"
     return f"{name} ({told})" if told else name
@@ -137,9 +125,9 @@ def _saving(session: Session, variants: Sequence[Variant]) -> Saving:
             owners[merged] = owners.get(merged, 0) + 1
     return Saving(
         alone_s=alone_us * 1e-6,
-        merged_s=float(session.times_by_node().sum()) * 1e-6,
+        merged_s=float(session.merged_log.times_us().sum()) * 1e-6,
         n_nodes_alone=sum(len(m.plan.nodes) for m in members),
-        n_nodes_merged=len(session.merged_nodes),
+        n_nodes_merged=len(session.merged_log.nodes),
         n_shared=sum(n > 1 for n in owners.values()),
     )
 
@@ -213,7 +201,7 @@ def _evolutions(
 
 def _provenance(session: Session, report: Report, interrupted: bool, start: int) -> dict[str, Any]:
     """Return how to make it again: as of a run, with the pipeline of every variant."""
-    from tactile_graph.cli.provenance import provenance
+    from tactile_graph.provenance import provenance
 
     rows = [
         provenance(p.pipeline, session.seed, report, given=p.given, asked=p.asked)

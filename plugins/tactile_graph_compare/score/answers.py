@@ -7,19 +7,10 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.engine.truth import shape_kind
-from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
+from tactile_graph import Pipeline
+from tactile_graph.inspect import Ref, arms, field_type, public_fields, shape_kind
 from tactile_graph.steps.signature import list_item
-from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
-
-OF_SHAPES: dict[type, tuple[str, ...]] = {
-    Circle: ("centre", "radius"),
-    Ellipse: ("centre", "length", "breadth", "angle"),
-    Rectangle: ("centre", "length", "breadth", "angle"),
-    Polygon: ("centre", "area"),
-}
-"""What of each kind of shape is compared with the truth."""
+from tactile_graph_compare.score.quantities import quantities_of
 
 
 @dataclass(frozen=True)
@@ -121,7 +112,7 @@ def _places(ref: Ref, items: Any, item: Any) -> Places | None:
     if not kinds and (kinds := _shape_kinds(field_type(item, "shape"))):
         thing = attrgetter("shape")
     if kinds:
-        quantities = tuple(dict.fromkeys(q for k in kinds for q in OF_SHAPES[k]))
+        quantities = tuple(dict.fromkeys(q for k in kinds for q in quantities_of(k)))
     elif all(_is_number(field_type(item, name)) for name in ("x_cm", "y_cm")):
         turned = _is_number(field_type(item, "angle_deg"))
         quantities = ("centre", "angle") if turned else ("centre",)

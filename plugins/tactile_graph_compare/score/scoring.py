@@ -10,13 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, Skipped
-from tactile_graph.engine.truth import shape_kind
-from tactile_graph.pipeline.wiring import Ref
+from tactile_graph.inspect import NO_VALUE, Ref, Skipped, shape_kind
 from tactile_graph.wires.frame import Frame, TrueObject
-from tactile_graph.wires.shapes import Ellipse, Rectangle, printed_angle_deg
-from tactile_graph_compare.score.answers import OF_SHAPES, Answers, Places
+from tactile_graph_compare.score.answers import Answers, Places
 from tactile_graph_compare.score.pairing import paired
+from tactile_graph_compare.score.quantities import distance_cm, errors_against, quantities_of
 
 GATE_CM = 2.0
 """What lies farther from any true object is no answer for one, where several are looked for."""
@@ -27,7 +25,7 @@ Outcomes = Callable[[Ref], Any]
 
 
 @dataclass
-class Targets:
+class QuantityErrors:
     """The targets of one quantity so far: what there was to answer, and how far the answer is off.
 
     ``offsets`` are (x, y) of centres, in cm.
@@ -59,7 +57,7 @@ class Scorer:
     def __init__(self, answers: Answers, gate_cm: float = GATE_CM) -> None:
         self.answers = answers
         self.gate_cm = gate_cm
-        self.targets: dict[str, Targets] = defaultdict(Targets)
+        self.errors: dict[str, QuantityErrors] = defaultdict(QuantityErrors)
 
     def add(self, position: int, frame: Frame, outcomes: Outcomes) -> dict[str, float]:
         """Enter a frame; return its worst error of each quantity, NaN where something is missing.
@@ -74,13 +72,13 @@ class Scorer:
         """
         if frame.truth is None:
             return {}
-        before = {name: len(t.errors) for name, t in self.targets.items()}
+        before = {name: len(t.errors) for name, t in self.errors.items()}
         self._places(position, frame.truth, outcomes)
         self._count(position, frame.truth, outcomes)
         self._identity(position, frame.truth, outcomes)
         return {
             name: _worst(new)
-            for name, t in self.targets.items()
+            for name, t in self.errors.items()
             if (new := t.errors[before.get(name, 0) :])
         }
 
@@ -103,7 +101,7 @@ class Scorer:
         if place.many:
             for number in sorted(set(range(len(truth))) - {n for n, _ in pairs}):
                 self._missing(position, number, set(self._of(truth[number])))
-        self.targets["centre"].n_extra += len(things) - len(pairs)
+        self.errors["centre"].n_extra += len(things) - len(pairs)
 
     def _answering(self, outcomes: Outcomes) -> tuple[Places, Any]:
         """Return the first output that was not skipped; a failed one has no other stand in."""
@@ -121,11 +119,11 @@ class Scorer:
         (thing,) = things
         kind = shape_kind(type(thing))
         alike = [i for i, t in enumerate(truth) if kind and isinstance(t.shape, kind)]
-        near = min(alike or range(len(truth)), key=lambda i: _off_cm(thing, truth[i].shape))
+        near = min(alike or range(len(truth)), key=lambda i: distance_cm(thing, truth[i].shape))
         return [(near, thing)]
 
     def _many(self, truth: tuple[TrueObject, ...], things: list[Any]) -> list[tuple[int, Any]]:
-        off = np.array([[_off_cm(g, t.shape) for g in things] for t in truth])
+        off = np.array([[distance_cm(g, t.shape) for g in things] for t in truth])
         pairs = paired(off.reshape(len(truth), len(things)), self.gate_cm)
         return [(i, things[j]) for i, j in pairs]
 
@@ -134,19 +132,19 @@ class Scorer:
         kind = shape_kind(type(true.shape))
         mine = {q for p in self.answers.places for q in p.quantities}
         kinds = {k for p in self.answers.places for k in p.kinds}
-        of_kind = OF_SHAPES.get(kind, ("centre",)) if kind else ("centre",)
+        of_kind = quantities_of(kind) if kind else ("centre",)
         return [q for q in of_kind if q in mine and (q in ("centre", "angle") or kind in kinds)]
 
     def _missing(self, position: int, number: int, quantities: set[str]) -> None:
         for name in sorted(quantities):
-            self.targets[name].add(position, number)
+            self.errors[name].add(position, number)
 
     def _compare(self, position: int, number: int, true: TrueObject, thing: Any) -> None:
-        errors = _errors(thing, true.shape)
+        errors = errors_against(thing, true.shape)
         for name in self._of(true):
-            self.targets[name].add(position, number, errors.get(name, math.nan))
+            self.errors[name].add(position, number, errors.get(name, math.nan))
         offset = (thing.x_cm - true.shape.x_cm, thing.y_cm - true.shape.y_cm)
-        self.targets["centre"].offsets.append(offset)
+        self.errors["centre"].offsets.append(offset)
 
     # -- how many, and which --------------------------------------------------------------------
 
@@ -157,10 +155,10 @@ class Scorer:
             value = outcomes(ref)
             if value.__class__ not in NO_VALUE:
                 off = float(count(value) - len(truth))
-                self.targets["count"].add(position, NOBODY, off)
+                self.errors["count"].add(position, NOBODY, off)
                 return
         if truth:
-            self.targets["count"].add(position, NOBODY)
+            self.errors["count"].add(position, NOBODY)
 
     def _identity(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
         names = {t.name for t in truth} - {""}
@@ -171,38 +169,10 @@ class Scorer:
         said = "" if value.__class__ in NO_VALUE or not value.known else value.name
         if names:
             error = float(said not in names) if said else math.nan
-            self.targets["identity"].add(position, NOBODY, error)
+            self.errors["identity"].add(position, NOBODY, error)
         elif said and not truth:
-            self.targets["identity"].n_extra += 1
+            self.errors["identity"].n_extra += 1
 
 
 def _worst(errors: list[float]) -> float:
     return max(errors, key=lambda e: math.inf if math.isnan(e) else abs(e))
-
-
-def _off_cm(a: Any, b: Any) -> float:
-    return math.hypot(a.x_cm - b.x_cm, a.y_cm - b.y_cm)
-
-
-def _errors(found: Any, true: Any) -> dict[str, float]:
-    """Return how far each quantity is off, found less true, of those that both have."""
-    errors = {"centre": _off_cm(found, true)}
-    if isinstance(true, Rectangle | Ellipse) and hasattr(found, "angle_deg"):
-        # An axis has no head: 179 degrees off is 1 degree off.
-        errors["angle"] = printed_angle_deg(math.radians(found.angle_deg - true.angle_deg))
-    kind = shape_kind(type(found))
-    if kind is None or not isinstance(true, kind):
-        return errors
-    for quantity, name, by in _MEASURES.get(kind.__name__, ()):
-        errors[quantity] = by * (float(getattr(found, name)) - float(getattr(true, name)))
-    return errors
-
-
-_MEASURES: dict[str, tuple[tuple[str, str, float], ...]] = {
-    "Circle": (("radius", "radius_cm", 1.0),),
-    "Rectangle": (("length", "length_cm", 1.0), ("breadth", "breadth_cm", 1.0)),
-    "Ellipse": (("length", "semi_major_cm", 2.0), ("breadth", "semi_minor_cm", 2.0)),
-    "Polygon": (("area", "area_cm2", 1.0),),
-}
-"""Kind of shape -> quantity, its field, and by what that is multiplied: an ellipse's length is its
-whole major axis."""

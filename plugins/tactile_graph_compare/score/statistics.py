@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference, Times
 from tactile_graph_compare.score.quantities import QUANTITIES
-from tactile_graph_compare.score.scoring import Targets
+from tactile_graph_compare.score.scoring import QuantityErrors
 
 Reals = NDArray[np.float64]
 LEVEL = 0.95
@@ -29,9 +29,9 @@ def frozen(values: Sequence[float] | Reals, kind: type = np.float64) -> NDArray[
     return array
 
 
-def score_of(variant: str, quantity: str, targets: Targets) -> Score:
+def score_of(variant: str, quantity: str, found: QuantityErrors) -> Score:
     """Return the score of what was collected for one quantity of one variant."""
-    errors = np.asarray(targets.errors, dtype=np.float64)
+    errors = np.asarray(found.errors, dtype=np.float64)
     known = errors[~np.isnan(errors)]
     off = np.abs(known)
     some = off.size > 0
@@ -39,13 +39,13 @@ def score_of(variant: str, quantity: str, targets: Targets) -> Score:
     if some:
         bias = float(known.mean())
         if quantity == "centre":
-            bias = float(np.hypot(*np.mean(targets.offsets, axis=0)))
+            bias = float(np.hypot(*np.mean(found.offsets, axis=0)))
     return Score(
         variant,
         quantity,
         QUANTITIES[quantity],
-        frozen(targets.positions, np.int64),
-        frozen(targets.objects, np.int64),
+        frozen(found.positions, np.int64),
+        frozen(found.objects, np.int64),
         frozen(errors),
         float(off.mean()) if some else None,
         float(np.median(off)) if some else None,
@@ -54,7 +54,7 @@ def score_of(variant: str, quantity: str, targets: Targets) -> Score:
         bias,
         int(off.size),
         int(errors.size - off.size),
-        targets.n_extra,
+        found.n_extra,
     )
 
 

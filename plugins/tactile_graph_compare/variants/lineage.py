@@ -6,12 +6,10 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.graph import Node
-from tactile_graph.pipeline.plain import plain
+from tactile_graph import Pipeline
+from tactile_graph.inspect import Guard, Node, plain
+from tactile_graph_compare.records.comparison import NodeChange, SettingChange
 from tactile_graph_compare.records.frames import ChosenFrame, DifferenceImage
-from tactile_graph_compare.records.lineage import NodeChange, SettingChange
 
 
 def changes_of(parent: Node, child: Node) -> tuple[SettingChange, ...]:

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections import Counter
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.engine.plan import Plan, make_plan
-from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.graph import FRAME, Node
-from tactile_graph.pipeline.wiring import Ref
-from tactile_graph_compare.variants.identity import identities
+from tactile_graph import Pipeline
+from tactile_graph.inspect import (
+    FRAME,
+    Graph,
+    Node,
+    NodeKind,
+    Plan,
+    Ref,
+    Replay,
+    make_plan,
+    node_key,
+    plain,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +42,15 @@ class Member:
     plan: Plan
     names: dict[str, str]
     asked: tuple[Ref, ...]
-    _refs: dict[Ref, Ref] = field(default_factory=dict, init=False)
 
     def ref(self, ref: Ref) -> Ref:
         """Return where the merged graph has what the variant reads at ``ref``."""
-        found = self._refs.get(ref)
-        if found is None:
-            found = self._refs[ref] = replace(ref, node=self.names[ref.node])
-        return found
+        return replace(ref, node=self.names[ref.node])
+
+    @cached_property
+    def alone(self) -> Replay:
+        """What turns a merged result into the one the variant alone would have given."""
+        return Replay(self.plan, self.names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,65 +87,51 @@ def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merg
     -----
     What comes out of a variant's nodes is what it alone would have given: a node's outcome is a
     function of the frame and of its state, and steps that keep state are shared only where both
-    see every frame (`identity`). What ran may be more: what one variant needs, another may not.
+    see every frame (`node_digests`). What ran may be more: what one variant needs, another may not.
     """
-    nodes: dict[str, Node] = {}
-    by_identity: dict[str, str] = {}
-    taken: set[str] = set()
-    often = _often(pipelines)
-    members: list[Member] = []
-    outputs: dict[str, Ref] = {}
-    for number, (pipeline, wanted) in enumerate(zip(pipelines, asked, strict=True), 1):
-        plan = make_plan(pipeline, tuple(wanted))
+    merger = _Merger(pipelines)
+    members = tuple(
+        merger.add(number, pipeline, names)
+        for number, (pipeline, names) in enumerate(zip(pipelines, asked, strict=True), 1)
+    )
+    return Merged(_pipeline(pipelines, merger.nodes, merger.outputs), members)
+
+
+class _Merger:
+    """The merged nodes so far."""
+
+    def __init__(self, pipelines: Sequence[Pipeline]) -> None:
+        self.nodes: dict[str, Node] = {}
+        self.outputs: dict[str, Ref] = {}
+        self._by_digest: dict[str, str] = {}
+        uses = Counter(name for pipeline in pipelines for name in pipeline.nodes)
+        self._ambiguous = {name for name, n in uses.items() if n > 1}
+
+    def add(self, number: int, pipeline: Pipeline, asked: Sequence[str]) -> Member:
+        """Enter what a demand on a pipeline needs; return its place."""
+        plan = make_plan(pipeline, tuple(asked))
         always = {plan.items[slot].name for slot in plan.main}
-        digests = identities(pipeline, always, number)
-        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in wanted)
+        digests = node_digests(pipeline, always, number)
+        refs = tuple(pipeline.outputs.get(name) or pipeline.ref(name) for name in asked)
         member = Member(pipeline, plan, {FRAME: FRAME}, refs)
         for item in plan.nodes:
             digest = digests[item.name]
-            if digest not in by_identity:
-                name = _name(item.name, number, often, taken)
-                by_identity[digest] = name
-                nodes[name] = _moved(pipeline.nodes[item.name], name, member)
-            member.names[item.name] = by_identity[digest]
-        outputs |= {f"{number}:{name}": member.ref(r) for name, r in zip(wanted, refs, strict=True)}
-        members.append(member)
-    return Merged(_pipeline(pipelines, nodes, outputs), tuple(members))
+            if digest not in self._by_digest:
+                name = self._by_digest[digest] = self._name(item.name, number)
+                self.nodes[name] = pipeline.nodes[item.name].rewired(name, member.ref)
+            member.names[item.name] = self._by_digest[digest]
+        for name, ref in zip(asked, refs, strict=True):
+            self.outputs[f"{number}:{name}"] = member.ref(ref)
+        return member
 
-
-def _often(pipelines: Sequence[Pipeline]) -> set[str]:
-    """Return the names that more than one pipeline uses."""
-    seen: set[str] = set()
-    often: set[str] = set()
-    for pipeline in pipelines:
-        often |= seen & set(pipeline.nodes)
-        seen |= set(pipeline.nodes)
-    return often
-
-
-def _name(own: str, number: int, often: set[str], taken: set[str]) -> str:
-    """Return a name no other merged node has; without dots, which part fields."""
-    name = plain = own.replace(".", ":")
-    if own in often and name in taken:
-        name = f"{plain}@{number}"
-    while name in taken:
-        name += "'"
-    taken.add(name)
-    return name
-
-
-def _moved(node: Node, name: str, member: Member) -> Node:
-    guard = node.guard
-    if guard is not None:
-        refs = tuple(member.ref(r) for r in guard.refs)
-        guard = Guard(guard.text, refs, guard.function, guard.meaning)
-    return replace(
-        node,
-        name=name,
-        inputs=tuple(replace(b, refs=tuple(member.ref(r) for r in b.refs)) for b in node.inputs),
-        choices=tuple(member.ref(c) for c in node.choices),
-        guard=guard,
-    )
+    def _name(self, own: str, number: int) -> str:
+        """Return a name no other merged node has; without dots, which part fields."""
+        name = plain = own.replace(".", ":")
+        if own in self._ambiguous and name in self.nodes:
+            name = f"{plain}@{number}"
+        while name in self.nodes:
+            name += "'"
+        return name
 
 
 def _pipeline(
@@ -151,4 +148,67 @@ def _pipeline(
         file="",
         text="nodes: {}\n",  # no file spells anything out; pictures look here for what one did
         registry=first.registry,
+    )
+
+
+def node_digests(pipeline: Graph, always: Collection[str], private: object) -> dict[str, str]:
+    """Return a digest for each node, equal for nodes that may be run as one.
+
+    Parameters
+    ----------
+    pipeline : Graph
+    always : collection of str
+        Nodes that are settled for every frame, whatever the frame holds. A step that keeps state
+        is shared only among these: one that a guard or an earlier choice keeps from some frames
+        would otherwise see frames that it alone never sees.
+    private : object
+        Goes into the digests of what is not shared.
+
+    Returns
+    -------
+    dict of str
+        Node name -> digest. Equal are step, settings, guard (spelled out) and all that is read,
+        down to the frame.
+
+    Notes
+    -----
+    `Node.key` is made for seeding: it tells a node from the same one inside an embedded pipeline.
+    Here such nodes are equal too, unless they take randomness, which is seeded by that very key.
+    """
+    digests = {FRAME: FRAME}
+    for name, node in pipeline.nodes.items():
+        own: tuple[object, ...] = ()
+        if node.stateful and name not in always:
+            own = ("private", private, name)
+        digests[name] = node_key(_what(node), _wires(node, digests), own)
+    return digests
+
+
+def _what(node: Node) -> tuple[object, ...]:
+    """Return what a node does, apart from what it reads."""
+    if node.kind is NodeKind.MAP:
+        return ("map", node.name, *_inner(node.inner))
+    if node.signature is None:
+        return (node.kind.value,)
+    seed = node.key if node.signature.rng else ""
+    settings = sorted(plain(node.settings).items())
+    return ("step", node.signature.name, id(node.signature.target), settings, node.each, seed)
+
+
+def _inner(pipeline: Graph | None) -> tuple[object, ...]:
+    """Return what makes two mapped pipelines equal: also their names, which failures carry."""
+    assert pipeline is not None
+    inner = node_digests(pipeline, pipeline.nodes, "")
+    return (pipeline.resolved()["nodes"], inner, list(pipeline.outputs.items()), pipeline.key)
+
+
+def _wires(node: Node, found: dict[str, str]) -> tuple[object, ...]:
+    def one(ref: Ref) -> Any:
+        return (found[ref.node], ref.path, ref.item_path)
+
+    guard = node.guard
+    return (
+        None if guard is None else (guard.meaning, [one(r) for r in guard.refs]),
+        [(b.port.name, b.collects, b.iterates, [one(r) for r in b.refs]) for b in node.inputs],
+        [one(r) for r in node.choices],
     )

@@ -6,20 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
 from tactile_graph.errors import PipelineError, Problem, UsageError
-from tactile_graph.pipeline.graph import Source
-from tactile_graph.pipeline.plain import plain
-from tactile_graph_compare.variants.variants import Prepared
+from tactile_graph.inspect import plain
+from tactile_graph_compare.variants.prepare import PreparedVariant
 
 COUNT = "frames"
 """The setting by which a source that makes its frames is told how many."""
 
-Given = tuple[str, dict[str, Any]]
-"""A source step and what is set of it."""
 
-
-def first_source(prepared: Sequence[Prepared]) -> tuple[Prepared, list[str]]:
+def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, list[str]]:
     """Return the first variant that declares a source, and what people should know of that.
 
     Raises
@@ -38,12 +34,6 @@ def first_source(prepared: Sequence[Prepared]) -> tuple[Prepared, list[str]]:
     return first, [told + ", ".join(others)]
 
 
-def given_of(source: Source) -> Given:
-    """Return a source's step, and those of its settings that are not the defaults."""
-    defaults = {s.name: s.default for s in source.signature.settings}
-    return source.name, {k: v for k, v in source.settings.items() if v is not defaults.get(k)}
-
-
 def makes_frames(pipeline: Pipeline, step: str) -> bool:
     """Return whether a source step can be told how many frames to make."""
     registry = pipeline.registry
@@ -52,9 +42,9 @@ def makes_frames(pipeline: Pipeline, step: str) -> bool:
     return any(s.name == COUNT for s in registry.step(step).settings)
 
 
-def on_source(prepared: Sequence[Prepared], step: str, settings: Mapping[str, Any]) -> list[
-    Prepared
-]:  # fmt: skip
+def on_source(
+    prepared: Sequence[PreparedVariant], step: str, settings: Mapping[str, Any]
+) -> list[PreparedVariant]:
     """Return the variants on a source.
 
     Raises
@@ -76,7 +66,7 @@ def on_source(prepared: Sequence[Prepared], step: str, settings: Mapping[str, An
     return placed
 
 
-def without_source(prepared: Sequence[Prepared]) -> list[Prepared]:
+def without_source(prepared: Sequence[PreparedVariant]) -> list[PreparedVariant]:
     """Return the variants as they are on frames handed in: with no source of their own."""
     return [replace(p, pipeline=replace(p.pipeline, source=None)) for p in prepared]
 

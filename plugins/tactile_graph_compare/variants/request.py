@@ -8,14 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.inspect import plain
+from tactile_graph.pipeline.document import assignment
 from tactile_graph.plugins.registry import Registry
 
 
 @dataclass(frozen=True)
-class Wanted:
+class VariantRequest:
     """One variant as it was asked for.
 
     Parameters
@@ -36,7 +37,7 @@ class Wanted:
     swept: bool = True
 
 
-def parse_wanted(text: str, registry: Registry) -> Wanted:
+def parse_request(text: str, registry: Registry) -> VariantRequest:
     """Return the variant that ``NAME --set node.setting=value … --only NODE …`` spells.
 
     Raises
@@ -45,7 +46,7 @@ def parse_wanted(text: str, registry: Registry) -> Wanted:
         If it holds anything else.
     """
     if " " not in text.strip() or registry.has("pipelines", text) or Path(text).is_file():
-        return Wanted(text)
+        return VariantRequest(text)
     try:
         name, *rest = shlex.split(text)
     except ValueError as error:
@@ -67,14 +68,8 @@ def parse_wanted(text: str, registry: Registry) -> Wanted:
         if option == "--only":
             only.append(value)
         else:
-            settings |= dict([_assigned(value)])
-    return Wanted(name, settings, tuple(only))
-
-
-def _assigned(text: str) -> tuple[str, Any]:
-    from tactile_graph.cli.arguments import assignment
-
-    return assignment("--set", text)
+            settings |= dict([assignment("--set", value)])
+    return VariantRequest(name, settings, tuple(only))
 
 
 def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:

@@ -20,7 +20,7 @@ from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
 from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
-from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, Mode, maximise, softened
+from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem
 from tactile_graph_likelihood.single.search import ATTEMPTS, POOR, SAME, TRIES, likeliest_start
 
@@ -131,21 +131,25 @@ def _surprise(problem: Problem, p: Values) -> float:
 
 @compiled_as_is
 def find_mode_on_large_pad(
-    problem: Problem, table: Values, start: Values, attempts: tuple[int, int], best: Mode
-) -> tuple[Mode, bool]:
+    problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
+    height: float,
+) -> tuple[float, bool]:  # fmt: skip
     """Return what `search.find_mode` does, of a pad of more than 1024 elements."""
-    n = best.p.shape[0]
-    trial, root = np.zeros(n), np.zeros((n, n))
+    n = p.shape[0]
+    trial, its_root = np.zeros(n), np.zeros((n, n))
     blocks = coarsened(problem)
-    for attempt in range(attempts[0], attempts[1]):
+    for attempt in range(first, last):
         given, seen = start[:0], blocks
         if attempt == 0:
             given, seen = start, Blocks(in_one_piece(blocks.problem), blocks.block, blocks.load)
         _start(problem, seen, given, table, attempt * TRIES, trial)
-        here = maximise_from_blocks(problem, blocks.block, trial, root)
-        again = attempt > 0 and abs(here - best.height) < SAME
-        if here > best.height:
-            best = Mode(trial.copy(), root.copy(), here)
-        if best.height > -math.inf and (_surprise(problem, best.p) > POOR or again):
-            return best, False
-    return best, attempts[1] < ATTEMPTS
+        here = maximise_from_blocks(problem, blocks.block, trial, its_root)
+        again = attempt > 0 and abs(here - height) < SAME
+        if here > height:
+            height = here
+            p[:] = trial
+            for k in range(n):
+                root[k, :] = its_root[k]
+        if height > -math.inf and (_surprise(problem, p) > POOR or again):
+            return height, False
+    return height, last < ATTEMPTS

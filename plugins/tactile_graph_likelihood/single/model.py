@@ -32,7 +32,7 @@ from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
-from tactile_graph_likelihood.single.sample import Plan, Sample, log_volume, sample_around
+from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
 from tactile_graph_likelihood.single.search import ATTEMPTS, find_mode, moments
 
 BLOCK = 32
@@ -153,16 +153,19 @@ class Model:
         known: Mode | None,
     ) -> tuple[Mode, bool]:  # fmt: skip
         n = table.shape[1]
-        best = Mode(np.zeros(n), np.zeros((n, n)), -math.inf) if known is None else known
+        p, root, height = np.zeros(n), np.zeros((n, n)), -math.inf
+        if known is not None:
+            p, root, height = known.p.copy(), known.root.copy(), known.height
         find = find_mode if problem.states.size <= LARGE_PAD else find_mode_on_large_pad
-        return find.call(problem, table, begin, attempts, best)
+        height, unsure = find.call(problem, table, begin, *attempts, p, root, height)
+        return Mode(p, root, height), unsure
 
     def _sampled(self, readings: Readings, problem: Problem, mode: Mode) -> Posterior:
         if mode.height > -math.inf:
             large = problem.states.size > LARGE_PAD
             whole = covered_around.call(problem, mode.p) if large else None
-            plan = Plan(self._table(problem), BLOCK, self.precision**-2)
-            sample = sample_around.call(problem, whole, plan, mode)
+            table, worth = self._table(problem), self.precision**-2
+            sample = sample_around.call(problem, whole, table, BLOCK, worth, *mode)
             if len(sample.points):
                 return self._posterior_of(problem.kind, sample)
         raise Degenerate(

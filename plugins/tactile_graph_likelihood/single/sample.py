@@ -311,17 +311,22 @@ def importance_sample(
 
 
 @compiled_as_is
-def sample_around(problem: Problem, whole: CoveredWhole | None, plan: Plan, mode: Mode) -> Sample:
+def sample_around(
+    problem: Problem, whole: CoveredWhole | None, table: Values, block: int, worth: float,
+    p: Values, root: Values, height: float,
+) -> Sample:  # fmt: skip
     """Return the posterior around a mode.
 
     Parameters
     ----------
     problem, whole
         As in `evaluate.log_likelihood_at`.
-    plan : Plan
-    mode : Mode
-        A possible one.
+    table, block, worth
+        Of the `Plan`: handing over more than one record costs 15 us.
+    p, root, height
+        Of the `Mode`, a possible one.
     """
+    plan, mode = Plan(table, block, worth), Mode(p, root, height)
     kind, n, count = problem.kind, mode.p.shape[0], plan.table.shape[0]
     prior = problem.prior.copy()
     if period(kind, problem.corners) > 0.0:

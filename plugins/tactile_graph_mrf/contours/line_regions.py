@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.labels import label
-from tactile_graph_mrf.contours.regions import Flags, Regions, parted, require_grid, standing
+from tactile_graph_mrf.contours.regions import Flags, Regions, label_regions, require_grid, standing
 from tactile_graph_mrf.energy.line_field import LineField
 
 
@@ -54,7 +54,7 @@ def line_regions(
     """
     require_grid(lines, image)
     values = np.where(np.isfinite(image.values), image.values, 0.0)
-    labels = parted.call(lines.horizontal, lines.vertical)
+    labels = label_regions.call(lines.horizontal, lines.vertical)
     raised = standing(values, lines, labels, least_step)
     mask = with_voids(raised[labels], void_cells)
     _, sizes, found = _parts(mask, eight=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.energy.line_field import LineField
@@ -52,34 +52,12 @@ class Regions:
         return self.mask.area_cm2
 
 
-def _parted_plain(horizontal: Flags, vertical: Flags) -> NDArray[np.int32]:
+@compiled_as_is
+def label_regions(horizontal: Any, vertical: Any) -> NDArray[np.int32]:
     """Return the region of each cell, shape (rows, columns), from 1 in reading order.
 
     Two cells that share a side with no line on it are in one region.
     """
-    rows, columns = vertical.shape[0], horizontal.shape[1]
-    first = np.arange(rows * columns).reshape(rows, columns)  # of the region, as known so far
-    far = rows * columns
-    while True:
-        lowest = first.copy()
-        across = np.where(horizontal, far, np.minimum(first[:-1], first[1:]))
-        down = np.where(vertical, far, np.minimum(first[:, :-1], first[:, 1:]))
-        for part, other in (
-            (lowest[:-1], across),
-            (lowest[1:], across),
-            (lowest[:, :-1], down),
-            (lowest[:, 1:], down),
-        ):
-            np.minimum(part, other, out=part)
-        if np.array_equal(lowest, first):
-            break
-        first = lowest
-    return (np.searchsorted(np.unique(first), first) + 1).astype(np.int32)
-
-
-@compiled_twin_of(_parted_plain)
-def parted(horizontal, vertical):  # type: ignore[no-untyped-def]
-    """Do the same by filling one region after the other."""
     rows, columns = vertical.shape[0], horizontal.shape[1]
     labels = np.zeros((rows, columns), np.int32)
     stack = np.empty(rows * columns, np.int64)

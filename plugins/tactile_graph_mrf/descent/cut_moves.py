@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph_mrf.descent.swap_moves import swap_cycle
-from tactile_graph_mrf.energy.layout import by_cell, layout
-from tactile_graph_mrf.energy.model import Problem
-from tactile_graph_mrf.samplers.visits import fit_for
+from tactile_graph_mrf.descent.swap_moves import Bonds, swap_cycle
+from tactile_graph_mrf.energy.layout import by_cell
+from tactile_graph_mrf.energy.potentials import Unary
+from tactile_graph_mrf.energy.problem import Problem
+from tactile_graph_mrf.kernels import fit_for
 
 Labels = NDArray[np.int64]
 Costs = NDArray[np.float64]
@@ -39,7 +40,7 @@ class Cuts:
 
     def __init__(self, problem: Problem, moves: str) -> None:
         self.problem = problem
-        rho = problem.smooth
+        rho = problem.pairwise.smooth
         if problem.model.lines == "explicit":
             rho = np.minimum(rho, problem.model.line_price)
         self.rho = rho
@@ -83,11 +84,10 @@ class Cuts:
     def _swap(self, flat: Labels) -> None:
         """Trade labels that are there for one another, and for those beside them."""
         p = self.problem
-        tables = layout(p)
-        near, _ = by_cell(tables, flat.size)
-        own = p.curvature.ravel(), p.centre.ravel(), p.table, p.row.ravel()
         kernel = fit_for(swap_cycle, flat.size * p.n_levels)
-        kernel(tables.cells, near, *own, self.rho, p.weights, flat)
+        in_field, curvature, centre, table, row = p.unary
+        unary = Unary(in_field.ravel(), curvature.ravel(), centre.ravel(), table, row.ravel())
+        kernel(unary, Bonds(self.rho, p.pairwise.weights), by_cell(p), flat)
 
     def _jumps(self, flat: Labels) -> Iterator[Labels]:
         size = 1 << (self.problem.n_levels - 1).bit_length()
@@ -134,17 +134,17 @@ class Cuts:
             flat[:] = moved
 
     def _own(self, cells: Labels, labels: Labels) -> Costs:
-        p = self.problem
-        top = p.n_levels - 1
-        within = np.clip(labels, 0, top)
-        square = (within - p.centre.ravel()[cells]) ** 2
-        costs = p.curvature.ravel()[cells] * square + p.table[p.row.ravel()[cells], within]
+        own = self.problem.unary
+        within = np.clip(labels, 0, self.problem.n_levels - 1)
+        square = (within - own.centre.ravel()[cells]) ** 2
+        table = own.table[own.row.ravel()[cells], within]
+        costs = own.curvature.ravel()[cells] * square + table
         # Off the scale is dearer than anything a cut could save.
         return np.asarray(costs + np.where(within == labels, 0.0, self._forbidding))
 
     @property
     def _forbidding(self) -> float:
-        return 1e3 * (float(self.rho.max()) + float(self.problem.table.max()) + 1.0) + 1e9
+        return 1e3 * (float(self.rho.max()) + float(self.problem.unary.table.max()) + 1.0) + 1e9
 
     def _between(self, x: Labels, y: Labels) -> Costs:
         d = np.abs(x - y)
@@ -181,12 +181,13 @@ def _pairs(problem: Problem) -> tuple[tuple[Labels, Labels], Costs]:
     rows, columns = problem.shape
     index = np.arange(rows * columns).reshape(rows, columns)
     ends, weights = [], []
-    for (di, dj), weight in zip(problem.offsets.tolist(), problem.weights.tolist(), strict=True):
+    pairwise, on = problem.pairwise, problem.in_field
+    for (di, dj), weight in zip(pairwise.offsets.tolist(), pairwise.weights.tolist(), strict=True):
         if di >= rows or abs(dj) >= columns:
             continue
         a = np.s_[: rows - di, max(-dj, 0) : columns - max(dj, 0)]
         b = np.s_[di:, max(dj, 0) : columns - max(-dj, 0)]
-        both = problem.in_field[a] & problem.in_field[b]
+        both = on[a] & on[b]
         ends.append((index[a][both], index[b][both]))
         weights.append(np.full(int(both.sum()), weight))
     first = np.concatenate([np.zeros(0, np.int64), *(a for a, _ in ends)])

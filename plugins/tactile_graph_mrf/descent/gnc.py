@@ -7,10 +7,12 @@ from typing import Annotated
 from annotated_types import Ge, Gt, Le
 
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.descent.graduate import graduated, influence, settled
+from tactile_graph_mrf.descent.graduate import Relaxation, graduated, influence, rounded
 from tactile_graph_mrf.energy.line_field import Restored
-from tactile_graph_mrf.energy.model import Model, energy
-from tactile_graph_mrf.samplers.annealing import outcome, unswept
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised
+from tactile_graph_mrf.energy.total import energy
 
 
 def gnc(
@@ -68,10 +70,12 @@ def gnc(
     A. Blake and A. Zisserman, "Visual Reconstruction" (1987), chapter 7; its g* is generalised to
     any smoothness by a convex hull (`tactile_graph_mrf.descent.graduate.influence`).
     """
-    problem = model.prepare(image, region, expected)
-    if problem.idle:
-        return unswept(problem)
-    stages = graduated(problem, influence(model, n_steps, growth), n_sweeps, over)
-    states = [settled(problem, levels) for levels in stages]
-    trace = [energy(problem, *state) for state in states]
-    return outcome(problem, states[trace.index(min(trace))], trace)
+
+    def followed(problem: Problem) -> tuple[State, list[float]]:
+        path = influence(model, n_steps, growth)
+        stages = graduated(problem, path, Relaxation(n_sweeps, over))
+        states = [rounded(problem, levels) for levels in stages]
+        trace = [energy(problem, *state) for state in states]
+        return states[trace.index(min(trace))], trace
+
+    return minimised(prepare(model, image, region, expected), followed)

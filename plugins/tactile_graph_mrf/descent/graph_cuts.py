@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from annotated_types import Ge, Le
+from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.cut_moves import Cuts
-from tactile_graph_mrf.energy.line_field import Restored, no_lines
-from tactile_graph_mrf.energy.model import Model, energy
-from tactile_graph_mrf.samplers.annealing import State, outcome, run, unswept
+from tactile_graph_mrf.descent.modes import settle
+from tactile_graph_mrf.energy.line_field import Restored
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised, with_lines
+from tactile_graph_mrf.energy.total import energy
 
 
 def graph_cuts(
@@ -70,10 +74,13 @@ def graph_cuts(
     A. Shioura 2009, DOI 10.1016/j.disopt.2009.04.006; which costs can be cut: V. Kolmogorov and
     R. Zabih 2004, DOI 10.1109/TPAMI.2004.1262177.
     """
-    problem = model.prepare(image, region, expected)
+    problem = prepare(model, image, region, expected)
     cuts = Cuts(problem, moves)
-    if problem.idle:
-        return unswept(problem)
+    return minimised(problem, lambda _: _cut(cuts, n_cycles))
+
+
+def _cut(cuts: Cuts, n_cycles: int) -> tuple[State, list[float]]:
+    problem = cuts.problem
     labels = np.where(problem.in_field, cuts.start(), 0)
     trace = [_energy(problem, labels)]
     for _ in range(n_cycles):
@@ -81,16 +88,12 @@ def graph_cuts(
         trace.append(_energy(problem, labels))
         if not trace[-1] < trace[-2]:
             break
-    state = State(labels, *no_lines(problem.shape))
-    if model.lines == "explicit":
-        state = State(labels, *problem.lines_of(labels))
-        trace = [*trace[:-1], energy(problem, *state)]
-        trace += run(problem, state, np.full(100, np.inf), None)
-    return outcome(problem, state, trace)
-
-
-def _energy(problem: Any, labels: Any) -> float:
-    """Return the energy with those lines on that pay by themselves."""
+    state = with_lines(problem, labels)
     if problem.model.lines == "explicit":
-        return energy(problem, labels, *problem.lines_of(labels))
-    return energy(problem, labels)
+        trace += settle(problem, state, 100)
+    return state, trace
+
+
+def _energy(problem: Problem, labels: NDArray[np.int64]) -> float:
+    """Return the energy with those lines on that pay by themselves."""
+    return energy(problem, *with_lines(problem, labels))

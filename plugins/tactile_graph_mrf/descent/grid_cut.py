@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 
@@ -10,9 +13,29 @@ LEAST = 1e-9
 """Capacity or excess below which there is none, relative to the largest excess."""
 
 
+class Graph(NamedTuple):
+    """Nodes with few edges each; a cut uses up all but ``near``.
+
+    Parameters
+    ----------
+    near : ndarray of int64, shape (nodes, degree)
+        Each node's neighbours or -1, edge ``q ^ 1`` being edge ``q`` the other way.
+    cap : ndarray of float64, shape (nodes, degree)
+        What the edges hold.
+    excess, sink : ndarray of float64, shape (nodes,)
+        What a node gets from the source, and what it can hand to the sink.
+    """
+
+    near: NDArray[np.int64]
+    cap: NDArray[np.float64]
+    excess: NDArray[np.float64]
+    sink: NDArray[np.float64]
+
+
 @compiled_as_is
-def heights_to_sink(near, cap, sink, least, queue, height):  # type: ignore[no-untyped-def]
+def heights_to_sink(graph: Graph, least: float, queue: Any, height: Any) -> None:
     """Write each node's distance to the sink along edges that still hold something."""
+    near, cap, _, sink = graph
     size, degree = near.shape
     head, tail = 0, 0
     for i in range(size):
@@ -33,12 +56,14 @@ def heights_to_sink(near, cap, sink, least, queue, height):  # type: ignore[no-u
 
 
 @compiled_as_is
-def push_all(near, cap, excess, sink, least, height, queue, waiting, work):  # type: ignore[no-untyped-def]
-    """Push what nodes have too much towards the sink until none can, or ``work`` is done.
+def push_all(graph: Graph, least: float, height: Any, queue: Any, waiting: Any) -> None:
+    """Push what nodes have too much towards the sink until none can, or for a while.
 
     ``queue`` is a ring of nodes; ``waiting`` tells which are in it.
     """
+    near, cap, excess, sink = graph
     size, degree = near.shape
+    work = 4 * size
     tail = 0
     for i in range(size):
         waiting[i] = excess[i] > least and height[i] <= size
@@ -79,25 +104,26 @@ def push_all(near, cap, excess, sink, least, height, queue, waiting, work):  # t
 
 
 @compiled_as_is
-def cut_grid(near, cap, excess, sink, goes):  # type: ignore[no-untyped-def]
+def cut_grid(graph: Graph, goes: Any) -> int:
     """Write which nodes are on the source's side of a minimum cut, as few as can be; count them.
 
-    ``near`` (nodes, degree) holds each node's neighbours or -1, edge ``q ^ 1`` being edge ``q``
-    the other way; ``cap`` what they hold. Node i gets ``excess[i]`` from the source and can hand
-    ``sink[i]`` to the sink. ``cap``, ``excess`` and ``sink`` are used up.
     A. V. Goldberg, R. E. Tarjan 1988, DOI 10.1145/48014.61051.
     """
+    near, cap, excess, _ = graph
     size, degree = near.shape
-    least = LEAST * excess.max()
-    goes[:] = False
+    most = 0.0
+    for i in range(size):
+        goes[i] = False
+        most = max(most, excess[i])
+    least = LEAST * most
     if least == 0.0:
         return 0
     height, order = np.empty(size, np.int64), np.empty(size, np.int64)
     queue, waiting = np.empty(size, np.int64), np.empty(size, np.bool_)
     pending = True
     while pending:
-        heights_to_sink(near, cap, sink, least, order, height)
-        push_all(near, cap, excess, sink, least, height, queue, waiting, 4 * size)
+        heights_to_sink(graph, least, order, height)
+        push_all(graph, least, height, queue, waiting)
         pending = False
         for i in range(size):
             pending = pending or (excess[i] > least and height[i] <= size)

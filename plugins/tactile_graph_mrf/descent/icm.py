@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import numpy as np
 from annotated_types import Ge, Le
 
 from tactile_graph.wires import Image, Mask
+from tactile_graph_mrf.descent.modes import settle
 from tactile_graph_mrf.energy.line_field import Restored
 from tactile_graph_mrf.energy.model import Model
-from tactile_graph_mrf.samplers.annealing import observed_state, outcome, run, unswept
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised, observed_state
 
 
 def icm(
@@ -55,8 +56,9 @@ def icm(
     J. Besag, "On the statistical analysis of dirty pictures" (1986), DOI
     10.1111/j.2517-6161.1986.tb01412.x.
     """
-    problem = model.prepare(image, region, expected)
-    if problem.idle:
-        return unswept(problem)
-    state = observed_state(problem)
-    return outcome(problem, state, run(problem, state, np.full(n_sweeps, np.inf), None))
+
+    def settled(problem: Problem) -> tuple[State, list[float]]:
+        state = observed_state(problem)
+        return state, settle(problem, state, n_sweeps)
+
+    return minimised(prepare(model, image, region, expected), settled)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.descent.mean_sweep import mean_sweep
+from tactile_graph_mrf.descent.mean_sweep import Chances, mean_sweep
+from tactile_graph_mrf.descent.modes import settle
 from tactile_graph_mrf.energy.line_field import Restored, no_lines
-from tactile_graph_mrf.energy.model import Model, Problem, energy, terms
-from tactile_graph_mrf.samplers.annealing import State, outcome, run, unswept
-from tactile_graph_mrf.samplers.visits import fit_for
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised
+from tactile_graph_mrf.energy.total import energy
+from tactile_graph_mrf.kernels import fit_for
 
 MOST = 40_000_000
 """Numbers a table of distributions may hold: cells times levels."""
@@ -87,27 +90,31 @@ def mean_field(
             f"model: explicit lines need order 1 in mean_field, got order {model.order}; "
             "take order 1, or lines none or marginal"
         )
-    problem = model.prepare(image, region, expected)
-    if problem.idle:
-        return unswept(problem)
-    if problem.in_field.size * model.n_levels > MOST:
+
+    def hardened(problem: Problem) -> tuple[State, list[float]]:
+        _require_room(problem)
+        mean = MeanField(problem)
+        trace: list[float] = []
+        now = temperature
+        while now > coldest or not trace:
+            for _ in range(n_sweeps):
+                moved = mean.sweep(max(now, coldest))
+                trace.append(energy(problem, *mean.likeliest()))
+                if moved < tolerance:
+                    break
+            now *= cooling
+        state = mean.likeliest()
+        return state, [*trace, *(settle(problem, state, 200) if finish else ())]
+
+    return minimised(prepare(model, image, region, expected), hardened)
+
+
+def _require_room(problem: Problem) -> None:
+    if problem.in_field.size * problem.n_levels > MOST:
         raise Degenerate(
-            f"mean_field keeps a chance of each of {model.n_levels} levels for each of "
+            f"mean_field keeps a chance of each of {problem.n_levels} levels for each of "
             f"{problem.in_field.size} cells, at most {MOST} in all; take fewer levels or a crop"
         )
-    mean = MeanField(problem)
-    trace: list[float] = []
-    while temperature > coldest or not trace:
-        for _ in range(n_sweeps):
-            moved = mean.sweep(max(temperature, coldest))
-            trace.append(energy(problem, *mean.likeliest()))
-            if moved < tolerance:
-                break
-        temperature *= cooling
-    state = mean.likeliest()
-    if finish:
-        trace += run(problem, state, np.full(200, np.inf), None)
-    return outcome(problem, state, trace)
 
 
 class MeanField:
@@ -121,32 +128,34 @@ class MeanField:
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         shape = (*problem.shape, problem.n_levels)
-        self.chances = np.full(shape, 1.0 / problem.n_levels)
         d = np.abs(np.subtract.outer(np.arange(shape[2]), np.arange(shape[2])))
-        self.felt = np.broadcast_to(problem.smooth[d].mean(axis=0), shape).copy()
-        self.across, self.down = (lines.astype(np.float64) for lines in no_lines(problem.shape))
+        smooth = problem.pairwise.smooth
+        felt = np.broadcast_to(smooth[d].mean(axis=0), shape).copy()
+        across, down = (lines.astype(np.float64) for lines in no_lines(problem.shape))
+        self.chances = Chances(np.full(shape, 1.0 / problem.n_levels), felt, across, down)
         self._visits = np.argwhere(problem.in_field), _sites(problem)
-        flat = problem.smooth == problem.smooth[-1]
-        reach = int(np.flatnonzero(~flat).max(initial=-1)) + 1
-        self._fixed: tuple[Any, ...] = (*terms(problem), reach, *self._visits)
+        self._reach = int(np.flatnonzero(smooth != smooth[-1]).max(initial=-1)) + 1
         self._kernel = fit_for(mean_sweep, shape[0] * shape[1] * 100)
 
     def sweep(self, temperature: float) -> float:
         """Visit every cell and line once; return the largest change of a distribution."""
-        state = self.chances, self.felt, self.across, self.down
-        return float(self._kernel(*self._fixed, temperature, *state))
+        potentials = self.problem.potentials
+        return float(
+            self._kernel(potentials, self._reach, *self._visits, temperature, self.chances)
+        )
 
     def likeliest(self) -> State:
         """Return the likeliest label of each cell, and the lines that are likelier on."""
-        labels = np.where(self.problem.in_field, self.chances.argmax(axis=2), 0)
-        return State(labels, self.across > 0.5, self.down > 0.5)
+        labels = np.where(self.problem.in_field, self.chances.cells.argmax(axis=2), 0)
+        return State(labels, self.chances.across > 0.5, self.chances.down > 0.5)
 
     def free_energy(self, temperature: float) -> float:
         """Return mean energy - T entropy, which no `sweep` at that temperature raises."""
         p = self.problem
         on = p.in_field
-        own = float((self.chances * p.unary())[on].sum())
-        steps = zip(p.offsets.tolist(), p.weights.tolist(), strict=True)
+        own = float((self.chances.cells * p.own_costs())[on].sum())
+        pairwise = p.pairwise
+        steps = zip(pairwise.offsets.tolist(), pairwise.weights.tolist(), strict=True)
         bonds = sum(weight * self._bonds(*step) for step, weight in steps)
         return float(own + bonds + self._line_energy() - temperature * self._entropy())
 
@@ -155,16 +164,17 @@ class MeanField:
         a = np.s_[: rows - di, max(-dj, 0) : columns - max(dj, 0)]
         b = np.s_[di:, max(dj, 0) : columns - max(-dj, 0)]
         both = self.problem.in_field[a] & self.problem.in_field[b]
-        whole = {(0, 1): 1.0 - self.down, (1, 0): 1.0 - self.across}.get((di, dj), np.ones(1))
-        costs = (self.chances[a] * self.felt[b]).sum(axis=2) * whole
+        cells, felt, across, down = self.chances
+        whole = {(0, 1): 1.0 - down, (1, 0): 1.0 - across}.get((di, dj), np.ones(1))
+        costs = (cells[a] * felt[b]).sum(axis=2) * whole
         return float(costs[both].sum())
 
     def _line_energy(self) -> float:
-        p, across, down = self.problem, self.across, self.down
+        p, (_, _, across, down) = self.problem.line_cliques, self.chances
         total = p.one * (across.sum() + down.sum())
         total += p.parallel * (across[:-1] * across[1:]).sum()
         total += p.parallel * (down[:, :-1] * down[:, 1:]).sum()
-        on = p.in_field
+        on = self.problem.in_field
         complete = on[:-1, :-1] & on[:-1, 1:] & on[1:, :-1] & on[1:, 1:]
         around = down[:-1], down[1:], across[:, :-1], across[:, 1:]
         for code in range(16):
@@ -175,8 +185,8 @@ class MeanField:
         return float(total)
 
     def _entropy(self) -> float:
-        cells = self.chances[self.problem.in_field]
-        both = np.concatenate([self.across.ravel(), self.down.ravel()])
+        cells = self.chances.cells[self.problem.in_field]
+        both = np.concatenate([self.chances.across.ravel(), self.chances.down.ravel()])
         return float(_plogp(cells) + _plogp(both) + _plogp(1.0 - both))
 
 

@@ -3,23 +3,45 @@
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_mrf.energy.potentials import LineCliques, Potentials
 
 LOST = 1e-12
 """Probability below which a label adds nothing to its neighbours' mean costs."""
 
 
+class Chances(NamedTuple):
+    """Independent distributions of cells and lines.
+
+    Parameters
+    ----------
+    cells : ndarray of float64, shape (rows, columns, L)
+    felt : ndarray of float64, shape (rows, columns, L)
+        Their `mean_costs`.
+    across, down : ndarray of float64, shape (rows - 1, columns) and (rows, columns - 1)
+        Probabilities of horizontal and vertical lines.
+    """
+
+    cells: NDArray[np.float64]
+    felt: NDArray[np.float64]
+    across: NDArray[np.float64]
+    down: NDArray[np.float64]
+
+
 @compiled_as_is
-def mean_costs(chance, smooth, reach, out):  # type: ignore[no-untyped-def]
+def mean_costs(chance: Any, smooth: Any, reach: int, out: Any) -> None:
     """Write the mean over ``chance`` of the smoothness cost beside each label.
 
     ``smooth`` is the same from ``reach`` on; so only what is nearer needs a sum.
     """
     n = len(chance)
-    out[:] = smooth[min(reach, n - 1)]
+    for y in range(n):
+        out[y] = smooth[min(reach, n - 1)]
     for x in range(n):
         share = chance[x]
         if share > LOST:
@@ -28,7 +50,7 @@ def mean_costs(chance, smooth, reach, out):  # type: ignore[no-untyped-def]
 
 
 @compiled_as_is
-def softened(costs, temperature, chance):  # type: ignore[no-untyped-def]
+def softened(costs: Any, temperature: float, chance: Any) -> None:
     """Write exp(-costs / T) over its sum; the largest exponent is 0, so that none overflows."""
     least = costs.min()
     total = 0.0
@@ -41,10 +63,12 @@ def softened(costs, temperature, chance):  # type: ignore[no-untyped-def]
 
 
 @compiled_as_is
-def mean_rise(  # type: ignore[no-untyped-def]
-    in_field, pattern, parallel, one, across, down, is_down, i, j,
-):  # fmt: skip
+def mean_rise(
+    cliques: LineCliques, in_field: Any, chances: Chances, is_down: bool, i: int, j: int
+) -> float:
     """Return what line (i, j) adds to the mean energy of the line field (Eq. 5.22)."""
+    pattern, parallel, one = cliques
+    _, _, across, down = chances
     rows, columns = in_field.shape
     rise = one
     lines = down if is_down else across
@@ -71,20 +95,23 @@ def mean_rise(  # type: ignore[no-untyped-def]
 
 
 @compiled_as_is
-def mean_sweep(  # type: ignore[no-untyped-def]
-    in_field, curvature, centre, table, row, smooth, offsets, weights, pattern, parallel, one,
-    reach, cells, sites, temperature, chances, felt, across, down,
-):  # fmt: skip
+def mean_sweep(
+    potentials: Potentials, reach: int, cells: Any, sites: Any, temperature: float,
+    chances: Chances,
+) -> float:  # fmt: skip
     """Give each cell, then each line, its best distribution in turn; return the largest change.
 
-    ``chances`` (rows, columns, L) are the cells' distributions, ``felt`` their `mean_costs`,
-    ``across`` and ``down`` the probabilities of lines. Each visit lowers the free energy
+    ``cells`` (row, column) and ``sites`` (1 if vertical, row, column) are visited in order;
+    smoothness is the same from ``reach`` levels on. Each visit lowers the free energy
     mean U - T entropy, or leaves it.
     """
-    rows, columns = in_field.shape
-    n_levels = len(smooth)
-    costs, chance = np.empty(n_levels), np.empty(n_levels)
+    in_field, curvature, centre, table, row = potentials.unary
+    smooth, _, _, offsets, weights = potentials.pairwise
+    labels, felt, across, down = chances
+    rows, columns, n_levels = labels.shape
+    lined = len(sites) > 0
     moved = 0.0
+    costs, chance = np.empty(n_levels), np.empty(n_levels)
     for s in range(len(cells)):
         i, j = cells[s, 0], cells[s, 1]
         for x in range(n_levels):
@@ -94,25 +121,26 @@ def mean_sweep(  # type: ignore[no-untyped-def]
                 m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
                 if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
                     weight = weights[q]
-                    if q == 0 and len(sites):
+                    if q == 0 and lined:
                         weight *= 1.0 - down[i, min(j, n)]
-                    elif q == 1 and len(sites):
+                    elif q == 1 and lined:
                         weight *= 1.0 - across[min(i, m), j]
                     near = felt[m, n]
                     for x in range(n_levels):
                         costs[x] += weight * near[x]
         softened(costs, temperature, chance)
-        change = np.abs(chance - chances[i, j]).sum()
+        change = np.abs(chance - labels[i, j]).sum()
         if change > 0.0:
-            chances[i, j] = chance
+            for x in range(len(chance)):
+                labels[i, j, x] = chance[x]
             mean_costs(chance, smooth, reach, felt[i, j])
         moved = max(moved, change)
     for s in range(len(sites)):
         is_down, i, j = sites[s, 0] == 1, sites[s, 1], sites[s, 2]
         lines = down if is_down else across
         m, n = (i, j + 1) if is_down else (i + 1, j)
-        bond = weights[0 if is_down else 1] * (chances[i, j] * felt[m, n]).sum()
-        rise = mean_rise(in_field, pattern, parallel, one, across, down, is_down, i, j) - bond
+        bond = weights[0 if is_down else 1] * (labels[i, j] * felt[m, n]).sum()
+        rise = mean_rise(potentials.lines, in_field, chances, is_down, i, j) - bond
         height = min(max(rise / temperature, -700.0), 700.0)
         share = 1.0 / (1.0 + math.exp(height))
         moved = max(moved, abs(share - lines[i, j]))

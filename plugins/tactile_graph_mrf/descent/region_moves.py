@@ -8,26 +8,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_mrf.descent.grid_cut import cut_grid
-from tactile_graph_mrf.energy.layout import by_cell, layout
-from tactile_graph_mrf.energy.model import Problem
-from tactile_graph_mrf.samplers.annealing import State, in_one
-from tactile_graph_mrf.samplers.visits import fit_for
+from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
+from tactile_graph_mrf.energy.layout import Neighbours, by_cell
+from tactile_graph_mrf.energy.potentials import Potentials
+from tactile_graph_mrf.energy.problem import Problem
+from tactile_graph_mrf.energy.state import State, sites_of
+from tactile_graph_mrf.kernels import fit_for
 
 FORBIDDING = 1e30
 
 
 @compiled_as_is
-def move_graph(  # type: ignore[no-untyped-def]
-    cells, near, cut, curvature, centre, table, row, smooth, weights, lines, labels, target,
-    cap, rise, sink,
-):  # fmt: skip
+def move_graph(
+    potentials: Potentials, around: Neighbours, lines: Any, labels: Any, target: Any, graph: Graph
+) -> None:
     """Write the graph whose cut says which cells go from ``labels`` to ``target``; flat arrays.
 
-    What a cell gains by going comes to be its excess (in ``rise``), what it loses its ``sink``;
-    ``cap`` is what a pair costs if the one goes and the other stays. Where that is less than
-    nothing it is taken as nothing: a cut that pays then pays in truth even more (majorisation).
+    What a cell gains by going comes to be its excess, what it loses its ``sink``; ``cap`` is what
+    a pair costs if the one goes and the other stays. Where that is less than nothing it is taken
+    as nothing: a cut that pays then pays in truth even more (majorisation).
     """
+    cells, near, cut = around
+    _, cap, rise, sink = graph
+    _, curvature, centre, table, row = potentials.unary
+    curvature, centre, row = curvature.reshape(-1), centre.reshape(-1), row.reshape(-1)
+    smooth, weights = potentials.pairwise.smooth, potentials.pairwise.weights
     top = len(smooth) - 1
     cap[:] = 0.0
     rise[:] = 0.0
@@ -57,26 +62,22 @@ def move_graph(  # type: ignore[no-untyped-def]
 
 
 @compiled_as_is
-def shift_all(  # type: ignore[no-untyped-def]
-    cells, near, cut, curvature, centre, table, row, smooth, weights, lines, rounds, labels, target
-):  # fmt: skip
+def shift_all(
+    potentials: Potentials, around: Neighbours, lines: Any, rounds: int, labels: Any, target: Any
+) -> int:
     """Raise, then lower the best set of cells by one level until neither pays; count changes.
 
     Without ``rounds`` the best set goes to ``target`` instead, once.
     """
     size = len(labels)
-    cap = np.zeros(near.shape)
-    excess, sink = np.zeros(size), np.zeros(size)
+    graph = Graph(around.near, np.zeros(around.near.shape), np.zeros(size), np.zeros(size))
     goes = np.zeros(size, np.bool_)
     changed, idle = 0, 0
     for turn in range(max(2 * rounds, 1)):
         for i in range(size if rounds else 0):
             target[i] = labels[i] + 1 - 2 * (turn % 2)
-        move_graph(
-            cells, near, cut, curvature, centre, table, row, smooth, weights, lines, labels,
-            target, cap, excess, sink,
-        )  # fmt: skip
-        count = cut_grid(near, cap, excess, sink, goes)
+        move_graph(potentials, around, lines, labels, target, graph)
+        count = cut_grid(graph, goes)
         for i in range(size if count else 0):
             if goes[i]:
                 labels[i] = target[i]
@@ -106,17 +107,11 @@ def fuse(problem: Problem, state: State, other: NDArray[np.int64]) -> int:
 
 
 def _moved(problem: Problem, state: State, target: NDArray[np.int64], rounds: int) -> int:
-    p = problem
-    if p.model.order > 1 and p.model.lines == "explicit":
+    if problem.model.order > 1 and problem.model.lines == "explicit":
         return 0
-    tables = layout(p)
-    size = p.in_field.size
-    near, cut = by_cell(tables, size)
-    flat: Any = [x.reshape(-1) for x in (p.curvature, p.centre)]
     labels = np.ascontiguousarray(state.labels.reshape(-1))
-    changed = fit_for(shift_all, size * 20)(
-        tables.cells, near, cut, *flat, p.table, p.row.reshape(-1), p.smooth, p.weights,
-        in_one(state)[0], rounds, labels, target.reshape(-1),
-    )  # fmt: skip
+    kernel = fit_for(shift_all, labels.size * 20)
+    around, lines = by_cell(problem), sites_of(state).lines
+    changed = kernel(problem.potentials, around, lines, rounds, labels, target.reshape(-1))
     state.labels[...] = labels.reshape(state.labels.shape)
     return int(changed)

@@ -10,12 +10,14 @@ from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.descent.fuse import polish
-from tactile_graph_mrf.descent.graduate import graduated, influence, settled
+from tactile_graph_mrf.descent.graduate import Relaxation, graduated, influence, rounded
+from tactile_graph_mrf.descent.polish import polish
 from tactile_graph_mrf.descent.region_moves import fuse
 from tactile_graph_mrf.energy.line_field import Restored, no_lines
-from tactile_graph_mrf.energy.model import Model, Problem, energy
-from tactile_graph_mrf.samplers.annealing import State, outcome, unswept
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised
+from tactile_graph_mrf.energy.total import energy
 
 SCHEDULES = ((30, 1.13, 24), (80, 1.05, 48), (200, 1.02, 100))
 """Graduations, growth and most sweeps of each effort."""
@@ -78,39 +80,39 @@ def restore(
     A. Shioura 2009, DOI 10.1016/j.disopt.2009.04.006); rows and columns fusion moves
     (V. Lempitsky et al. 2010, DOI 10.1109/TPAMI.2009.143) by dynamic programming.
     """
-    problem = model.prepare(image, region, expected)
-    if problem.idle:
-        return unswept(problem)
-    trace: list[float] = []
-    state = _descended(problem, effort, 1.0, n_rounds, trace)
-    for stiffness in STIFFNESSES[: effort - 1 if n_rounds else 0]:
-        other = _descended(problem, effort, stiffness, n_rounds, [])
-        if energy(problem, *other) < trace[-1]:
-            state, other = other, state
-            trace.append(energy(problem, *state))
-        if fuse(problem, state, other.labels):
-            trace += polish(problem, state, n_rounds)
-    return outcome(problem, state, trace)
+
+    def lowered(problem: Problem) -> tuple[State, list[float]]:
+        state, trace = _descended(problem, effort, 1.0, n_rounds)
+        for stiffness in STIFFNESSES[: effort - 1 if n_rounds else 0]:
+            other, _ = _descended(problem, effort, stiffness, n_rounds)
+            if energy(problem, *other) < trace[-1]:
+                state, other = other, state
+                trace.append(energy(problem, *state))
+            if fuse(problem, state, other.labels):
+                trace += polish(problem, state, n_rounds)
+        return state, trace
+
+    return minimised(prepare(model, image, region, expected), lowered)
 
 
 def _descended(
-    problem: Problem, effort: int, stiffness: float, n_rounds: int, trace: list[float]
-) -> State:
+    problem: Problem, effort: int, stiffness: float, n_rounds: int
+) -> tuple[State, list[float]]:
     """Return the end of a graduation, of a smoothness so many times the model's, and of moves."""
     steps, growth, sweeps = SCHEDULES[effort - 1]
     path = replace(problem.model, lambda_d=min(stiffness * problem.model.lambda_d, 1e12))
-    levels = graduated(problem, influence(path, steps, growth), sweeps, OVER, STILL)[-1]
-    states = (settled(problem, levels), _flat(problem, levels))
+    bends = influence(path, steps, growth)
+    levels = graduated(problem, bends, Relaxation(sweeps, OVER, STILL))[-1]
+    states = (rounded(problem, levels), _flat(problem, levels))
     start = [energy(problem, *state) for state in states]
     state = states[0] if start[0] <= start[1] else states[1]
-    trace += [min(start), *(polish(problem, state, n_rounds) if n_rounds else ())]
-    return state
+    return state, [min(start), *(polish(problem, state, n_rounds) if n_rounds else ())]
 
 
 def _flat(problem: Problem, levels: NDArray[np.float64]) -> State:
     """Return one label everywhere: the best there is where smoothness outweighs all data."""
-    on = problem.in_field
-    mass = problem.curvature[on]
-    mean = np.average(problem.centre[on], weights=mass) if mass.any() else np.median(levels[on])
+    on, unary = problem.in_field, problem.unary
+    mass = unary.curvature[on]
+    mean = np.average(unary.centre[on], weights=mass) if mass.any() else np.median(levels[on])
     label = int(np.clip(np.rint(mean), 0, problem.n_levels - 1))
     return State(np.where(on, label, 0), *no_lines(problem.shape))

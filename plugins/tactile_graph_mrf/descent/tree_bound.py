@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_mrf.energy.line_field import no_lines
-from tactile_graph_mrf.energy.model import Problem, energy
-from tactile_graph_mrf.samplers.annealing import State
-from tactile_graph_mrf.samplers.visits import fit_for
+from tactile_graph_mrf.energy.problem import Problem
+from tactile_graph_mrf.energy.state import State, nothing
+from tactile_graph_mrf.energy.total import energy
+from tactile_graph_mrf.kernels import fit_for
 
 MOST = 10_000_000
 """Numbers a table of messages of one direction may hold: cells times levels."""
@@ -26,12 +27,31 @@ class Bounded(NamedTuple):
     energy: float
 
 
-@compiled_as_is
-def passed(costs, smooth, weight, reach, out):  # type: ignore[no-untyped-def]
-    """Write the least over x of costs[x] + weight smooth[|x - y|] for each y.
+class Grid(NamedTuple):
+    """A field of order 1 without lines.
 
-    ``smooth`` must not fall, and be the same from ``reach`` on.
+    Parameters
+    ----------
+    in_field : ndarray of bool, shape (rows, columns)
+    costs : ndarray of float64, shape (rows, columns, L)
+        Of each label of each cell by itself.
+    smooth : ndarray of float64, shape (L,)
+        Of a difference; it must not fall, and be the same from ``reach`` on.
+    weights : ndarray of float64, shape (2,)
+        Of pairs in a row, and in a column.
+    reach : int
     """
+
+    in_field: NDArray[np.bool_]
+    costs: NDArray[np.float64]
+    smooth: NDArray[np.float64]
+    weights: NDArray[np.float64]
+    reach: int
+
+
+@compiled_as_is
+def passed(costs: Any, smooth: Any, weight: float, reach: int, out: Any) -> None:
+    """Write the least over x of costs[x] + weight smooth[|x - y|] for each y; see `Grid`."""
     n = len(costs)
     out[:] = costs.min() + weight * smooth[min(reach, n - 1)]
     for d in range(min(reach, n)):
@@ -43,12 +63,13 @@ def passed(costs, smooth, weight, reach, out):  # type: ignore[no-untyped-def]
 
 
 @compiled_as_is
-def trw_sweep(in_field, unary, smooth, weights, reach, forth, messages, labels):  # type: ignore[no-untyped-def]
+def trw_sweep(grid: Grid, forth: bool, messages: Any, labels: Any) -> None:
     """Pass messages over the grid once, to and fro; on the way forth write labels.
 
     ``messages`` (4, rows, columns, L) come into a cell from left, above, right and below. Each
     cell lies on two chains, its row and its column, and gives each half of what it holds.
     """
+    in_field, unary, smooth, weights, reach = grid
     rows, columns, n = unary.shape
     held, out, costs = np.empty(n), np.empty(n), np.empty(n)
     for s in range(rows * columns):
@@ -80,12 +101,13 @@ def trw_sweep(in_field, unary, smooth, weights, reach, forth, messages, labels):
 
 
 @compiled_as_is
-def chain_bound(in_field, unary, smooth, weights, reach, messages):  # type: ignore[no-untyped-def]
+def chain_bound(grid: Grid, messages: Any) -> float:
     """Return the sum over rows and columns of the least energy of each by itself.
 
     The cells' costs are split between row and column as the messages say; whatever the split,
     no labelling of the whole costs less than the chains do apart.
     """
+    in_field, unary, smooth, weights, reach = grid
     rows, columns, n = unary.shape
     held, out = np.empty(n), np.empty(n)
     bound = 0.0
@@ -151,21 +173,21 @@ def lower_bound(problem: Problem, n_sweeps: int = 50) -> Bounded:
             f"at most {MOST} numbers; take fewer levels or a crop"
         )
     if problem.idle:
-        state = State(np.zeros(problem.shape, np.int64), *no_lines(problem.shape))
+        state = nothing(problem)
         return Bounded(energy(problem, *state), state, energy(problem, *state))
-    unary = problem.unary() * problem.in_field[..., None]
-    flat = problem.smooth == problem.smooth[-1]
-    reach = int(np.flatnonzero(~flat).max(initial=-1)) + 1
-    grid = (problem.in_field, unary, problem.smooth, problem.weights, reach)
+    unary = problem.own_costs() * problem.in_field[..., None]
+    smooth, weights = problem.pairwise.smooth, problem.pairwise.weights
+    reach = int(np.flatnonzero(smooth != smooth[-1]).max(initial=-1)) + 1
+    grid = Grid(problem.in_field, unary, smooth, weights, reach)
     messages: NDArray[np.float64] = np.zeros((4, *unary.shape))
     labels = np.zeros(problem.shape, np.int64)
     sweep = fit_for(trw_sweep, unary.size)
     bound, least, best = -np.inf, np.inf, labels
     for _ in range(n_sweeps):
-        sweep(*grid, True, messages, labels)
+        sweep(grid, True, messages, labels)
         reached = energy(problem, labels)
         if reached < least:
             least, best = reached, labels.copy()
-        sweep(*grid, False, messages, labels)
-    bound = float(fit_for(chain_bound, unary.size)(*grid, messages))
+        sweep(grid, False, messages, labels)
+    bound = float(fit_for(chain_bound, unary.size)(grid, messages))
     return Bounded(bound, State(best, *no_lines(problem.shape)), least)

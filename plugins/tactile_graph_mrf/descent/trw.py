@@ -7,11 +7,12 @@ from typing import Annotated, NamedTuple
 from annotated_types import Ge, Le
 
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.descent.fuse import polish
+from tactile_graph_mrf.descent.polish import polish
 from tactile_graph_mrf.descent.tree_bound import lower_bound
 from tactile_graph_mrf.energy.line_field import LineField
 from tactile_graph_mrf.energy.model import Model
-from tactile_graph_mrf.samplers.annealing import outcome, unswept
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.state import minimised
 
 
 class Proved(NamedTuple):
@@ -72,9 +73,9 @@ def trw(
     -----
     See `tactile_graph_mrf.descent.tree_bound.lower_bound`.
     """
-    problem = model.prepare(image, region, expected)
+    problem = prepare(model, image, region, expected)
     found = lower_bound(problem, n_sweeps)
-    if problem.idle:
-        return Proved(*unswept(problem), found.bound)
-    trace = [found.energy, *polish(problem, found.state, 4)]
-    return Proved(*outcome(problem, found.state, trace), found.bound)
+    restored = minimised(
+        problem, lambda _: (found.state, [found.energy, *polish(problem, found.state, 4)])
+    )
+    return Proved(*restored, found.bound)

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_mrf.energy.model import OFFSETS, Problem
+from tactile_graph_mrf.energy.potentials import OFFSETS
+from tactile_graph_mrf.energy.problem import Problem
 
 Indices = NDArray[np.int64]
 
@@ -47,15 +48,24 @@ def layout(problem: Problem) -> Layout:
     field = problem.in_field
     if field.all():
         return _whole(problem.shape, order, explicit)
-    return _made(field, order, problem.offsets, explicit)
+    return _made(field, order, problem.pairwise.offsets, explicit)
 
 
-def by_cell(tables: Layout, size: int) -> tuple[Indices, Indices]:
-    """Return ``near`` and ``cut`` with a row for each of ``size`` cells, -1 off the field."""
+class Neighbours(NamedTuple):
+    """The same by cell: ``near`` and ``cut`` have a row for each cell of the grid."""
+
+    cells: Indices
+    near: Indices
+    cut: Indices
+
+
+def by_cell(problem: Problem) -> Neighbours:
+    """Return the cells of the field and who is beside each cell; -1 off the field."""
+    tables, size = layout(problem), problem.in_field.size
     near = np.full((size, tables.near.shape[1]), -1)
     cut = np.full((size, 4), -1)
     near[tables.cells], cut[tables.cells] = tables.near, tables.cut
-    return near, cut
+    return Neighbours(tables.cells, near, cut)
 
 
 @lru_cache(maxsize=8)

@@ -81,7 +81,7 @@ def no_lines(shape: tuple[int, int]) -> tuple[NDArray[np.bool_], NDArray[np.bool
 class Restored(NamedTuple):
     """What every restorer gives.
 
-    ``energy`` is that of image and lines as `tactile_graph_mrf.energy.model.energy` counts it, in
+    ``energy`` is that of image and lines as `tactile_graph_mrf.energy.total.energy` counts it, in
     squared levels; ``trace`` holds one energy per sweep done, the last sweep last.
     """
 

@@ -1,8 +1,12 @@
-"""Costs of the model as tables: data terms, smoothness and line patterns."""
+"""The clique potentials as tables: of cells, of pairs of cells, and of lines that meet.
+
+What a clique costs is looked up here and nowhere else; `tactile_graph_mrf.energy.total` adds it
+up, `tactile_graph_mrf.energy.conditionals` takes what one cell or line has part in.
+"""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +15,82 @@ Noise = Literal["gaussian", "laplace", "student_t", "poisson", "outliers"]
 Smoothness = Literal[
     "quadratic", "truncated_quadratic", "absolute", "truncated_absolute", "huber", "geman_mcclure"
 ]
+
+OFFSETS = np.array([(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)], np.int64)
+"""One (row, column) step for each kind of pair clique; the first 2, 4 and 6 of them are those of
+the neighbourhoods of order 1, 2 and 3 (Eq. 5.8, fig. 5.1)."""
+UP, DOWN, LEFT, RIGHT = 1, 2, 4, 8
+"""Bits of a pattern: which of the four lines that meet where four cells meet are on."""
+
+
+class Unary(NamedTuple):
+    """What cells cost by themselves: ``curvature (x - centre)² + table[row, x]`` for label x.
+
+    Parameters
+    ----------
+    in_field : ndarray of bool, shape (rows, columns)
+        Cells that are sites.
+    curvature, centre : ndarray of float64, shape (rows, columns)
+        Data term, if Gaussian, and prior: a parabola.
+    table : ndarray of float64, shape (kinds, L)
+        Data terms of other noise; row 0 holds zeros.
+    row : ndarray of int64, shape (rows, columns)
+        Row of ``table`` of each cell.
+    """
+
+    in_field: NDArray[np.bool_]
+    curvature: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    table: NDArray[np.float64]
+    row: NDArray[np.int64]
+
+
+class Pairwise(NamedTuple):
+    """What pairs of cells cost that no line parts.
+
+    Parameters
+    ----------
+    smooth : ndarray of float64, shape (L,)
+        lambda_d * rho of a difference; with ``marginal`` lines at most the price of a line.
+    bare : ndarray of float64, shape (L,)
+        The same without lines.
+    price : float
+        Of a line that is summed out; below 0 where lines are no matter of the pair.
+    offsets : ndarray of int64, shape (K, 2)
+        (row, column) steps of the pair cliques.
+    weights : ndarray of float64, shape (K,)
+        1 / distance² of each.
+    """
+
+    smooth: NDArray[np.float64]
+    bare: NDArray[np.float64]
+    price: float
+    offsets: NDArray[np.int64]
+    weights: NDArray[np.float64]
+
+
+class LineCliques(NamedTuple):
+    """What lines cost (Eq. 5.22).
+
+    Parameters
+    ----------
+    pattern : ndarray of float64, shape (16,)
+        lambda_l * V_l4 by pattern: bit 1 for the line up, 2 down, 4 left, 8 right.
+    parallel, one : float
+        lambda_l * V_l2 and lambda_l * V_l1.
+    """
+
+    pattern: NDArray[np.float64]
+    parallel: float
+    one: float
+
+
+class Potentials(NamedTuple):
+    """All that an energy is made of."""
+
+    unary: Unary
+    pairwise: Pairwise
+    lines: LineCliques
 
 
 def data_costs(
@@ -91,10 +171,6 @@ def smoothness_costs(kind: Smoothness, n_levels: int, truncation: float) -> NDAr
     if kind == "huber":
         return np.where(d <= t, d * d, t * (2.0 * d - t))
     return np.asarray(d * d / (1.0 + (d / t) ** 2))
-
-
-UP, DOWN, LEFT, RIGHT = 1, 2, 4, 8
-"""Bits of a pattern: which of the four lines that meet where four cells meet are on."""
 
 
 def pattern_costs(

@@ -1,4 +1,4 @@
-"""The kernel of `energy`: the sum of all clique potentials (Eq. 5.5, 5.17, 5.20 to 5.22)."""
+"""`energy`: the sum of all clique potentials (Eq. 5.5, 5.17, 5.20 to 5.22)."""
 
 from __future__ import annotations
 
@@ -7,71 +7,83 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_mrf.energy.line_field import no_lines
+from tactile_graph_mrf.energy.potentials import LineCliques, Potentials
+from tactile_graph_mrf.energy.problem import Problem
+from tactile_graph_mrf.kernels import fit_for
 
 
-def _broken(
-    across: NDArray[np.bool_], down: NDArray[np.bool_], di: int, dj: int
-) -> NDArray[np.bool_]:
-    """Return which pairs that are (di, dj) apart a line cuts: every shortest way is closed.
-
-    Eq. 5.20 names only the line between two neighbours; this is the same for the pairs of
-    orders 2 and 3.
-    """
-    if (di, dj) == (0, 1):
-        return down
-    if (di, dj) == (1, 0):
-        return across
-    if (di, dj) == (0, 2):
-        return down[:, :-1] | down[:, 1:]
-    if (di, dj) == (2, 0):
-        return across[:-1] | across[1:]
-    if (di, dj) == (1, 1):
-        return (down[:-1] | across[:, 1:]) & (across[:, :-1] | down[1:])
-    return (down[:-1] | across[:, :-1]) & (across[:, 1:] | down[1:])
-
-
-def _total_plain(
-    in_field: NDArray[np.bool_],
-    curvature: NDArray[np.float64],
-    centre: NDArray[np.float64],
-    table: NDArray[np.float64],
-    row: NDArray[np.int64],
-    smooth: NDArray[np.float64],
-    offsets: NDArray[np.int64],
-    weights: NDArray[np.float64],
-    pattern: NDArray[np.float64],
-    parallel: float,
-    one: float,
+def energy(
+    problem: Problem,
     labels: NDArray[np.int64],
-    across: NDArray[np.bool_],
-    down: NDArray[np.bool_],
+    lines_h: NDArray[np.bool_] | None = None,
+    lines_v: NDArray[np.bool_] | None = None,
 ) -> float:
-    """Return the energy of labels and lines; lines are off where they have no site."""
-    own = curvature * (labels - centre) ** 2 + table[row, labels]
-    energy = float(own[in_field].sum())
-    rows, columns = labels.shape
-    for (di, dj), weight in zip(offsets.tolist(), weights.tolist(), strict=True):
-        if di >= rows or abs(dj) >= columns:
-            continue
-        a = np.s_[: rows - di, max(-dj, 0) : columns - max(dj, 0)]
-        b = np.s_[di:, max(dj, 0) : columns - max(-dj, 0)]
-        whole = in_field[a] & in_field[b] & ~_broken(across, down, di, dj)
-        energy += weight * float(smooth[np.abs(labels[a] - labels[b])][whole].sum())
-    if rows > 1 and columns > 1:
-        complete = in_field[:-1, :-1] & in_field[:-1, 1:] & in_field[1:, :-1] & in_field[1:, 1:]
-        code = 1 * down[:-1] + 2 * down[1:] + 4 * across[:, :-1] + 8 * across[:, 1:]
-        energy += float(pattern[code][complete].sum())
-    pairs = np.count_nonzero(across[:-1] & across[1:])
-    pairs += np.count_nonzero(down[:, :-1] & down[:, 1:])
-    return energy + parallel * pairs + one * (np.count_nonzero(across) + np.count_nonzero(down))
+    """Return the energy of a restoration, in squared levels: what every restorer is judged by.
+
+    Parameters
+    ----------
+    problem : Problem
+    labels : ndarray of int64, shape (rows, columns)
+        0 to L - 1.
+    lines_h, lines_v : ndarray of bool, optional
+        Horizontal and vertical lines as in `LineField`; all off if not given. Lines without a
+        site do not count; with ``marginal`` lines none do, for there they follow from the labels.
+
+    Returns
+    -------
+    float
+    """
+    across, down = no_lines(problem.shape)
+    if problem.model.lines != "marginal":
+        sites_h, sites_v = problem.sites()
+        across = across if lines_h is None else np.ascontiguousarray(lines_h & sites_h)
+        down = down if lines_v is None else np.ascontiguousarray(lines_v & sites_v)
+    kernel = fit_for(total, 8 * labels.size)
+    return float(kernel(problem.potentials, np.ascontiguousarray(labels, np.int64), across, down))
 
 
 @compiled_as_is
-def broken(across: Any, down: Any, i: int, j: int, di: int, dj: int) -> bool:
-    """Return whether lines cut the pair of cell (i, j) and the one (di, dj) further.
+def total(potentials: Potentials, labels: Any, across: Any, down: Any) -> float:
+    """Return the energy of labels and lines; lines must be off where they have no site."""
+    in_field, curvature, centre, table, row = potentials.unary
+    smooth, _, _, offsets, weights = potentials.pairwise
+    rows, columns = labels.shape
+    energy = 0.0
+    tabled = table.shape[0] > 1
+    for i in range(rows):
+        for j in range(columns):
+            if in_field[i, j]:
+                x = labels[i, j]
+                energy += curvature[i, j] * (x - centre[i, j]) ** 2
+                if tabled:
+                    energy += table[row[i, j], x]
+    for k in range(len(weights)):
+        di, dj = offsets[k, 0], offsets[k, 1]
+        pairs = 0.0
+        for i in range(rows - di):
+            for j in range(max(-dj, 0), columns - max(dj, 0)):
+                if not (in_field[i, j] and in_field[i + di, j + dj]):
+                    continue
+                if k == 0:
+                    cut = down[i, j]
+                elif k == 1:
+                    cut = across[i, j]
+                else:
+                    cut = parted(across, down, i, j, di, dj)
+                if not cut:
+                    pairs += smooth[abs(labels[i, j] - labels[i + di, j + dj])]
+        energy += weights[k] * pairs
+    return energy + line_energy(potentials.lines, in_field, across, down)
 
-    Only for the six half-plane steps of `tactile_graph_mrf.energy.model.OFFSETS`.
+
+@compiled_as_is
+def parted(across: Any, down: Any, i: int, j: int, di: int, dj: int) -> bool:
+    """Return whether lines part cell (i, j) from the one (di, dj) further: no shortest way is open.
+
+    Eq. 5.20 names only the line between two neighbours; this is the same for the pairs of
+    orders 2 and 3. Only for the six half-plane steps of `OFFSETS`.
     """
     if di == 0:
         return bool(down[i, j] or (dj == 2 and down[i, j + 1]))
@@ -83,43 +95,9 @@ def broken(across: Any, down: Any, i: int, j: int, di: int, dj: int) -> bool:
 
 
 @compiled_as_is
-def own_costs(in_field, curvature, centre, table, row, labels):  # type: ignore[no-untyped-def]
-    """Return the sum of the costs that each cell has by itself."""
-    energy = 0.0
-    tabled = table.shape[0] > 1
-    for i in range(labels.shape[0]):
-        for j in range(labels.shape[1]):
-            if in_field[i, j]:
-                x = labels[i, j]
-                energy += curvature[i, j] * (x - centre[i, j]) ** 2
-                if tabled:
-                    energy += table[row[i, j], x]
-    return energy
-
-
-@compiled_as_is
-def pair_costs(in_field, smooth, di, dj, labels, across, down):  # type: ignore[no-untyped-def]
-    """Return the sum over the pairs (di, dj) apart that no line cuts, their weight left out."""
-    rows, columns = labels.shape
-    energy = 0.0
-    for i in range(rows - di):
-        for j in range(max(-dj, 0), columns - max(dj, 0)):
-            if not (in_field[i, j] and in_field[i + di, j + dj]):
-                continue
-            if di == 1 and dj == 0:
-                cut = across[i, j]
-            elif di == 0 and dj == 1:
-                cut = down[i, j]
-            else:
-                cut = broken(across, down, i, j, di, dj)
-            if not cut:
-                energy += smooth[abs(labels[i, j] - labels[i + di, j + dj])]
-    return energy
-
-
-@compiled_as_is
-def line_costs(in_field, pattern, parallel, one, across, down):  # type: ignore[no-untyped-def]
+def line_energy(cliques: LineCliques, in_field: Any, across: Any, down: Any) -> float:
     """Return the sum over the cliques of lines; lines without a site must be off."""
+    pattern, parallel, one = cliques
     rows, columns = in_field.shape
     energy = 0.0
     count, beside = 0, 0
@@ -141,17 +119,3 @@ def line_costs(in_field, pattern, parallel, one, across, down):  # type: ignore[
                 if above and in_field[i + 1, j] and in_field[i + 1, j + 1]:
                     energy += pattern[code]
     return energy + parallel * beside + one * count
-
-
-@compiled_twin_of(_total_plain)
-def total(  # type: ignore[no-untyped-def]
-    in_field, curvature, centre, table, row, smooth, offsets, weights, pattern, parallel, one,
-    labels, across, down,
-):  # fmt: skip
-    """Return the energy of labels and lines; lines are off where they have no site."""
-    energy = own_costs(in_field, curvature, centre, table, row, labels)
-    for k in range(len(weights)):
-        energy += weights[k] * pair_costs(
-            in_field, smooth, offsets[k, 0], offsets[k, 1], labels, across, down
-        )
-    return energy + line_costs(in_field, pattern, parallel, one, across, down)

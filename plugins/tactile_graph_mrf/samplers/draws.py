@@ -3,8 +3,8 @@
 Each takes one uniform number and inverts a cumulative sum, so that equal numbers give equal bits
 whether compiled or not. Weights are those of ``exp(-beta (U - U_least))``: the largest is 1, which
 is step 2 of section 5.2.3 done so that nothing overflows at any temperature. ``beta`` is the
-inverse temperature, infinite for the least energy itself. Each returns the label and whether no
-other was possible, its weight being lost in the rounding of the sum.
+inverse temperature. Each returns the label and whether no other was possible, its weight being
+lost in the rounding of the sum.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import math
 from typing import Any
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_mrf.energy.conditionals import least_of
 
 NEGLIGIBLE = 1e-19
 """Weight beside the largest one, 1, below which a level is never drawn."""
@@ -93,8 +94,6 @@ def draw_parabola(sharpness: float, mean: float, n_levels: int, beta: float, u: 
     The levels are gone through from the likeliest one outwards. ``sharpness`` must be above 0.
     """
     mode = int(min(max(math.floor(mean + 0.5), 0.0), n_levels - 1.0))
-    if beta == math.inf:
-        return mode, True
     narrow = beta * sharpness
     off = mode - mean
     # A step off the end of the scale is never taken, but its weight could overflow.
@@ -133,23 +132,8 @@ def draw_parabola(sharpness: float, mean: float, n_levels: int, beta: float, u: 
 
 
 @compiled_as_is
-def least_of(costs: Any) -> float:
-    """Return the least of at least one cost; four chains, for one waits on each comparison."""
-    a = b = c = d = costs[0]
-    n = len(costs)
-    for x in range(0, n - 3, 4):
-        a = costs[x] if costs[x] < a else a
-        b = costs[x + 1] if costs[x + 1] < b else b
-        c = costs[x + 2] if costs[x + 2] < c else c
-        d = costs[x + 3] if costs[x + 3] < d else d
-    for x in range(n - n % 4, n):
-        a = costs[x] if costs[x] < a else a
-    return min(min(a, b), min(c, d))  # type: ignore[no-any-return]
-
-
-@compiled_as_is
-def draw_cost(costs: Any, kept: Any, beta: float, u: float, now: int) -> Any:
-    """Draw a label of density exp(-beta costs[x]); the least cost, ``now`` if tied, at infinity.
+def draw_cost(costs: Any, kept: Any, beta: float, u: float) -> Any:
+    """Draw a label of density exp(-beta costs[x]).
 
     Levels so dear that their weight is lost need no exponential. ``costs`` and ``kept`` (of
     whole numbers, as long) are used up.
@@ -159,17 +143,12 @@ def draw_cost(costs: Any, kept: Any, beta: float, u: float, now: int) -> Any:
     total = 0.0
     for x in range(len(costs)):
         rise = costs[x] - least
-        if rise == 0.0 or (beta < math.inf and beta * rise < NEGLIGIBLE_LOG):
+        if beta * rise < NEGLIGIBLE_LOG:
             kept[n_kept] = x
             weight = math.exp(-beta * rise) if rise > 0.0 else 1.0
             costs[n_kept] = weight  # overwrites none that is still to be read
             total += weight
             n_kept += 1
-    if beta == math.inf:
-        for s in range(n_kept):
-            if kept[s] == now:
-                return now, True
-        return kept[0], True
     if total == 1.0:  # the weights of others, if any, are lost in the sum
         for s in range(n_kept):
             if costs[s] == 1.0:
@@ -184,9 +163,8 @@ def draw_cost(costs: Any, kept: Any, beta: float, u: float, now: int) -> Any:
 
 
 @compiled_as_is
-def draw_line(rise: float, beta: float, u: float, now: bool) -> Any:
+def draw_line(rise: float, beta: float, u: float) -> Any:
     """Draw whether a line is on that raises the energy by ``rise`` if so."""
-    if beta == math.inf or abs(beta * rise) > NEGLIGIBLE_LOG:
-        on = rise < 0.0 or (rise == 0.0 and now)
-        return on, True
+    if abs(beta * rise) > NEGLIGIBLE_LOG:
+        return rise < 0.0, True
     return u * (1.0 + math.exp(beta * rise)) < 1.0, False

@@ -10,8 +10,9 @@ from annotated_types import Ge, Gt, Le
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.energy.line_field import Restored
 from tactile_graph_mrf.energy.model import Model
-from tactile_graph_mrf.samplers.annealing import observed_state, outcome, random_state, run, unswept
-from tactile_graph_mrf.samplers.schedules import Schedule, temperatures
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, minimised, observed_state, random_state
+from tactile_graph_mrf.samplers.annealing import Schedule, annealed, temperatures
 
 
 def gibbs(
@@ -77,9 +78,10 @@ def gibbs(
     Geman and Geman (1984), DOI 10.1109/TPAMI.1984.4767596. The draws are exact to the rounding
     of a cumulative sum.
     """
-    problem = model.prepare(image, region, expected)
-    if problem.idle:
-        return unswept(problem)
-    state = random_state(problem, rng) if start == "random" else observed_state(problem)
-    betas = energy_scale / temperatures(schedule, temperature, cooling, n_sweeps)
-    return outcome(problem, state, run(problem, state, betas, rng))
+
+    def sampled(problem: Problem) -> tuple[State, list[float]]:
+        state = random_state(problem, rng) if start == "random" else observed_state(problem)
+        betas = energy_scale / temperatures(schedule, temperature, cooling, n_sweeps)
+        return state, annealed(problem, state, betas, rng)
+
+    return minimised(prepare(model, image, region, expected), sampled)

@@ -11,18 +11,13 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.line_field import LineField, no_lines
-from tactile_graph_mrf.energy.model import Model, Problem
-from tactile_graph_mrf.samplers.annealing import (
-    BLOCK,
-    State,
-    in_one,
-    kernel_terms,
-    observed_state,
-    run,
-)
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
+from tactile_graph_mrf.energy.state import State, observed_state, sites_of
+from tactile_graph_mrf.kernels import fit_for
+from tactile_graph_mrf.samplers.annealing import BLOCK, annealed
 from tactile_graph_mrf.samplers.effective_size import effective_size
-from tactile_graph_mrf.samplers.sample import sample
-from tactile_graph_mrf.samplers.visits import fit_for
+from tactile_graph_mrf.samplers.sample import Sums, sample
 
 N_PROBES = 256
 """Cells, spread over the field, whose samples are kept to tell the effective sample size."""
@@ -103,14 +98,14 @@ def posterior(
     Sections 5.1.2 and 5.2.3; effective sample size after C. J. Geyer (1992), DOI
     10.1214/ss/1177011137, with the initial monotone sequence.
     """
-    problem = model.prepare(image, region, expected)
+    problem = prepare(model, image, region, expected)
     if problem.idle:
         return _certain(problem)
     scale = 0.5 / model.sigma**2 if energy_scale is None else energy_scale
     beta = scale / temperature
     state = observed_state(problem)
     if n_burn:
-        run(problem, state, np.full(n_burn, beta), rng)
+        annealed(problem, state, np.full(n_burn, beta), rng)
     return _sampled(problem, state, beta, rng, n_samples, n_between)
 
 
@@ -130,27 +125,36 @@ def _sampled(
     n_samples: int,
     n_between: int,
 ) -> Posterior:
-    tables, fixed = layout(problem), kernel_terms(problem)
+    tables = layout(problem)
     visits = len(tables.cells) + len(tables.sites)
     kernel = fit_for(sample, visits * n_samples * n_between * problem.levels_per_draw)
-    lines, across, down = in_one(state)
-    sums, squares = np.zeros(problem.shape), np.zeros(problem.shape)
-    on = np.zeros(lines.shape)
-    probes = tables.cells[:: max(1, -(-len(tables.cells) // N_PROBES))].copy()
-    seen = np.empty((n_samples, len(probes) + 1))
-    origin = problem.start()
-    now = (state.labels, lines, across, down)
+    sites = sites_of(state)
+    sums = Sums(
+        problem.start(),
+        np.zeros(problem.shape),
+        np.zeros(problem.shape),
+        np.zeros(sites.lines.shape),
+        tables.cells[:: max(1, -(-len(tables.cells) // N_PROBES))].copy(),
+    )
+    seen = np.empty((n_samples, len(sums.probes) + 1))
     per_block = max(1, BLOCK // max(visits * n_between, 1))
     for start in range(0, n_samples, per_block):
         part = seen[start : start + per_block]
         uniforms = rng.random((len(part), n_between, visits))
-        kernel(*fixed, *tables, beta, uniforms, *now, origin, sums, squares, on, probes, part)
-    mean = sums / n_samples
-    probability: NDArray[np.float64] = on / n_samples
-    spread = np.sqrt(np.maximum(squares / n_samples - mean**2, 0.0)) * problem.step
+        fixed = problem.potentials, problem.gaussian, tables
+        kernel(*fixed, beta, uniforms, sites, sums, part)
+    return _summed(problem, sums, seen)
+
+
+def _summed(problem: Problem, sums: Sums, seen: NDArray[np.float64]) -> Posterior:
+    n_samples = len(seen)
+    mean = sums.labels / n_samples
+    probability: NDArray[np.float64] = sums.on / n_samples
+    spread = np.sqrt(np.maximum(sums.squares / n_samples - mean**2, 0.0)) * problem.step
+    across, down = no_lines(problem.shape)
     n = across.size
     h, v = probability[:n].reshape(across.shape), probability[n:].reshape(down.shape)
-    image = problem.restored(mean + origin)
+    image = problem.restored(mean + sums.origin)
     return Posterior(
         image,
         image.with_values(np.where(problem.in_field, spread, 0.0)),

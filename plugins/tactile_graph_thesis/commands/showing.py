@@ -148,7 +148,8 @@ def show_item(item: Item, made: Made, how: str, aside: bool = False) -> None:
 
     say = console(stderr=aside)
     study = f" ({item.study})" if item.study else ""
-    say.print(Text.assemble((f"{item.name}{study}  {item.title}", "bold"), (f"; {how}", "dim")))
+    heading = Text.assemble((f"{item.name}{study}  {item.title}", "bold"), (f"; {how}", "dim"))
+    say.print(heading, soft_wrap=True)
     say.print(item.shows, soft_wrap=True)
     if made.compared:
         say.print(_compared_grid(made))

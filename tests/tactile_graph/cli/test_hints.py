@@ -21,7 +21,6 @@ pytestmark = pytest.mark.usefixtures("hand_made")
         (["run", "discs", "--frames", "9" * 30], "more frames than can be counted"),
         (["run", "discs", "--frames", f"{'9' * 30}:"], "more frames than can be counted"),
         (["check", "."], "'.' is a folder; name a file in it"),
-        (["compare", "discs", "no.npz"], "no file 'no.npz', and no pipeline named 'no.npz'"),
     ],
 )
 def test_a_slip_is_answered_with_what_to_do(args: list[str], message: str) -> None:

@@ -30,14 +30,7 @@ def seen(outcome: Any) -> Outcome:
     return Outcome("value", outcome)
 
 
-@settings(
-    max_examples=400,
-    deadline=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
-@given(case=cases())
-def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
+def exactly_as_the_naive_evaluator(
     case: tuple[dict[str, Any], dict[str, Any]], folder: Path
 ) -> None:
     document, library = case
@@ -59,6 +52,23 @@ def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
         assert Counter(CALLS) == naive.ran
         for outcome in expected.values():
             event(outcome.state)
+
+
+@pytest.mark.parametrize("n_cases", [120, pytest.param(400, marks=pytest.mark.slow)])
+def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
+    n_cases: int, folder: Path
+) -> None:
+    @settings(
+        max_examples=n_cases,
+        deadline=None,
+        derandomize=True,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    )
+    @given(case=cases())
+    def equal(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
+        exactly_as_the_naive_evaluator(case, folder)
+
+    equal()
 
 
 def test_the_generator_covers_what_it_should(folder: Path) -> None:

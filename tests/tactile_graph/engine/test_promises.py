@@ -14,7 +14,6 @@ from tactile_graph.engine.promises import misfit
 from tactile_graph.errors import PluginError
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps import Grid, Quantity
-from tactile_graph_compare import compare
 
 CIRCLE = Circle(1.0, 2.0, 3.0)
 MASK = Mask(np.ones((2, 3), dtype=bool))
@@ -144,13 +143,6 @@ def test_each_item_of_a_list_is_promised(registry: Registry) -> None:
     pipeline = loads(f"{{pipeline: p, nodes: {nodes}, outputs: [a]}}", "p.yaml", registry)
     with pytest.raises(PluginError, match=r"promises list\[float\], but gave a tuple of str"):
         pipeline.run(np.ones((2, 2)))
-
-
-def test_comparing_holds_steps_to_their_promises_too(registry: Registry, tmp_path: Any) -> None:
-    file = tmp_path / "p.yaml"
-    file.write_text(text("wrong"))
-    with pytest.raises(PluginError, match="promises Circle, but gave Image"):
-        compare([str(file)], source="source", registry=registry)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from tactile_graph import Circle, Frame, loads
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare.run.audit import audit
-from tactile_graph_compare.variants.shadows import shadows_of
+from tactile_graph_compare.variants.ablations import ablations_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -30,12 +30,12 @@ def by_name(found):
     return {(g.node, g.kind): g for g in found.guards}
 
 
-def test_every_guard_and_hand_over_that_is_asked_for_has_a_shadow():
-    told = [(s.node, s.kind, s.text) for s in shadows_of(loads(HANDED))]
+def test_every_guard_and_hand_over_that_is_asked_for_has_an_ablation():
+    told = [(s.node, s.kind, s.text) for s in ablations_of(loads(HANDED))]
     assert told == [("good", "when", "cheap.x_cm > 2"), ("circle", "first_of", "without good")]
 
 
-def test_a_guard_is_worth_what_its_shadow_runs_besides():
+def test_a_guard_is_worth_what_its_ablation_runs_besides():
     pipeline = loads(HANDED)
     found = by_name(audit(pipeline))
     handed = found["circle", "first_of"]

@@ -7,25 +7,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from tactile_graph_compare.score.pairing import assignment, paired
-
-
-def best_by_trying_all(cost):
-    rows, columns = cost.shape
-    return min(
-        sum(cost[i, j] for i, j in enumerate(chosen))
-        for chosen in permutations(range(columns), rows)
-    )
-
-
-@pytest.mark.parametrize("seed", range(40))
-def test_an_assignment_costs_no_more_than_any_other(seed):
-    rng = np.random.default_rng(seed)
-    rows = int(rng.integers(1, 6))
-    cost = rng.integers(0, 8, (rows, rows + int(rng.integers(0, 3)))).astype(float)  # many ties
-    chosen = assignment(cost)
-    assert len(set(chosen)) == rows
-    assert sum(cost[i, j] for i, j in enumerate(chosen)) == best_by_trying_all(cost)
+from tactile_graph_compare.score.pairing import paired
 
 
 @pytest.mark.parametrize("seed", range(40))

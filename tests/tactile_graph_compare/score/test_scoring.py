@@ -13,6 +13,7 @@ from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare.score.answers import Answers, Places, answers_of
+from tactile_graph_compare.score.quantities import quantities_of
 from tactile_graph_compare.score.scoring import NOBODY, Scorer
 
 DISC = TrueObject(Circle(3.0, 4.0, 2.0), name="disc")
@@ -26,9 +27,7 @@ def frame(*truth: TrueObject) -> Frame:
 
 
 def places(name: str, *kinds: type, many: bool = False, quantities: Any = None) -> Places:
-    from tactile_graph_compare.score.answers import OF_SHAPES
-
-    named = quantities or tuple(dict.fromkeys(q for k in kinds for q in OF_SHAPES[k]))
+    named = quantities or tuple(dict.fromkeys(q for k in kinds for q in quantities_of(k)))
     items = (lambda v: v) if many else (lambda v: (v,))
     return Places(Ref(name), many, items, lambda v: v, kinds, named)
 
@@ -43,7 +42,7 @@ def told(scorer: Scorer) -> dict[str, list[tuple[int, Any]]]:
     return {
         name: [(o, None if math.isnan(e) else round(e, 9)) for o, e in
                sorted(zip(t.objects, t.errors, strict=True))]
-        for name, t in scorer.targets.items() if t.objects
+        for name, t in scorer.errors.items() if t.objects
     }  # fmt: skip
 
 
@@ -51,7 +50,7 @@ def test_a_single_answer_is_held_against_the_nearest_object_of_its_kind():
     answers = Answers((places("c", Circle),), (), ())
     got = scored(answers, frame(SLAB, DISC), c=Circle(9.0, 4.0, 1.5))
     assert told(got) == {"centre": [(1, 6.0)], "radius": [(1, -0.5)]}
-    assert got.targets["centre"].offsets == [(6.0, 0.0)]
+    assert got.errors["centre"].offsets == [(6.0, 0.0)]
 
 
 def test_a_circle_for_a_rectangle_has_a_centre_to_compare_but_no_radius():
@@ -89,7 +88,7 @@ def test_no_answer_is_missing_for_what_was_there_and_right_where_nothing_was(out
 def test_an_answer_where_nothing_lies_is_extra():
     got = scored(Answers((places("c", Circle),), (), ()), frame(), c=Circle(1.0, 1.0, 1.0))
     assert told(got) == {}
-    assert got.targets["centre"].n_extra == 1
+    assert got.errors["centre"].n_extra == 1
 
 
 def test_a_later_output_answers_for_a_skipped_one_but_not_for_a_failed_one():
@@ -105,7 +104,7 @@ def test_several_answers_are_paired_with_several_objects_within_the_gate():
     got = scored(answers, frame(DISC, SLAB, TrueObject(Circle(8.0, 12.0, 1.0))), s=found)
     assert told(got)["centre"] == [(0, 1.0), (1, 0.5), (2, None)]
     assert told(got)["radius"] == [(0, 0.0), (2, None)]
-    assert got.targets["centre"].n_extra == 1
+    assert got.errors["centre"].n_extra == 1
 
 
 def test_another_kind_of_shape_than_was_there_leaves_its_measures_without_an_answer():
@@ -146,7 +145,7 @@ def test_an_identity_is_right_wrong_or_not_known(value, error):
 def test_a_frame_nobody_knows_the_truth_of_is_not_scored():
     scorer = Scorer(Answers((places("c", Circle),), (), ()))
     assert scorer.add(0, Frame.of(np.ones((2, 2))), lambda ref: DISC.shape) == {}
-    assert not scorer.targets
+    assert not scorer.errors
 
 
 def test_the_worst_error_of_a_frame_is_told_and_no_answer_is_worst_of_all():

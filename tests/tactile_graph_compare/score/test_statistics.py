@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph_compare.score.scoring import Targets
+from tactile_graph_compare.score.scoring import QuantityErrors
 from tactile_graph_compare.score.statistics import (
     difference_of,
     mean_interval,
@@ -21,7 +21,7 @@ NAN = math.nan
 
 
 def targets(errors, objects=None, offsets=None):
-    made = Targets(n_extra=2)
+    made = QuantityErrors(n_extra=2)
     for i, error in enumerate(errors):
         made.add(i, objects[i] if objects else 0, error)
     made.offsets = offsets or []
@@ -60,7 +60,7 @@ def test_objects_of_one_frame_count_as_one_frame():
     """Two objects in a frame are no more independent than one."""
 
     def score(label, errors):
-        made = Targets()
+        made = QuantityErrors()
         for number, error in enumerate(errors):
             made.add(0, number, error)
         return score_of(label, "radius", made)

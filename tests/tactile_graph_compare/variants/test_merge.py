@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, STEPS, cases, documents, frame, registry, shown
 from tactile_graph import Pipeline, compiled, load, loads
-from tactile_graph.engine.outcome import NOT_ASKED, Failed, Skipped
+from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.engine.rows import as_data
 from tactile_graph.plugins.registry import installed
-from tactile_graph_compare.run.run_orders import orders
-from tactile_graph_compare.run.variant_result import FAILED, NOT_SETTLED, RAN, SKIPPED, OwnResult
+from tactile_graph_compare.records.graph import STATES, state_of
+from tactile_graph_compare.run.session import balanced_orders
 from tactile_graph_compare.variants.merge import Merged, merge
 
 FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (4, 0.7), (5, 2.0), (1, 2.25), (2, 4.0)]
@@ -37,12 +37,6 @@ def told(outcome: Any) -> tuple[Any, ...]:
     if isinstance(outcome, Failed):
         return ("failed", outcome.origin, outcome.reason, outcome.inputs, outcome.step)
     return ("value", as_data(outcome))
-
-
-def state(outcome: Any) -> int:
-    if outcome is NOT_ASKED:
-        return NOT_SETTLED
-    return {Skipped: SKIPPED, Failed: FAILED}.get(type(outcome), RAN)
 
 
 @st.composite
@@ -108,7 +102,9 @@ def check(pipelines: list[Pipeline], frames: list[Any], seed: int = 0) -> Merged
     merged = merge(pipelines, [list(p.outputs) for p in pipelines])
     turns = [merged.pipeline.runner(seed=seed)]
     if not turns[0].stateful:
-        turns += [merged.in_order(turn).runner(seed=seed) for turn in orders(len(pipelines), 8)]
+        turns += [
+            merged.in_order(turn).runner(seed=seed) for turn in balanced_orders(len(pipelines), 8)
+        ]
     alone = [p.runner(seed=seed) for p in pipelines]
     called: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
     for i, one in enumerate(frames):
@@ -117,15 +113,17 @@ def check(pipelines: list[Pipeline], frames: list[Any], seed: int = 0) -> Merged
         called[0].update(CALLS)
         CALLS.clear()
         for member, pipeline, runner in zip(merged.members, pipelines, alone, strict=True):
-            own, expected = OwnResult(result, member), runner(one)
+            own, expected = member.alone(result), runner(one)
             for name in pipeline.outputs:
-                outcome = told(expected.outcome(name))
-                assert told(own.outcome(name)) == outcome, name
-            states = own.states()
+                assert told(own.outcome(name)) == told(expected.outcome(name)), name
+            assert own.row() == expected.row()
             for item in expected.plan.nodes:
                 if item.constant:  # kept from whatever frame first needed it
                     continue
-                assert states.get(item.name, 0) == state(expected.outcome(item.name)), item.name
+                outcome = told(expected.outcome(item.name))
+                assert told(own.outcome(item.name)) == outcome, item.name
+            failures = [[told(f) for f in r.failures] for r in (own, expected)]
+            assert sorted(failures[0]) == sorted(failures[1])
         called[1].update(CALLS)
         # No step runs that none of them alone has needed so far, and none is left out.
         assert set(called[0]) == set(called[1])
@@ -179,7 +177,7 @@ def test_one_guard_in_two_wordings_is_one_and_each_variant_is_told_its_own() -> 
     merged = check(of(HEAD + named, HEAD + spelled), NUMBERS)
     assert len(merged.pipeline.nodes) == 2
     result = merged.pipeline.run(frame(1))
-    first, second = (OwnResult(result, m) for m in merged.members)
+    first, second = (member.alone(result) for member in merged.members)
     assert first.outcome("one").reason == "when big is false (number = 1)"
     assert (second.outcome("uno").origin, second.outcome("uno").reason) == (
         "uno", "when number > 3 is false (number = 1)")  # fmt: skip
@@ -200,7 +198,7 @@ def test_of_two_equal_choices_the_last_is_told_as_the_one_that_was_skipped() -> 
     text = HEAD + f"  a: {same}\n  b: {same}\n  f: {{first_of: [a, b]}}\noutputs: [f, a]"
     merged = check(of(text), NUMBERS)
     assert list(merged.pipeline.nodes) == ["number", "a", "f"]
-    assert OwnResult(merged.pipeline.run(frame(1)), merged.members[0]).outcome("f").origin == "b"
+    assert merged.members[0].alone(merged.pipeline.run(frame(1))).outcome("f").origin == "b"
 
 
 def test_what_stands_behind_a_skipped_optional_port_was_needed_all_the_same() -> None:
@@ -210,8 +208,9 @@ def test_what_stands_behind_a_skipped_optional_port_was_needed_all_the_same() ->
         "  o: {step: options, in: {a: a, b: b}, when: number > 0}\noutputs: [o]"
     )
     merged = check(of(text), NUMBERS)
-    states = OwnResult(merged.pipeline.run(frame(1)), merged.members[0]).states()
-    assert states == {"number": RAN, "a": SKIPPED, "b": RAN, "o": RAN}
+    own = merged.members[0].alone(merged.pipeline.run(frame(1)))
+    states = {name: STATES[state_of(outcome)] for name, outcome in own.outcomes.items()}
+    assert states == {"number": "ran", "a": "skipped", "b": "ran", "o": "ran"}
 
 
 def noisy(a: int, *, rng: np.random.Generator) -> int:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.compiled import have_compiler
+from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
     NOT_FINITE,
@@ -22,6 +23,7 @@ SETS = {
     OUT_OF_RANGE: np.array([[0.0, 1e160], [1.0, 1.0], [5.0, 2.0]]),
     ALL_EQUAL: np.full((4, 2), -2.5),
 }
+SETS = {status: Points(xy).xy_cm for status, xy in SETS.items()}  # read-only, as in a step
 
 
 def test_points_come_centred_scaled_along_their_main_axis_and_back():

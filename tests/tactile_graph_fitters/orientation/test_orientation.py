@@ -124,7 +124,7 @@ def test_an_empty_mask_has_no_direction():
 @given(seed=seeds)
 def test_twins_agree(seed):
     rng = np.random.default_rng(seed)
-    values = rng.random((7, 9)) < 0.5
-    xy = rng.normal(5, 2, (20, 2))
+    values = Mask(rng.random((7, 9)) < 0.5).values
+    xy = Points(rng.normal(5, 2, (20, 2))).xy_cm
     assert mask_scatter.compiled(values) == pytest.approx(mask_scatter.reference(values))
     assert points_scatter.compiled(xy) == pytest.approx(points_scatter.reference(xy))

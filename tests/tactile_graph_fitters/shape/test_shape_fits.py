@@ -90,7 +90,7 @@ def test_every_shape_is_that_of_its_own_step(kernel):
 
 
 def test_a_hull_of_few_corners_has_no_polygon_of_more():
-    triangle = np.array([[0.0, 0.0], [4.0, 8.0], [10.0, 0.0]])
+    triangle = Polygon(np.array([[0.0, 0.0], [4.0, 8.0], [10.0, 0.0]])).xy_cm
     mean_squares = shape_fits(triangle, 0.5, 6, 1.3)[2]
     assert mean_squares[3] == pytest.approx(0.0, abs=1e-20)
     assert np.isinf(mean_squares[4:]).all()

@@ -7,10 +7,13 @@ import pytest
 from helpers_restorers import never_rises, square, tiny, tiny_model
 from tactile_graph.errors import DataError
 from tactile_graph_mrf.descent.graph_cuts import graph_cuts
-from tactile_graph_mrf.descent.swap_moves import swap_cycle
+from tactile_graph_mrf.descent.swap_moves import Bonds, swap_cycle
 from tactile_graph_mrf.descent.trw import trw
-from tactile_graph_mrf.energy.layout import by_cell, layout
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.layout import by_cell
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.potentials import Unary
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 
 
 def model(kind, **changes):
@@ -75,7 +78,7 @@ def test_swaps_need_no_library(monkeypatch):
 def test_after_swaps_no_trade_of_two_labels_lowers_the_energy(order, seed):
     """Against every way to share out two labels among the cells that have them."""
     chosen = tiny_model(smoothness="truncated_quadratic", order=order)
-    problem = chosen.prepare(tiny(seed))
+    problem = prepare(chosen, tiny(seed))
     restored = graph_cuts(tiny(seed), model=chosen, moves="swap", n_cycles=50)
     labels = np.rint((restored.image.values - problem.low) / problem.step).astype(np.int64)
     for alpha, beta in itertools.combinations(np.unique(labels).tolist(), 2):
@@ -88,14 +91,13 @@ def test_after_swaps_no_trade_of_two_labels_lowers_the_energy(order, seed):
 
 def test_a_cycle_of_swaps_is_the_same_compiled():
     pytest.importorskip("numba")
-    problem = model("truncated_quadratic", lambda_d=3.0).prepare(square(20.0, 8))
-    tables = layout(problem)
-    near, _ = by_cell(tables, 64)
-    own = problem.curvature.ravel(), problem.centre.ravel(), problem.table, problem.row.ravel()
+    problem = prepare(model("truncated_quadratic", lambda_d=3.0), square(20.0, 8))
+    unary = Unary(*(x.ravel() if x.shape == (8, 8) else x for x in problem.unary))
+    bonds = Bonds(problem.pairwise.smooth, problem.pairwise.weights)
     ends = []
     for kernel in (swap_cycle.reference, swap_cycle.compiled):
         labels = problem.start().ravel().copy()
-        kernel(tables.cells, near, *own, problem.smooth, problem.weights, labels)
+        kernel(unary, bonds, by_cell(problem), labels)
         ends.append(labels)
     assert np.array_equal(*ends)
     assert energy(problem, ends[0].reshape(8, 8)) < energy(problem, problem.start())

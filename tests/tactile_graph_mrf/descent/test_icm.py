@@ -8,8 +8,11 @@ import pytest
 from helpers_mrf import label_energies, label_states, picture, tiny
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.icm import icm
-from tactile_graph_mrf.energy.model import Model, energy
-from tactile_graph_mrf.samplers.annealing import observed_state, run
+from tactile_graph_mrf.descent.modes import settle
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.state import observed_state
+from tactile_graph_mrf.energy.total import energy
 
 MODELS = [
     Model(n_levels=12, lambda_l=10.0),
@@ -21,9 +24,9 @@ MODELS = [
 
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_it_ends_where_no_single_cell_or_line_can_lower_the_energy(model):
-    problem = model.prepare(picture(6, 5, noise=0.2))
+    problem = prepare(model, picture(6, 5, noise=0.2))
     state = observed_state(problem)
-    trace = run(problem, state, np.full(100, np.inf), None)
+    trace = settle(problem, state, 100)
     assert len(trace) < 100
     assert (np.diff([energy(problem, *observed_state(problem)), *trace]) <= 1e-9).all()
     least = energy(problem, *state) - 1e-9
@@ -45,7 +48,7 @@ def test_it_ends_where_no_single_cell_or_line_can_lower_the_energy(model):
 def test_convex_energies_of_a_tiny_field_come_close_to_their_minimum():
     problem = tiny(lines="none")
     state = observed_state(problem)
-    trace = run(problem, state, np.full(100, np.inf), None)
+    trace = settle(problem, state, 100)
     energies = np.sort(label_energies(problem, label_states(9, 4)))
     assert energies[0] - 1e-9 <= trace[-1] <= energies[10]
 

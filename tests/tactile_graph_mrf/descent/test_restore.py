@@ -7,32 +7,30 @@ from helpers_restorers import square, tiny, tiny_model
 from tactile_graph.wires import Image
 from tactile_graph_mrf.descent import region_moves
 from tactile_graph_mrf.descent.box_moves import move_boxes
-from tactile_graph_mrf.descent.fuse import PROPOSALS, move_chains, propose
-from tactile_graph_mrf.descent.grid_cut import cut_grid
+from tactile_graph_mrf.descent.chain_moves import PROPOSALS, Chain, move_chains, propose
+from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
 from tactile_graph_mrf.descent.region_moves import fuse, shift_all, shift_regions
 from tactile_graph_mrf.descent.restore import restore
 from tactile_graph_mrf.energy.line_field import no_lines
-from tactile_graph_mrf.energy.model import Model, energy
-from tactile_graph_mrf.samplers.annealing import State
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.state import State
+from tactile_graph_mrf.energy.total import energy
 
 
 def moved(problem, labels, lines, along_rows, kernel):
-    p = problem
-    own = p.curvature, p.centre, p.table, p.row
     labels = labels.copy()
-    field = p.in_field, own, p.smooth, p.offsets, p.weights, p.observed
-    kernel(*field, *lines, labels, along_rows)
+    kernel(problem.potentials, problem.observed, State(labels, *lines), along_rows)
     return labels
 
 
 def test_a_row_gets_the_best_combination_of_its_proposals():
     """Against all combinations of the proposals of one row of three cells."""
-    problem = tiny_model(smoothness="truncated_quadratic").prepare(tiny(5))
+    problem = prepare(tiny_model(smoothness="truncated_quadratic"), tiny(5))
     labels = np.array([[0, 3, 1], [2, 2, 0], [3, 1, 3]])
-    own = problem.curvature, problem.centre, problem.table, problem.row
     offered, kinds = np.empty((3, PROPOSALS), np.int64), np.empty(3, np.int64)
-    field = problem.in_field, own, problem.smooth, problem.observed, labels
-    propose.reference(*field, 0, True, offered, kinds)
+    chain = Chain(0, True, offered, kinds, np.empty(offered.shape), np.zeros(offered.shape, int))
+    propose.reference(problem.potentials, problem.observed, labels, chain)
     each = [offered[j, : kinds[j]].tolist() for j in range(3)]
     assert all(len(set(x)) == len(x) > 1 and x[0] == labels[0, j] for j, x in enumerate(each))
     least = np.inf
@@ -50,7 +48,7 @@ def test_chain_moves_never_raise_the_energy_and_agree_compiled(along_rows):
     pytest.importorskip("numba")
     rng = np.random.default_rng(3)
     model = Model(n_levels=30, order=2, lambda_l=60.0)
-    problem = model.prepare(square(20.0, 8))
+    problem = prepare(model, square(20.0, 8))
     for _ in range(5):
         labels = rng.integers(0, 30, (8, 8))
         lines = tuple(rng.random(x.shape) < 0.3 for x in no_lines((8, 8)))
@@ -63,16 +61,14 @@ def test_chain_moves_never_raise_the_energy_and_agree_compiled(along_rows):
 def test_boxes_of_lines_only_open_and_close_where_that_pays():
     pytest.importorskip("numba")
     rng = np.random.default_rng(4)
-    problem = Model(n_levels=30, lambda_l=60.0).prepare(square(20.0, 8))
-    p = problem
-    own = p.in_field, p.curvature, p.centre, p.table, p.row, p.smooth, p.weights
+    problem = prepare(Model(n_levels=30, lambda_l=60.0), square(20.0, 8))
     for _ in range(5):
         lines = (rng.random(x.shape) < 0.5 for x in no_lines((8, 8)))
         state = State(rng.integers(0, 30, (8, 8)), *lines)
         same = State(*(x.copy() for x in state))
         before = energy(problem, *state)
-        assert move_boxes.reference(*own, p.pattern, p.parallel, p.one, p.observed, *state) > 0
-        move_boxes.compiled(*own, p.pattern, p.parallel, p.one, p.observed, *same)
+        assert move_boxes.reference(problem.potentials, problem.observed, state) > 0
+        move_boxes.compiled(problem.potentials, problem.observed, same)
         assert energy(problem, *state) < before
         assert all(np.array_equal(a, b) for a, b in zip(state, same, strict=True))
 
@@ -91,8 +87,9 @@ def best_shift(problem, labels, target):
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(seed, order):
     rng = np.random.default_rng(seed)
-    problem = Model(n_levels=9, lines="none", order=order, lambda_d=0.9).prepare(
-        Image(rng.integers(0, 9, (3, 3)).astype(float))
+    problem = prepare(
+        Model(n_levels=9, lines="none", order=order, lambda_d=0.9),
+        Image(rng.integers(0, 9, (3, 3)).astype(float)),
     )
     labels = rng.integers(0, 9, (3, 3))
     state = State(labels.copy(), *no_lines((3, 3)))
@@ -112,7 +109,7 @@ def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, mon
     rng = np.random.default_rng(8)
     model = Model(n_levels=30, lines=lines, lambda_l=60.0, smoothness="truncated_quadratic",
                   truncation=6.0)  # fmt: skip
-    problem = model.prepare(square(20.0, 8))
+    problem = prepare(model, square(20.0, 8))
     sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites())
     drawn = no_lines((8, 8)) if lines != "explicit" else sites
     start = State(rng.integers(0, 30, (8, 8)), *drawn)
@@ -155,7 +152,9 @@ def test_a_cut_of_a_grid_is_the_least_of_all_cuts(seed):
     least = min(cost(np.array(g)) for g in itertools.product((False, True), repeat=12))
     goes = np.zeros(12, np.bool_)
     full = cap.copy()
-    count = cut_grid.reference(near, full, np.maximum(gain, 0.0), np.maximum(-gain, 0.0), goes)
+    count = cut_grid.reference(
+        Graph(near, full, np.maximum(gain, 0.0), np.maximum(-gain, 0.0)), goes
+    )
     assert count == goes.sum()
     assert cost(goes) == pytest.approx(least)
 

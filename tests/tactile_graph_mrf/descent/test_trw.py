@@ -4,9 +4,10 @@ import pytest
 from helpers_restorers import least_energy, square, tiny, tiny_model
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
-from tactile_graph_mrf.descent.tree_bound import chain_bound, lower_bound, trw_sweep
+from tactile_graph_mrf.descent.tree_bound import Grid, chain_bound, lower_bound, trw_sweep
 from tactile_graph_mrf.descent.trw import trw
 from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -14,7 +15,7 @@ from tactile_graph_mrf.energy.model import Model
 @pytest.mark.parametrize("n_sweeps", [1, 30])
 def test_the_bound_is_never_above_the_least_energy_of_all(seed, kind, n_sweeps):
     model = tiny_model(smoothness=kind)
-    found = lower_bound(model.prepare(tiny(seed)), n_sweeps)
+    found = lower_bound(prepare(model, tiny(seed)), n_sweeps)
     least = least_energy(model, seed)
     assert found.bound <= least + 1e-9
     assert found.energy >= least - 1e-9
@@ -23,7 +24,7 @@ def test_the_bound_is_never_above_the_least_energy_of_all(seed, kind, n_sweeps):
 
 
 def test_more_sweeps_raise_the_bound():
-    problem = Model(n_levels=30, lines="marginal", truncation=4.0).prepare(square(30.0, 8))
+    problem = prepare(Model(n_levels=30, lines="marginal", truncation=4.0), square(30.0, 8))
     bounds = [lower_bound(problem, n).bound for n in (1, 4, 16)]
     assert bounds == sorted(bounds)
     assert bounds[0] < bounds[-1]
@@ -36,21 +37,22 @@ def test_missing_cells_break_no_chain_twice():
     valid[3, :] = False
     image = Image(np.where(valid, noisy.values, 0.0), valid=valid)
     proof = trw(image, model=Model(n_levels=30, lines="marginal", lambda_d=0.0))
-    problem = Model(n_levels=30, lines="marginal", lambda_d=0.0).prepare(image)
+    problem = prepare(Model(n_levels=30, lines="marginal", lambda_d=0.0), image)
     assert not problem.in_field[3].any()
     assert proof.bound == pytest.approx(proof.energy)
 
 
 def test_messages_are_the_same_compiled_and_plain():
     pytest.importorskip("numba")
-    problem = tiny_model().prepare(tiny(1))
-    grid = (problem.in_field, problem.unary(), problem.smooth, problem.weights, 4)
+    problem = prepare(tiny_model(), tiny(1))
+    pairwise = problem.pairwise
+    grid = Grid(problem.in_field, problem.own_costs(), pairwise.smooth, pairwise.weights, 4)
     kept = []
     for kernels in (lambda k: k.reference, lambda k: k.compiled):
         messages, labels = np.zeros((4, 3, 3, 4)), np.zeros((3, 3), np.int64)
         for forth in (True, False, True):
-            kernels(trw_sweep)(*grid, forth, messages, labels)
-        kept.append((messages, labels, kernels(chain_bound)(*grid, messages)))
+            kernels(trw_sweep)(grid, forth, messages, labels)
+        kept.append((messages, labels, kernels(chain_bound)(grid, messages)))
     np.testing.assert_allclose(kept[0][0], kept[1][0])
     assert np.array_equal(kept[0][1], kept[1][1])
     assert kept[0][2] == pytest.approx(kept[1][2])

@@ -9,6 +9,7 @@ from helpers_mrf import picture
 from tactile_graph.wires import Mask
 from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
 
 
 def colour_runs(cells, near):
@@ -23,7 +24,7 @@ def colour_runs(cells, near):
 
 @pytest.mark.parametrize(("order", "classes"), [(1, 2), (2, 4), (3, 5)])
 def test_visits_go_class_by_class(order, classes):
-    problem = Model(order=order).prepare(picture(9, 8))
+    problem = prepare(Model(order=order), picture(9, 8))
     tables = layout(problem)
     assert sorted(tables.cells.tolist()) == list(range(72))
     assert colour_runs(tables.cells, tables.near) == classes
@@ -33,7 +34,7 @@ def test_visits_go_class_by_class(order, classes):
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_neighbours_are_mutual_and_within_the_field(order):
     on = np.random.default_rng(0).random((7, 8)) > 0.3
-    problem = Model(order=order).prepare(picture(7, 8), Mask(on))
+    problem = prepare(Model(order=order), picture(7, 8), Mask(on))
     tables = layout(problem)
     inside = set(np.flatnonzero(on).tolist())
     of = dict(zip(tables.cells.tolist(), tables.near.tolist(), strict=True))
@@ -47,6 +48,6 @@ def test_neighbours_are_mutual_and_within_the_field(order):
 
 
 def test_whole_fields_share_one_table_and_lines_summed_out_have_no_sites():
-    one, two = (layout(Model().prepare(picture(seed=s))) for s in (1, 2))
+    one, two = (layout(prepare(Model(), picture(seed=s))) for s in (1, 2))
     assert one is two
-    assert len(layout(Model(lines="marginal").prepare(picture())).sites) == 0
+    assert len(layout(prepare(Model(lines="marginal"), picture())).sites) == 0

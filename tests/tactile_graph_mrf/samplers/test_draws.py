@@ -66,24 +66,16 @@ def test_the_sum_of_all_weights_is_right(off, narrow, above, below):
 def test_cost_draws_share_out_even_numbers_as_the_density(beta):
     costs = np.random.default_rng(1).normal(size=37) * 30
     kept = np.empty(37, np.int64)
-    drawn = [draw_cost.loops(costs.copy(), kept, beta, u, 0)[0] for u in EVEN]
+    drawn = [draw_cost.loops(costs.copy(), kept, beta, u)[0] for u in EVEN]
     counts = np.bincount(drawn, minlength=37)
     assert np.abs(counts - chances(costs, beta) * N).max() <= 1.001
-
-
-def test_at_infinity_the_least_cost_is_taken_and_ties_stay():
-    kept = np.empty(5, np.int64)
-    costs = np.array([3.0, 1.0, 2.0, 1.0, 5.0])
-    assert draw_cost.loops(costs.copy(), kept, math.inf, 0.7, 0) == (1, True)
-    assert draw_cost.loops(costs.copy(), kept, math.inf, 0.7, 3) == (3, True)
-    assert draw_parabola.loops(2.0, 17.6, 200, math.inf, 0.9) == (18, True)
 
 
 def test_a_draw_is_sure_only_if_no_number_gives_another():
     kept = np.empty(2, np.int64)
     for gap in (1.0, 30.0, 36.0, 60.0):
         draws = {
-            draw_cost.loops(np.array([gap, 0.0]), kept, 1.0, u, 0) for u in (0.0, 0.5, 1 - 2**-53)
+            draw_cost.loops(np.array([gap, 0.0]), kept, 1.0, u) for u in (0.0, 0.5, 1 - 2**-53)
         }
         assert all(not sure for _, sure in draws) or draws == {(1, True)}
         assert draw_parabola.loops(gap, 5.0, 9, 1.0, 1 - 2**-53)[1] == (gap > 40)
@@ -91,12 +83,10 @@ def test_a_draw_is_sure_only_if_no_number_gives_another():
 
 @pytest.mark.parametrize("rise", [-2.0, 0.0, 0.3, 5.0])
 def test_lines_are_on_with_their_probability(rise):
-    on = sum(draw_line.loops(rise, 1.5, u, False)[0] for u in EVEN)
+    on = sum(draw_line.loops(rise, 1.5, u)[0] for u in EVEN)
     assert abs(on / N - 1 / (1 + math.exp(1.5 * rise))) <= 1.001 / N
 
 
 def test_hopeless_lines_need_no_number():
-    assert draw_line.loops(NEGLIGIBLE_LOG * 1.1, 1.0, 0.0, True) == (False, True)
-    assert draw_line.loops(-1e30, 1e12, 0.999, False) == (True, True)
-    assert draw_line.loops(0.0, math.inf, 0.1, True) == (True, True)
-    assert draw_line.loops(0.0, math.inf, 0.1, False) == (False, True)
+    assert draw_line.loops(NEGLIGIBLE_LOG * 1.1, 1.0, 0.0) == (False, True)
+    assert draw_line.loops(-1e30, 1e12, 0.999) == (True, True)

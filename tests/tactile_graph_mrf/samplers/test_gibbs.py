@@ -12,7 +12,9 @@ from tactile_graph import compiled, loads
 from tactile_graph.errors import PipelineError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.energy.line_field import Restored
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 from tactile_graph_mrf.samplers import annealing, sweep
 from tactile_graph_mrf.samplers.gibbs import gibbs
 
@@ -23,7 +25,7 @@ def restore(image, *ports, seed=1, **settings):
 
 def recomputed(restored: Restored, image, model, *ports):
     """The energy of a restoration, from its image and lines alone."""
-    problem = model.prepare(image, *ports)
+    problem = prepare(model, image, *ports)
     labels = np.rint((restored.image.values - problem.low) / problem.step).astype(np.int64)
     lines = restored.lines
     return energy(problem, np.where(problem.in_field, labels, 0), lines.horizontal, lines.vertical)

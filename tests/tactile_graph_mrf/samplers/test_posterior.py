@@ -9,7 +9,9 @@ import pytest
 
 from helpers_mrf import label_energies, label_states, line_states, picture, tiny
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.energy.model import Model, energy
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 from tactile_graph_mrf.samplers.posterior import posterior
 
 
@@ -59,7 +61,7 @@ def test_line_probabilities_are_those_of_the_posterior(lines):
 
 
 def test_same_seed_same_bits_and_the_trace_is_one_energy_a_sample():
-    problem = Model().prepare(picture())
+    problem = prepare(Model(), picture())
     one, two = (sampled(problem, 20) for _ in range(2))
     assert one.trace == two.trace
     assert len(one.trace) == one.samples == 20

@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain, islice
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline
+from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
-from tactile_graph_compare.run.frame_choice import Keeper
-from tactile_graph_compare.run.session import WARM_FRAMES, Session
-from tactile_graph_compare.run.summarise import close
+from tactile_graph_compare.run.frame_choice import FrameChooser
+from tactile_graph_compare.run.session import Session
+from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.one_source import (
     COUNT,
     first_source,
-    given_of,
     makes_frames,
     on_source,
     without_source,
 )
-from tactile_graph_compare.variants.request import Wanted, parse_wanted
+from tactile_graph_compare.variants.prepare import PreparedVariant, prepare
+from tactile_graph_compare.variants.request import VariantRequest, parse_request
 from tactile_graph_compare.variants.sweeps import Sweep
-from tactile_graph_compare.variants.variants import Prepared, prepare
 
 
 def compare(
-    variants: Sequence[str | Path | Pipeline | Wanted],
+    variants: Sequence[str | Path | Pipeline | VariantRequest],
     frames: Iterable[Frame] | None = None,
     *,
     source: str | None = None,
@@ -41,7 +40,7 @@ def compare(
     crossed: bool = False,
     lineage: bool = False,
     seed: int = 0,
-    keeper: Keeper | None = None,
+    chooser: FrameChooser | None = None,
     registry: Registry | None = None,
 ) -> Comparison:
     """Return how variants compare on the same frames, against the same truth.
@@ -66,7 +65,7 @@ def compare(
         Whether the pipelines that those named evolved from are compared too.
     seed : int
         Of everything random: the source's frames, the steps, the resampling.
-    keeper : Keeper, optional
+    chooser : FrameChooser, optional
         How many frames are kept whole.
     registry : Registry, optional
         The installed plugins if not given.
@@ -79,9 +78,9 @@ def compare(
         If a frame breaks a rule of some variant.
     """
     found = registry or installed()
-    wanted = [_wanted(v, found) for v in variants]
+    requests = [_request(v, found) for v in variants]
     swept = [Sweep(name, tuple(values)) for name, values in (sweeps or {}).items()]
-    prepared = prepare(wanted, found, settings, swept, crossed, lineage)
+    prepared = prepare(requests, found, settings, swept, crossed, lineage)
     report, notes = Report(), list[str]()
     if frames is None:
         prepared, notes = _on_one_source(prepared, source, source_settings, n_frames)
@@ -90,24 +89,25 @@ def compare(
         raise UsageError("give frames or a source, not both")
     else:
         prepared = without_source(prepared)
-    session = Session(prepared, seed, keeper)
-    run_all(session, islice(iter(frames), n_frames))
-    return close(session, report, notes=notes)
+    session = Session(prepared, seed, chooser)
+    for frame in session.warmed(islice(iter(frames), n_frames)):
+        session.add(frame)
+    return summarise(session, report, notes=notes)
 
 
 def _on_one_source(
-    prepared: list[Prepared],
+    prepared: list[PreparedVariant],
     source: str | None,
     settings: Mapping[str, Any] | None,
     n_frames: int | None,
-) -> tuple[list[Prepared], list[str]]:
+) -> tuple[list[PreparedVariant], list[str]]:
     """Return the variants on the source given, or on the first's own, and what to say of it."""
     notes: list[str] = []
     given = dict(settings or {})
     if source is None:
         first, notes = first_source(prepared)
         assert first.pipeline.source is not None
-        source, own = given_of(first.pipeline.source)
+        source, own = first.pipeline.source.name, first.pipeline.source.given
         if n_frames is not None:
             own.pop(COUNT, None)
         given = own | given
@@ -116,20 +116,7 @@ def _on_one_source(
     return on_source(prepared, source, given), notes
 
 
-def _wanted(variant: str | Path | Pipeline | Wanted, registry: Registry) -> Wanted:
-    if isinstance(variant, Wanted):
+def _request(variant: str | Path | Pipeline | VariantRequest, registry: Registry) -> VariantRequest:
+    if isinstance(variant, VariantRequest):
         return variant
-    return parse_wanted(variant, registry) if isinstance(variant, str) else Wanted(variant)
-
-
-def run_all(session: Session, frames: Iterator[Frame]) -> None:
-    """Run all frames through a session, after a few of them to warm it up."""
-    for frame in warmed(session, frames):
-        session.add(frame)
-
-
-def warmed(session: Session, frames: Iterator[Frame]) -> Iterator[Frame]:
-    """Yield the frames, the session warmed up with the first of them."""
-    first = list(islice(frames, WARM_FRAMES))
-    session.warm_up(first)
-    return chain(first, frames)
+    return parse_request(variant, registry) if isinstance(variant, str) else VariantRequest(variant)

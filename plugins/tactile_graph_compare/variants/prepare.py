@@ -1,4 +1,4 @@
-"""From what is wanted to pipelines with labels: settings, sweeps, parents."""
+"""From requests to pipelines with labels: settings, sweeps, parents."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.api.pipeline import Pipeline, load
+from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean
-from tactile_graph.pipeline.graph import Graph
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.inspect import Graph, plain
 from tactile_graph.plugins.registry import Registry
-from tactile_graph_compare.variants.request import Wanted, as_yaml, spelled
+from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedVariant:
     """A variant ready to run: its pipeline, its label, and how to ask for it again."""
 
     label: str
@@ -29,25 +28,25 @@ class Prepared:
 
 @dataclass(frozen=True, eq=False)
 class _Loaded:
-    wanted: Wanted
+    request: VariantRequest
     pipeline: Pipeline
     settings: Mapping[str, Any]
     """All that was set of it: its own, the common ones, those of sweeps."""
 
 
 def prepare(
-    wanted: Sequence[Wanted],
+    requests: Sequence[VariantRequest],
     registry: Registry,
     settings: Mapping[str, Any] | None = None,
     sweeps: Sequence[Sweep] = (),
     crossed: bool = False,
     lineage: bool = False,
-) -> list[Prepared]:
+) -> list[PreparedVariant]:
     """Return the variants, each with its label.
 
     Parameters
     ----------
-    wanted : sequence of Wanted
+    requests : sequence of VariantRequest
     registry : Registry
     settings : mapping, optional
         For every pipeline that has the node and the setting.
@@ -56,21 +55,21 @@ def prepare(
     crossed : bool
         Whether several sweeps are crossed with one another instead of going side by side.
     lineage : bool
-        Whether the pipelines that those wanted evolved from are compared too, before them.
+        Whether the pipelines that those asked for evolved from are compared too, before them.
 
     Raises
     ------
     UsageError, PipelineError
         If something does not exist, is not allowed, or is named twice.
     """
-    if not wanted:
+    if not requests:
         raise UsageError("name the pipelines to compare")
-    loaded = [_load(w, registry) for w in wanted]
+    loaded = [_load(r, registry) for r in requests]
     if lineage:
         loaded = list(_with_parents(loaded, registry))
     common = settings or {}
     _check_names([*common], [x.pipeline for x in loaded], "--set")
-    swept = [x.pipeline for x in loaded if x.wanted.swept]
+    swept = [x.pipeline for x in loaded if x.request.swept]
     _check_names([s.name for s in sweeps], swept, "--sweep")
     loaded = [_set(x, {k: v for k, v in common.items() if has_setting(x.pipeline, k)})
               for x in loaded]  # fmt: skip
@@ -78,10 +77,10 @@ def prepare(
     return _with_parent_labels([_prepared(x, everything) for x in everything], everything)
 
 
-def _load(wanted: Wanted, registry: Registry) -> _Loaded:
-    name = wanted.name
+def _load(request: VariantRequest, registry: Registry) -> _Loaded:
+    name = request.name
     pipeline = name if isinstance(name, Pipeline) else load(name, registry)
-    return _set(_Loaded(wanted, pipeline, {}), wanted.settings)
+    return _set(_Loaded(request, pipeline, {}), request.settings)
 
 
 def _set(loaded: _Loaded, settings: Mapping[str, Any]) -> _Loaded:
@@ -100,7 +99,9 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
         while child.evolves:
             beside = Path(child.file).parent / child.evolves
             is_file = child.evolves.endswith((".yaml", ".yml"))
-            parent = _load(Wanted(beside if is_file else child.evolves, swept=False), registry)
+            parent = _load(
+                VariantRequest(beside if is_file else child.evolves, swept=False), registry
+            )
             if parent.pipeline.name in names:
                 break
             names.add(parent.pipeline.name)
@@ -111,7 +112,7 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
 
 
 def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[_Loaded]:
-    own = [s for s in sweeps if loaded.wanted.swept and has_setting(loaded.pipeline, s.name)]
+    own = [s for s in sweeps if loaded.request.swept and has_setting(loaded.pipeline, s.name)]
     if not own:
         yield loaded
         return
@@ -148,18 +149,18 @@ def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: st
 # -- labels ----------------------------------------------------------------------------------
 
 
-def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> Prepared:
-    pipeline, only = one.pipeline, one.wanted.only
+def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> PreparedVariant:
+    pipeline, only = one.pipeline, one.request.only
     for name in only:
         pipeline.ref(name)  # says what is wrong with it
-    named = one.wanted.name
+    named = one.request.name
     given = spelled(pipeline.name if isinstance(named, Pipeline) else str(named),
                     one.settings, only)  # fmt: skip
     label = _label(one)
     if sum(_label(other) == label for other in everything) > 1:
         label = given.strip("'")
     asked = only or tuple(pipeline.outputs)
-    return Prepared(label, pipeline, asked, given)
+    return PreparedVariant(label, pipeline, asked, given)
 
 
 def _label(one: _Loaded) -> str:
@@ -168,8 +169,8 @@ def _label(one: _Loaded) -> str:
     words = [one.pipeline.name]
     for key, short in zip(one.settings, bare, strict=True):
         words.append(f"{short if bare.count(short) == 1 else key}={_short(one.settings[key])}")
-    if one.wanted.only:
-        words.append("only " + ", ".join(one.wanted.only))
+    if one.request.only:
+        words.append("only " + ", ".join(one.request.only))
     return " ".join(words)
 
 
@@ -177,7 +178,9 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else as_yaml(value)
 
 
-def _with_parent_labels(prepared: Sequence[Prepared], loaded: Sequence[_Loaded]) -> list[Prepared]:
+def _with_parent_labels(
+    prepared: Sequence[PreparedVariant], loaded: Sequence[_Loaded]
+) -> list[PreparedVariant]:
     seen: set[str] = set()
     found = []
     for one, its in zip(prepared, loaded, strict=True):

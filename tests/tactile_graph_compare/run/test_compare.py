@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from helpers_graphs import STEPS, registry
-from tactile_graph import Circle, Ellipse, Frame, load, loads
-from tactile_graph.errors import RuleError, UsageError
+from tactile_graph import Circle, Ellipse, Frame, Image, load, loads
+from tactile_graph.errors import PluginError, RuleError, UsageError
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare import compare
 from tactile_graph_compare.output.tables import heading
+from tactile_graph_compare.records.comparison import SettingChange
 from tactile_graph_compare.records.graph import STATES
-from tactile_graph_compare.records.lineage import SettingChange
-from tactile_graph_compare.run.frame_choice import Keeper
+from tactile_graph_compare.run.frame_choice import FrameChooser
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -92,30 +92,30 @@ def test_a_variant_is_charged_only_for_what_it_alone_would_have_run():
 
 
 def test_the_worst_error_is_the_largest_whichever_its_sign_and_right_answers_are_never_worst():
-    keeper = Keeper(n_regular=0)
+    chooser = FrameChooser(n_regular=0)
     for position, error in enumerate([0.0, 2.0, -3.0, 1.0]):
-        keeper.add(position, None, {"v": {"radius": error, "identity": 0.0}})
-    ((position, _, (choice,)),) = keeper.chosen()
+        chooser.add(position, None, {"v": {"radius": error, "identity": 0.0}})
+    ((position, _, (choice,)),) = chooser.chosen()
     assert (position, choice.error, str(choice)) == (2, -3.0, "worst radius of v")
 
 
 def test_variants_take_turns_in_coming_first_unless_a_step_keeps_state():
     from tactile_graph.plugins.registry import installed
-    from tactile_graph_compare.run.session import MOST_TURNS, Session
-    from tactile_graph_compare.variants.request import Wanted
-    from tactile_graph_compare.variants.variants import prepare
+    from tactile_graph_compare.run.session import MOST_ORDERS, Session
+    from tactile_graph_compare.variants.prepare import prepare
+    from tactile_graph_compare.variants.request import VariantRequest
 
     def firsts(n):
-        wanted = [Wanted("discs", {"footprint.level_v": 0.1 + 0.01 * k}) for k in range(n)]
+        wanted = [VariantRequest("discs", {"footprint.level_v": 0.1 + 0.01 * k}) for k in range(n)]
         runners = Session(prepare(wanted, installed())).runners
         return [r.plan.nodes[0].name for r in runners]
 
     assert set(firsts(3)) == {"footprint", "footprint@2", "footprint@3"}
-    assert len(set(firsts(20))) == MOST_TURNS
+    assert len(set(firsts(20))) == MOST_ORDERS
     found = registry(STEPS)
     text = "pipeline: {}\nnodes:\n  number: {{step: read, in: frame}}\n"
     text += "  sum: {{step: count, in: number}}\noutputs: [sum]"
-    counting = [Wanted(loads(text.format(name), registry=found)) for name in ("a", "b")]
+    counting = [VariantRequest(loads(text.format(name), registry=found)) for name in ("a", "b")]
     assert len(Session(prepare(counting, found)).runners) == 1
 
 
@@ -165,7 +165,7 @@ def test_difference_images_are_of_equally_named_nodes_cell_by_cell():
 
 
 def test_frames_kept_are_regular_ones_and_the_worst_of_each_with_every_value():
-    c = both(n_frames=40, keeper=Keeper(n_regular=3, most=10))
+    c = both(n_frames=40, chooser=FrameChooser(n_regular=3, most=10))
     regular = [f.position for f in c.chosen if any(x.why == "regular" for x in f.choices)]
     assert len(regular) == 3
     assert regular[0] == 0
@@ -181,10 +181,10 @@ def test_frames_kept_are_regular_ones_and_the_worst_of_each_with_every_value():
 
 
 def test_a_frame_without_an_answer_is_kept_with_the_reason_in_the_variants_own_names():
-    c = both(source_settings={"empty": [2]}, keeper=Keeper(n_regular=0))
+    c = both(source_settings={"empty": [2]}, chooser=FrameChooser(n_regular=0))
     # The pad is empty there, and truly so: nothing is missing, so nothing is kept for it.
     assert not [x for f in c.chosen for x in f.choices if x.why == "no answer"]
-    c = compare(["discs --set footprint.level_v=9"], n_frames=4, keeper=Keeper(n_regular=0))
+    c = compare(["discs --set footprint.level_v=9"], n_frames=4, chooser=FrameChooser(n_regular=0))
     (kept,) = c.chosen
     assert [str(x) for x in kept.choices] == [
         f"{c.labels[0]} gave no centre", f"{c.labels[0]} gave no radius"]  # fmt: skip
@@ -194,10 +194,10 @@ def test_a_frame_without_an_answer_is_kept_with_the_reason_in_the_variants_own_n
 
 
 def test_the_number_of_results_held_is_bounded():
-    keeper = Keeper(n_regular=4, most=6)
-    both(n_frames=200, keeper=keeper)
-    assert len(keeper._regular) <= 8
-    assert len(keeper.chosen()) <= 6
+    chooser = FrameChooser(n_regular=4, most=6)
+    both(n_frames=200, chooser=chooser)
+    assert len(chooser._regular) <= 8
+    assert len(chooser.chosen()) <= 6
 
 
 def test_frames_equal_to_the_last_cost_nothing_and_are_left_out_of_times():
@@ -222,6 +222,16 @@ def test_the_same_seed_gives_the_same_errors_and_intervals():
     np.testing.assert_array_equal(first.scores[0].errors, again.scores[0].errors)
     assert first.provenance["seed"] == 0
     assert other.provenance["seed"] == 1
+
+
+def test_steps_are_held_to_what_they_promise():
+    def liar(image: Image) -> Circle:
+        return image
+
+    text = "pipeline: p\nnodes: {a: {step: liar, in: frame}}\noutputs: [a]"
+    pipeline = loads(text, registry=registry({**STEPS, "liar": liar}))
+    with pytest.raises(PluginError, match="promises Circle, but gave Image"):
+        compare([pipeline], [Frame.of(np.ones((2, 2)))])
 
 
 def test_provenance_tells_every_variant_with_all_its_settings():

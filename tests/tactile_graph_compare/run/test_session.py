@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import pytest
 
-from tactile_graph_compare.run.run_orders import orders
+from tactile_graph_compare.run.session import balanced_orders
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7])
 def test_each_comes_at_each_place_and_behind_each_other_equally_often(n: int) -> None:
-    rows = orders(n, 100)
+    rows = balanced_orders(n, 100)
     assert all(sorted(row) == list(range(n)) for row in rows)
     places = Counter((place, k) for row in rows for place, k in enumerate(row))
     assert len(places) == n * n
@@ -23,4 +23,4 @@ def test_each_comes_at_each_place_and_behind_each_other_equally_often(n: int) ->
 
 
 def test_of_many_variants_eight_different_ones_come_first() -> None:
-    assert len({row[0] for row in orders(20, 8)}) == 8
+    assert len({row[0] for row in balanced_orders(20, 8)}) == 8

@@ -1,4 +1,4 @@
-"""Kernels fit for the work at hand."""
+"""Kernels fit for the work at hand: compiled at once where there is much to do."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph_mrf.samplers.schedules import temperatures
+from tactile_graph_mrf.samplers.annealing import temperatures
 
 
 def test_geometric_is_the_thesis():

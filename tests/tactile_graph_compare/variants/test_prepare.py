@@ -7,9 +7,9 @@ import pytest
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_compare.variants.one_source import first_source, on_source
-from tactile_graph_compare.variants.request import Wanted, parse_wanted, spelled
+from tactile_graph_compare.variants.prepare import prepare
+from tactile_graph_compare.variants.request import VariantRequest, parse_request, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations, parse_sweep
-from tactile_graph_compare.variants.variants import prepare
 
 
 @pytest.mark.parametrize(
@@ -58,11 +58,13 @@ def test_sweeps_go_side_by_side_or_are_crossed():
 
 
 def test_a_variant_says_its_settings_as_a_command_line_would():
-    got = parse_wanted("circle-3 --set footprint.level_v=0.02 --only hull --set=fine.factor=4",
+    got = parse_request("circle-3 --set footprint.level_v=0.02 --only hull --set=fine.factor=4",
                        installed())  # fmt: skip
-    assert got == Wanted("circle-3", {"footprint.level_v": 0.02, "fine.factor": 4}, ("hull",))
+    assert got == VariantRequest(
+        "circle-3", {"footprint.level_v": 0.02, "fine.factor": 4}, ("hull",)
+    )
     again = spelled("circle-3", got.settings, got.only)
-    assert parse_wanted(again.strip("'"), installed()) == got
+    assert parse_request(again.strip("'"), installed()) == got
 
 
 @pytest.mark.parametrize(
@@ -76,12 +78,12 @@ def test_a_variant_says_its_settings_as_a_command_line_would():
 )
 def test_a_variant_that_is_none_is_told_why(text, message):
     with pytest.raises(UsageError, match=message):
-        parse_wanted(text, installed())
+        parse_request(text, installed())
 
 
 def labels(*texts, **rest):
     found = installed()
-    return [p.label for p in prepare([parse_wanted(t, found) for t in texts], found, **rest)]
+    return [p.label for p in prepare([parse_request(t, found) for t in texts], found, **rest)]
 
 
 def test_a_sweep_makes_variants_of_each_pipeline_that_has_the_setting():
@@ -108,8 +110,8 @@ def test_common_settings_go_to_whoever_has_them_and_settings_of_one_name_are_tol
 
 def test_lineage_pulls_parents_in_before_their_children_and_does_not_sweep_them():
     found = installed()
-    got = prepare([Wanted("circle-3")], found, sweeps=[parse_sweep("footprint.level_v=0.01,0.02")],
-                  lineage=True)  # fmt: skip
+    sweeps = [parse_sweep("footprint.level_v=0.01,0.02")]
+    got = prepare([VariantRequest("circle-3")], found, sweeps=sweeps, lineage=True)
     assert [(p.label, p.parent) for p in got] == [
         ("circle-1", ""),
         ("circle-2", "circle-1"),
@@ -122,7 +124,7 @@ def test_the_parent_is_the_nearest_ancestor_compared_set_most_alike():
     found = installed()
     texts = ("circle-1", "circle-1 --set footprint.level_v=0.02", "circle-3",
              "circle-3 --set footprint.level_v=0.02")  # fmt: skip
-    got = prepare([parse_wanted(t, found) for t in texts], found)
+    got = prepare([parse_request(t, found) for t in texts], found)
     assert [p.parent for p in got] == ["", "", "circle-1", "circle-1 level_v=0.02"]
 
 
@@ -135,13 +137,16 @@ def test_the_same_variant_twice_is_an_error_and_so_is_none():
 
 def test_variants_take_the_frames_of_the_first_that_has_a_source():
     found = installed()
-    got = prepare([Wanted("circle-3"), Wanted("circle-1"), Wanted("rectangle-1")], found)
+    got = prepare(
+        [VariantRequest("circle-3"), VariantRequest("circle-1"), VariantRequest("rectangle-1")],
+        found,
+    )
     first, notes = first_source(got)
     assert first.label == "circle-3"
     assert notes == ["all run on the source of circle-3 (sample), not on their own: rectangle-1"]
 
 
 def test_a_variant_that_cannot_take_the_frames_is_named():
-    got = prepare([Wanted("circle-3")], installed())
+    got = prepare([VariantRequest("circle-3")], installed())
     with pytest.raises(PipelineError, match=r"variant circle-3, on source 'simulate': .*'scne'"):
         on_source(got, "simulate", {"scne": "discs"})

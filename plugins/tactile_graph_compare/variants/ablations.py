@@ -1,15 +1,15 @@
-"""Shadows of a pipeline: each with one guard or one choice less."""
+"""Ablations of a pipeline: each lacks one guard, or the first choices of a ``first_of``."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.pipeline.graph import Node, NodeKind
+from tactile_graph import Pipeline
+from tactile_graph.inspect import Node, NodeKind
 
 
 @dataclass(frozen=True, eq=False)
-class Shadow:
+class Ablation:
     """A pipeline in which one guard always holds, or one hand-over has happened."""
 
     node: str
@@ -23,8 +23,8 @@ class Shadow:
         return f"{self.node} {self.kind} {self.text}"
 
 
-def shadows_of(pipeline: Pipeline) -> list[Shadow]:
-    """Return a shadow for each guard and each hand-over that something asked for may meet."""
+def ablations_of(pipeline: Pipeline) -> list[Ablation]:
+    """Return an ablation for each guard and each hand-over that something asked for may meet."""
     unused = set(pipeline.unused)
     found = []
     for name, node in pipeline.nodes.items():
@@ -32,12 +32,12 @@ def shadows_of(pipeline: Pipeline) -> list[Shadow]:
             continue
         if node.guard is not None:
             changed = _with(pipeline, replace(node, guard=None))
-            found.append(Shadow(name, "when", node.guard.text, changed))
+            found.append(Ablation(name, "when", node.guard.text, changed))
         if node.kind is NodeKind.FIRST_OF:
             for i in range(1, len(node.choices)):
                 left = ", ".join(map(str, node.choices[:i]))
                 changed = _with(pipeline, replace(node, choices=node.choices[i:]))
-                found.append(Shadow(name, "first_of", f"without {left}", changed))
+                found.append(Ablation(name, "first_of", f"without {left}", changed))
     return found
 
 

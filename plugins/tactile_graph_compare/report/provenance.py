@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph_compare.records.comparison import Comparison
-from tactile_graph_compare.report.markup import Html, join, tag
-from tactile_graph_compare.report.parts import details
+from tactile_graph_compare.report.markup import Html, details, join, tag
 from tactile_graph_compare.variants.request import as_yaml
 
 
-def making(comparison: Comparison) -> Html:
+def provenance(comparison: Comparison) -> Html:
     """Return the command, versions and source, and the pipelines folded away."""
     told = comparison.provenance
     rows = [

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import re
 from pathlib import Path
 
 import pytest
 
-from helpers_cli import call
+from helpers_cli import call, install
+from helpers_compare import COMPARE
+from tactile_graph import Image
 from tactile_graph.cli.endings import INTERRUPTED, PIPE_CLOSED
 
 TWO = ("compare", "discs", "next.yaml", "--frames", "10")
@@ -120,6 +123,7 @@ def test_recordings_are_told_from_pipelines(hand_made):
     ("args", "message"),
     [
         (["dics"], r"no file 'dics', and no pipeline named 'dics'; did you mean 'discs'\?"),
+        (["discs", "no.npz"], r"no file 'no.npz', and no pipeline named 'no.npz'"),
         ([], r"name the pipelines to compare"),
         (["discs", "discs"], r"the same variant is named twice: discs"),
         (["discs", "--sweep", "footprint.level=1,2"],
@@ -142,6 +146,41 @@ def test_mistakes_are_told_and_nothing_is_done(hand_made, args, message):
     assert got.exit_code == 2
     assert re.search(message, got.stderr.replace("\n", " ")), got.stderr
     assert "Traceback" not in got.output
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("compare", "discs", "--report", "out.html"),
+        ("compare", "discs", "--csv", "out.csv"),
+        ("compare", "discs", "--csv", "folder"),
+        ("audit", "discs", "--json", "out.json"),
+    ],
+    ids=" ".join,
+)
+def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
+    hand_made, command, monkeypatch
+):
+    monkeypatch.setattr(os, "access", lambda *_: False)  # root may write anywhere
+    got = call(*command)
+    assert got.exit_code == 2
+    assert got.stdout == ""
+    assert f"error: {command[-2]} {command[-1]}: no permission to write in" in got.stderr
+
+
+def chatty(image: Image) -> float:
+    print("debug!", image.peak)  # noqa: T201 -- what authors leave in their steps
+    return 1.0
+
+
+def test_what_steps_print_does_not_get_into_what_programs_read(hand_made, monkeypatch):
+    install(monkeypatch, hand_made, COMPARE, steps={"chatty": chatty})
+    nodes = "nodes: {a: {step: chatty, in: frame}}, outputs: [a]"
+    Path("p.yaml").write_text(f"{{pipeline: p, {nodes}}}")
+    got = call("compare", "p.yaml", "--source", "made", "--json", "-")
+    assert got.exit_code == 0
+    assert json.loads(got.stdout)["frames"]["n"] == 4
+    assert "debug! 1." in got.stderr
 
 
 def test_what_was_done_before_a_source_broke_is_shown(hand_made):

@@ -377,7 +377,7 @@ def test_the_file_is_written_whole_or_not_at_all(
     before = path.read_bytes()
     assert before.startswith(b"<!doctype html>")
     read_html(before.decode())
-    monkeypatch.setattr("tactile_graph_compare.report.page.making", partial(_fail))
+    monkeypatch.setattr("tactile_graph_compare.report.page.provenance", partial(_fail))
     with pytest.raises(RuntimeError, match="no"):
         write_report(c, str(path))
     assert path.read_bytes() == before

@@ -7,9 +7,8 @@ from itertools import groupby
 
 from tactile_graph_compare.output.tables import LEFT, Table
 from tactile_graph_compare.records.comparison import Comparison
-from tactile_graph_compare.report.markup import Child, Html, tag
-from tactile_graph_compare.report.parts import scroll
-from tactile_graph_compare.report.people import chip
+from tactile_graph_compare.report.badges import chip
+from tactile_graph_compare.report.markup import Child, Html, scroll, tag
 
 _LESS_IS_BEST = ("mean", "median", "95 %", "largest", "missing", "extra")
 _SAYS = {"better": "good", "worse": "bad"}

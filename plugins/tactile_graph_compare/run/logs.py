@@ -1,0 +1,128 @@
+"""What is noted frame by frame: of each variant as if alone, and of the merged graph."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Result
+from tactile_graph.inspect import NO_VALUE, Failed, Plan, Ref, Skipped
+from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.records.comparison import FrameTable
+from tactile_graph_compare.records.graph import state_of
+from tactile_graph_compare.score.answers import answers_of
+from tactile_graph_compare.score.scoring import Scorer
+from tactile_graph_compare.score.statistics import frozen
+from tactile_graph_compare.variants.merge import Member
+from tactile_graph_compare.variants.prepare import PreparedVariant
+
+
+class VariantLog:
+    """What one variant came to so far.
+
+    Attributes
+    ----------
+    nodes : tuple of str
+        Those its outputs need, in the order of its file.
+    states : list of bytes
+        For each frame, a code for each node, as in `records.graph.STATES`.
+    times_us : list of float
+        Time of each frame; NaN where it was reused.
+    last : Result
+        Of the last frame, as the variant alone would have given it.
+    """
+
+    def __init__(self, prepared: PreparedVariant, member: Member) -> None:
+        self.prepared = prepared
+        self.member = member
+        self.nodes = tuple(i.name for i in member.plan.nodes)
+        self._refs = [Ref(name) for name in self.nodes]
+        self.last: Result
+        self.scorer = Scorer(answers_of(prepared.pipeline, prepared.asked))
+        self.states: list[bytes] = []
+        self.times_us: list[float] = []
+        self.n_ok = self.n_skipped = self.n_failed = 0
+        self.reasons: dict[tuple[str, str, str], list[Any]] = {}
+
+    def add(self, position: int, result: Result) -> dict[str, float]:
+        """Note a frame; return its worst error of each quantity."""
+        alone = self.last = self.member.alone(result)
+        self.states.append(bytes([state_of(alone.outcome_at(ref)) for ref in self._refs]))
+        spent = sum(alone.times_us.values())
+        self.times_us.append(math.nan if result.reused else spent)
+        self._count(alone)
+        return self.scorer.add(position, result.frame, alone.outcome_at)
+
+    def _count(self, alone: Result) -> None:
+        refs = self.member.asked
+        kinds = {alone.outcome_at(r).__class__ for r in refs}
+        self.n_failed += Failed in kinds
+        self.n_skipped += Skipped in kinds and Failed not in kinds
+        self.n_ok += not kinds & NO_VALUE
+        if not kinds & NO_VALUE:
+            return
+        for name, ref in zip(self.prepared.asked, refs, strict=True):
+            outcome = alone.outcome_at(ref)
+            if isinstance(outcome, Skipped | Failed):
+                word = "failed" if outcome.__class__ is Failed else "skipped"
+                first = [outcome.reason.partition("\n")[0], 0]
+                self.reasons.setdefault((word, name, outcome.origin), first)[1] += 1
+
+
+class MergedLog:
+    """What the merged graph came to so far, and in which frames.
+
+    Attributes
+    ----------
+    nodes : tuple of str
+        The merged nodes, each after those it reads.
+    fixed_us : list of float
+        Time of each frame outside the nodes; NaN where it was reused.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.nodes = tuple(item.name for item in plan.nodes)
+        self.fixed_us: list[float] = []
+        self._times_us: list[list[float]] = []
+        self._states: list[bytes] = []
+        self._frames: list[tuple[int, float, str, int, bool]] = []
+
+    @property
+    def n(self) -> int:
+        """Frames so far."""
+        return len(self._frames)
+
+    def add(self, frame: Frame, result: Result, whole_us: float) -> None:
+        """Note a frame that took so long as a whole."""
+        by_node = result.times_us
+        times = [by_node[n] for n in self.nodes]
+        self._times_us.append(times)
+        self._states.append(bytes([state_of(result.outcome(n)) for n in self.nodes]))
+        self.fixed_us.append(math.nan if result.reused else whole_us - sum(times))
+        time_s = math.nan if frame.time_s is None else frame.time_s
+        n_true = -1 if frame.truth is None else len(frame.truth)
+        self._frames.append((frame.index, time_s, frame.label, n_true, result.reused))
+
+    def times_us(self) -> NDArray[np.float64]:
+        """Return the time of each node in each frame, shape (n_frames, n_nodes)."""
+        return np.array(self._times_us).reshape(self.n, len(self.nodes))
+
+    def states(self) -> NDArray[np.uint8]:
+        """Return the code of each node in each frame, shape (n_frames, n_nodes)."""
+        codes = np.frombuffer(b"".join(self._states), dtype=np.uint8)
+        return codes.reshape(self.n, len(self.nodes))
+
+    def frames(self) -> FrameTable:
+        """Return the frames."""
+        columns = zip(*self._frames, strict=True) if self._frames else [()] * 5
+        indices, times_s, labels, n_true, reused = columns
+        return FrameTable(
+            frozen(indices, np.int64),
+            frozen(times_s),
+            labels,
+            frozen(n_true, np.int64),
+            frozen(reused, np.bool_),
+        )

@@ -1,0 +1,128 @@
+"""What a plan would have come to alone, from a run that settled more than it asks for.
+
+No rule of skipping stands here: the plan is made into the same program that runs frames, only that
+its calls hand out recorded outcomes. What it settles is what the plan alone would have run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from operator import itemgetter
+from typing import Any, TypeVar
+
+from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, REUSED, Outcomes, blank_state
+from tactile_graph.engine.plan import Plan
+from tactile_graph.engine.program import make_program
+from tactile_graph.pipeline.graph import FRAME, Node
+from tactile_graph.pipeline.wiring import Ref
+
+Read = Callable[[list[Any]], tuple[Any, ...]]
+AnyOutcomes = TypeVar("AnyOutcomes", bound=Outcomes)
+
+
+class Replay:
+    """Call it with a recorded result, get the one that the plan alone would have given.
+
+    Outcomes are the recorded ones, skips and failures in the plan's own names and the words of its
+    own guards; nodes the plan alone would not have settled are not asked for. A node it settles
+    has the time recorded for it.
+
+    Parameters
+    ----------
+    plan : Plan
+    recorded_as : mapping of str to str
+        Each node of the plan -> the recorded node that does the same to the same. Every run to be
+        replayed must settle at least what the plan alone would.
+    """
+
+    def __init__(self, plan: Plan, recorded_as: Mapping[str, str]) -> None:
+        self.plan = plan
+        self._recorded_as = {FRAME: FRAME, **recorded_as}
+        self._recorded: tuple[Any, ...] = ()
+        self._reads: list[tuple[Plan, Read]] = []
+        self._blank = blank_state(plan.n_slots)
+        # What depends on no frame is settled anew in each: it counts only where it is needed.
+        forgotten = self._blank.copy()
+        self._operations = make_program(plan, self._call_of, forgotten, self._field_of)
+
+    def __call__(self, result: AnyOutcomes) -> AnyOutcomes:
+        """Return what the plan came to in the frame of a recorded result."""
+        recorded = self._recorded = self._reader(result.plan)(result._state)
+        n, state = self.plan.n_slots, self._blank.copy()
+        state[self.plan.image] = recorded[self.plan.image]
+        state[0] = recorded[0]
+        for settle in self._operations:
+            settle(state)
+        state[n : 2 * n] = [
+            0 if outcome is None else time
+            for outcome, time in zip(state, recorded[n:], strict=False)
+        ]
+        state[REUSED] = result.reused
+        failures, inner = result._state[ITEM_FAILURES], result.inner
+        if failures or inner:
+            settled = [i.name for i in self.plan.nodes if state[i.slot] is not None]
+            rows = [(name, self._recorded_as[name]) for name in settled]
+            state[ITEM_FAILURES] = [
+                f.at(name) for name, known in rows for f in failures if f.origin == known
+            ]
+            state[INNER] = {name: inner[known] for name, known in rows if known in inner}
+        return type(result)(self.plan, state)
+
+    def _reader(self, recorded: Plan) -> Read:
+        """Return what takes the plan's outcomes and times out of a state of the recorded plan."""
+        for plan, read in self._reads:
+            if plan is recorded:
+                return read
+        slots = [recorded.refs[self._recorded_ref(ref)] for ref in self.plan.refs]
+        read = itemgetter(*slots, *(recorded.n_slots + slot for slot in slots))
+        self._reads.append((recorded, read))
+        return read
+
+    def _recorded_ref(self, ref: Ref) -> Ref:
+        return replace(ref, node=self._recorded_as[ref.node])
+
+    # -- what stands in for calls -------------------------------------------------------------
+
+    def _call_of(self, node: Node) -> Callable[..., Any]:
+        """Return what hands out a node's recorded outcome, whatever it is called with."""
+        slot, name = self.plan.refs[Ref(node.name)], node.name
+        known = self._recorded_as[name]
+
+        def call(*_: Any, **__: Any) -> Any:
+            outcome = self._recorded[slot]
+            if isinstance(outcome, Skipped | Failed):
+                return outcome.at(name) if outcome.origin == known else outcome
+            if outcome is None:
+                raise LookupError(f"nothing was recorded of {known!r}")
+            return outcome
+
+        return _with_own_fields(call, name) if node.inner is not None else call
+
+    def _field_of(self, ref: Ref) -> Callable[[Any], Any]:
+        """Return what hands out the recorded field of a node; None where it was not known."""
+        slot, name = self.plan.refs[ref], str(ref)
+
+        def field(_: Any) -> Any:
+            outcome = self._recorded[slot]
+            if outcome.__class__ is Skipped:
+                return None
+            return outcome.at(name) if outcome.__class__ is Failed else outcome
+
+        return field
+
+
+def _with_own_fields(call: Callable[..., Any], name: str) -> Callable[..., Any]:
+    """Name the node in what was skipped among the outputs of a pipeline run over a list."""
+
+    def named(*args: Any, **kwargs: Any) -> Any:
+        record = call(*args, **kwargs)
+        skipped = {
+            field: value.at(name)
+            for field in getattr(record, "_fields", ())
+            if (value := getattr(record, field)).__class__ is Skipped
+        }
+        return record._replace(**skipped) if skipped else record
+
+    return named

@@ -1,0 +1,53 @@
+"""What a pipeline is made of and what a frame came to in it, for plugins that look inside.
+
+A plugin's steps need none of this. What compares, audits, tunes or explains pipelines finds here:
+
+- the graph: `Graph`, `Node`, `NodeKind`, `Guard`, `Ref`, `Source`, and the frame's own name in it
+  (`FRAME`); types along its wires (`arms`, `field_type`, `public_fields`); settings as plain data
+  (`plain`) and digests of it (`node_key`);
+- the plan of a demand (`make_plan`, `Plan`), what it needs of a frame (`check_frame`), and its
+  `Runner`;
+- outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`; values as numbers (`scalars`) and
+  as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`);
+- `Replay`: what a plan alone would have come to, from a run that settled more.
+"""
+
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done, Failed, Skipped
+from tactile_graph.engine.plan import Plan, make_plan
+from tactile_graph.engine.replay import Replay
+from tactile_graph.engine.rows import as_data, scalars, without_nan
+from tactile_graph.engine.runner import Runner, check_frame
+from tactile_graph.engine.truth import shape_kind
+from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
+from tactile_graph.pipeline.plain import plain
+from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
+
+__all__ = [
+    "FRAME",
+    "NOT_ASKED",
+    "NO_VALUE",
+    "Done",
+    "Failed",
+    "Graph",
+    "Guard",
+    "Node",
+    "NodeKind",
+    "Plan",
+    "Ref",
+    "Replay",
+    "Runner",
+    "Skipped",
+    "Source",
+    "arms",
+    "as_data",
+    "check_frame",
+    "field_type",
+    "make_plan",
+    "node_key",
+    "plain",
+    "public_fields",
+    "scalars",
+    "shape_kind",
+    "without_nan",
+]
