@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.fit_circle import fit_circle
@@ -150,8 +150,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=400)
     options = parser.parse_args()
     warm_up()
-    compiled = "compiled" if have_compiler() else "plain (numba is not installed)"
-    print(f"Python {platform.python_version()}, NumPy {np.__version__}, kernels {compiled}")
+    print(f"Python {platform.python_version()}, NumPy {np.__version__}")
     fits = all_fits()
     for noise in options.noise:
         accuracy(fits, options.points, noise, options.rounds)

@@ -27,7 +27,7 @@ from rounds import Timed, print_table
 from suite_parts.rounds_of import in_turn
 
 from tactile_graph import Frame, Pipeline, load, loads
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 
 LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
 DISC5 = np.array(
@@ -203,8 +203,6 @@ def start_up(rounds: int = 15) -> None:
 
 
 if __name__ == "__main__":
-    if not have_compiler():
-        print("numba is not installed: these are the times of the plain references\n")
     warm_up()
     one_frame()
     start_up()

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
 from tactile_graph import Frame, load, loads
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 
 PIPELINE = """
 pipeline: counts-to-grams
@@ -37,8 +37,6 @@ def numpy_script(counts: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def main() -> None:
-    if not have_compiler():
-        print("numba is not installed: these are the times of the plain references\n")
     warm_up()
     source = load("circle-3").with_source("simulate", scene="disc-1", frames=2, output="counts")
     frames = list(source.frames(seed=0))

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
 from tactile_graph import Frame, load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 
 PIPELINES = {
     "discs": ("circle-likelihood", "circle"),
@@ -88,8 +88,6 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=11)
     chosen = parser.parse_args()
-    if not have_compiler():
-        print("numba is not installed: these are the times of the plain references\n")
     warm_up()
     for kind in PIPELINES:
         calibration(kind, chosen.scenes, chosen.seed)

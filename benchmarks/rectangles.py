@@ -30,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from rounds import print_table, time_side_by_side
 
 from tactile_graph import Rectangle, load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph_thesis.measure.beside_thesis import beside_thesis
 from tactile_graph_thesis.measure.rectangles import (
@@ -238,8 +238,6 @@ def main() -> None:
     parser.add_argument("--readings", type=int, default=500, help="of each rectangle")
     parser.add_argument("--seed", type=int, default=101)
     arguments = parser.parse_args()
-    if not have_compiler():
-        print("numba is not installed: these are the times of the plain references\n")
     warm_up()
     tables(arguments.readings, arguments.seed)
     alternatives(min(200, arguments.readings), arguments.seed)

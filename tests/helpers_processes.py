@@ -9,8 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.compiled import have_compiler
-
 
 def compile_once_among_processes() -> None:
     """Let whoever needs a kernel that another process is compiling wait and load it then.
@@ -21,8 +19,6 @@ def compile_once_among_processes() -> None:
     try:
         import fcntl
     except ImportError:  # Windows: each compiles for itself
-        return
-    if not have_compiler():
         return
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.dispatcher import Dispatcher

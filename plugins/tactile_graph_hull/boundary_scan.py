@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, Points
 
 BLOCK = 16  # cells looked at together
@@ -105,7 +105,7 @@ def scanned_centres(
     return centres[:n]
 
 
-@compiled_as_is
+@compiled_later
 def _first_on(row: NDArray[np.bool_]) -> int:
     """Return where the first on-cell is, the row's length if there is none."""
     start = 0

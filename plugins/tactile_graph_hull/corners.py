@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
 from tactile_graph_hull.turn_of_points import LARGEST, SMALLEST
@@ -61,7 +61,7 @@ def _out_of_range(
     return np.ldexp(corners(scaled, rounding_ulps), shift)
 
 
-@compiled_as_is
+@compiled_later
 def in_range(xy: NDArray[np.float64]) -> bool:
     """Return whether there are points, all finite and of a size `turn` is exact for."""
     for i in range(xy.shape[0]):
@@ -72,7 +72,7 @@ def in_range(xy: NDArray[np.float64]) -> bool:
     return bool(xy.shape[0] > 0)
 
 
-@compiled_as_is
+@compiled_later
 def finished(corners: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     """Return an exact hull's corners without those that only rounding makes stick out.
 
@@ -95,7 +95,7 @@ def finished(corners: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     return _from_lowest(corners, kept)
 
 
-@compiled_as_is
+@compiled_later
 def _farthest(corners: NDArray[np.float64], start: int) -> int:
     """Return the corner farthest from ``start``."""
     best, largest = start, -1.0
@@ -106,7 +106,7 @@ def _farthest(corners: NDArray[np.float64], start: int) -> int:
     return best
 
 
-@compiled_as_is
+@compiled_later
 def _thin(
     corners: NDArray[np.float64], start: int, end: int, limit: float, kept: NDArray[np.bool_]
 ) -> None:
@@ -132,7 +132,7 @@ def _thin(
         before, k = k, (k + 1) % n
 
 
-@compiled_as_is
+@compiled_later
 def _from_lowest(corners: NDArray[np.float64], kept: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Return the kept corners, the one of the lowest x, then the lowest y, first."""
     n = corners.shape[0]

@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
@@ -90,7 +90,7 @@ def chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     return finished(chain[:size], ulps)
 
 
-@compiled_as_is
+@compiled_later
 def _columns(xy: NDArray[np.float64], ends: NDArray[np.float64]) -> int:
     """Write each x with its least and greatest y, by rising x; return how many there are."""
     n = xy.shape[0]
@@ -111,7 +111,7 @@ def _columns(xy: NDArray[np.float64], ends: NDArray[np.float64]) -> int:
     return m
 
 
-@compiled_as_is
+@compiled_later
 def _add_chain(
     ends: NDArray[np.float64],
     start: int,

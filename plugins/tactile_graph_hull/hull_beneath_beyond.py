@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
@@ -63,7 +63,7 @@ def hull_beneath_beyond(points: Points, *, rounding_ulps: Annotated[float, Ge(0)
     return hull_polygon(points.xy_cm, beneath_beyond_corners, rounding_ulps)
 
 
-@compiled_as_is
+@compiled_later
 def beneath_beyond_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     """Return the hull's corners, shape (K, 2); none if `turn` would not be exact."""
     if not in_range(xy):
@@ -99,7 +99,7 @@ def beneath_beyond_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.f
     return finished(ring, ulps)
 
 
-@compiled_as_is
+@compiled_later
 def _shuffled(n: int) -> NDArray[np.int64]:
     """Return 0 .. n - 1 in an order as good as random, always the same (Park-Miller numbers)."""
     order = np.arange(n)
@@ -111,13 +111,13 @@ def _shuffled(n: int) -> NDArray[np.int64]:
     return order
 
 
-@compiled_as_is
+@compiled_later
 def _sense(xy: NDArray[np.float64], edge: int, end: int, p: int) -> int:
     """Return -1 if p is beyond the edge, 1 if beneath it, 0 if on its line."""
     return turn(xy[edge, 0], xy[edge, 1], xy[end, 0], xy[end, 1], xy[p, 0], xy[p, 1])
 
 
-@compiled_as_is
+@compiled_later
 def _give(hull: _Ring, p: int, one: int, other: int) -> None:
     """Put p on the list of the edge it is beyond; beneath both it is inside for good."""
     hull.edge_of[p] = -1
@@ -129,7 +129,7 @@ def _give(hull: _Ring, p: int, one: int, other: int) -> None:
             return
 
 
-@compiled_as_is
+@compiled_later
 def _add(hull: _Ring, p: int) -> None:
     """Replace the edges p is beyond by the two sides of its supporting cone."""
     xy, after, before = hull.xy, hull.after, hull.before

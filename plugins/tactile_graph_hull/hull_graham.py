@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
@@ -88,18 +88,18 @@ def graham_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     return finished(xy[kept[:size]] + 0.0, ulps)
 
 
-@compiled_as_is
+@compiled_later
 def _turn_of(xy: NDArray[np.float64], a: int, b: int, c: int) -> int:
     return turn(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1])
 
 
-@compiled_as_is
+@compiled_later
 def _lower(xy: NDArray[np.float64], i: int, k: int) -> bool:
     """Return whether point i has the lower x, or at the same x the lower y."""
     return bool(xy[i, 0] < xy[k, 0] or (xy[i, 0] == xy[k, 0] and xy[i, 1] < xy[k, 1]))
 
 
-@compiled_as_is
+@compiled_later
 def _sorted_around(xy: NDArray[np.float64], pivot: int) -> NDArray[np.int64]:
     """Return the points' numbers counter-clockwise around the pivot, the nearer first."""
     n = xy.shape[0]

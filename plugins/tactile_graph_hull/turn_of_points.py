@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 SPLITTER = 134217729.0  # 2**27 + 1 cuts a double into halves whose products are exact
 FILTER = 3.3306690738754716e-16  # (3 + 16 eps) eps with eps = 2**-53: Shewchuk's bound A
@@ -32,7 +32,7 @@ def _turn(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> i
     return (exact > 0) - (exact < 0)
 
 
-@compiled_as_is
+@compiled_later
 def product_in_two(a: float, b: float) -> tuple[float, float]:
     """Return a * b rounded and its rounding error, exactly (Dekker 1971, Veltkamp's splitting)."""
     p = a * b
@@ -45,7 +45,7 @@ def product_in_two(a: float, b: float) -> tuple[float, float]:
     return p, a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 
 
-@compiled_as_is
+@compiled_later
 def difference_in_two(a: float, b: float) -> tuple[float, float]:
     """Return a - b rounded and its rounding error, exactly (Knuth's two-sum)."""
     d = a - b
@@ -54,7 +54,7 @@ def difference_in_two(a: float, b: float) -> tuple[float, float]:
     return d, (b_virtual - b) + (a - a_virtual)
 
 
-@compiled_as_is
+@compiled_later
 def sign_of_sum(terms: NDArray[np.float64]) -> int:
     """Return the exact sign of a sum, by growing an expansion in place (Shewchuk 1997, fig. 6)."""
     m = 0

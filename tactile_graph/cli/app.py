@@ -19,6 +19,7 @@ COMMANDS = {
     "run": "Run a pipeline over recordings or another source.",
     "check": "Report all that is wrong with pipeline files.",
     "explain": "Say for one frame what each node did, and why.",
+    "prepare": "Compile the kernels of pipelines now, so that no first frame waits.",
     "graph": "Draw a pipeline's graph: SVG, mermaid or dot.",
     "pipelines": "List the pipelines, and which evolved from which.",
     "steps": "List the steps, or describe one of them.",

@@ -89,8 +89,11 @@ class Group(click.Group):
 
     def invoke(self, ctx: click.Context) -> None:
         """Run the command asked for; what it returns is no exit code."""
+        from tactile_graph.compiled.preparing import Line, told_by
+
         try:
-            super().invoke(ctx)
+            with told_by(Line()):
+                super().invoke(ctx)
         except BrokenPipeError:
             endings.stop_writing()
             ctx.exit(endings.PIPE_CLOSED)

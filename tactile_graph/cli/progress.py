@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import time
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+
+from tactile_graph.compiled.preparing import told_by
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -34,6 +37,7 @@ class Bar:
         self._progress: Progress | None = None
         self._task: TaskID | None = None
         self._shown = shown and console.is_terminal
+        self._told = ExitStack()
 
     def at(self, done: int, total: int | None) -> None:
         """Say how far the work is; ``total`` is None where nobody knows."""
@@ -64,9 +68,14 @@ class Bar:
             TextColumn("frames"), TimeRemainingColumn(), console=self._console, transient=True,
         )  # fmt: skip
         progress.start()
-        return progress, progress.add_task(self._what, completed=done, total=total)
+        task = progress.add_task(self._what, completed=done, total=total)
+        self._told.enter_context(
+            told_by(lambda text: progress.update(task, description=text or self._what))
+        )
+        return progress, task
 
     def stop(self) -> None:
         """Take the bar away."""
+        self._told.close()
         if self._progress is not None:
             self._progress.stop()

@@ -289,8 +289,12 @@ def restrict(selection: str) -> None:
     installed.cache_clear()
 
 
+def selected() -> str:
+    """Return what restricts or blocks plugins of this process; empty if nothing does."""
+    return os.environ.get(ENVIRONMENT, "") if _override is None else _override
+
+
 @cache
 def installed() -> Registry:
     """Return the registry of this environment's plugins; found once per process."""
-    text = os.environ.get(ENVIRONMENT, "") if _override is None else _override
-    return Registry(_installed(), Selection.parse(text))
+    return Registry(_installed(), Selection.parse(selected()))

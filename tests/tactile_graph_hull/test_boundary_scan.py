@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Mask
 from tactile_graph_hull.boundary_mask import boundary_mask
 from tactile_graph_hull.boundary_scan import boundary_scan, scanned_centres
@@ -73,7 +72,6 @@ def test_random_masks_have_the_cells_the_definition_says(shape):
         assert np.array_equal(boundary_scan(mask).xy_cm, expected)
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 def test_kernel_and_its_twin_agree_bit_by_bit():
     rng = np.random.default_rng(12)
     for _ in range(500):

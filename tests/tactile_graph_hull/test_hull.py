@@ -10,7 +10,6 @@ from hypothesis.extra.numpy import arrays
 from scipy.spatial import ConvexHull
 
 from helpers_hulls import KINDS, exact_hull, random_set
-from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_hull.hull import chain_corners, hull
@@ -44,7 +43,6 @@ def test_exact_hull_is_that_of_fractions(kind):
         assert np.array_equal(hull(Points(xy), rounding_ulps=0.0).xy_cm, exact_hull(xy))
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 @pytest.mark.parametrize("kernel", KERNELS, ids=lambda k: k.__name__)
 def test_kernels_and_their_twins_agree(kernel):
     rng = np.random.default_rng(2)

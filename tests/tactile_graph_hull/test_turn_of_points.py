@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from helpers_hulls import exact_turn
-from tactile_graph.compiled import have_compiler
 from tactile_graph_hull.turn_of_points import sign_of_sum, turn
 
-FORMS = [turn.reference, *([turn.compiled] if have_compiler() else [])]
+FORMS = [turn.reference, turn.compiled]
 form = pytest.mark.parametrize("form", FORMS, ids=["plain", "compiled"][: len(FORMS)])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.engine.rows import as_data
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
@@ -24,8 +24,7 @@ SLABS = Model(RECTANGLE, noise=NOISE, whole=True)
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def discs(n, seed, **noise):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
@@ -17,8 +17,7 @@ SIGMA, VOIDS = 0.3, 0.05
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 MAT = Geometry(64, 27, 2.7, 0.3)

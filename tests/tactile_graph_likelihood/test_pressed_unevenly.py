@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
@@ -20,8 +20,7 @@ from tactile_graph_likelihood.single.readings import readings_of
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 DISC_CM = Circle(10.0, 9.5, 6.4)

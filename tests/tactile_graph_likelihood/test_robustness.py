@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
@@ -27,8 +27,7 @@ DISCS = Model(DISC, noise=NOISE, whole=True)
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def discs(n, seed):

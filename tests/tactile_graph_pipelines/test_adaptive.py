@@ -12,7 +12,7 @@ import pytest
 
 from tactile_graph import Circle, Frame, Pipeline, load
 from tactile_graph.api.result import Result
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.engine.outcome import NO_VALUE, Skipped
 from tactile_graph.pipeline.graph import NodeKind
 from tactile_graph_fitters.circle.fit_circle_load import EvenCircle
@@ -26,8 +26,7 @@ CHEAP = {"cells", "footprint", "siemens", "grams", "even"}
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled() -> None:
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def frames(n: int, seed: int = 5, g_cm2: float = 0.0, **settings: Any) -> list[Frame]:

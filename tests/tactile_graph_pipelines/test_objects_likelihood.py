@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.engine.outcome import Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled() -> None:
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def test_one_to_six_objects_are_counted_and_placed() -> None:

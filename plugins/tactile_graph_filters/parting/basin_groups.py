@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import misfit
 from tactile_graph_filters.parting.partition import Flags, Owners, Partition, Reals, Whole
 
@@ -46,7 +46,7 @@ class Groups(NamedTuple):
     union: Reals
 
 
-@compiled_as_is
+@compiled_later
 def surveyed(owner: Owners, count: int, values: Reals, half: float) -> Groups:
     """Return where the groups lie and what they share; their misfits are not known yet."""
     rows, columns = owner.shape
@@ -74,7 +74,7 @@ def surveyed(owner: Owners, count: int, values: Reals, half: float) -> Groups:
     return Groups(left, right, box, cuts, alive, cost, np.full((count + 1, count + 1), np.nan))
 
 
-@compiled_as_is
+@compiled_later
 def united(cells: Partition, groups: Groups, three: Owners, rules: Reals) -> float:
     """Return the misfit of three groups as one."""
     rows = cells.owner.shape[0]
@@ -87,7 +87,7 @@ def united(cells: Partition, groups: Groups, three: Owners, rules: Reals) -> flo
     return misfit(cells.owner, cells.values, cells.known, three, low, high, rules)
 
 
-@compiled_as_is
+@compiled_later
 def best_pair(cells: Partition, groups: Groups, rules: Reals) -> tuple[int, int]:
     """Return the two groups to join first, (0, 0) where no two gain; fill in their unions."""
     box, cost, union = groups.box, groups.cost, groups.union
@@ -110,7 +110,7 @@ def best_pair(cells: Partition, groups: Groups, rules: Reals) -> tuple[int, int]
     return one, two
 
 
-@compiled_as_is
+@compiled_later
 def best_three(cells: Partition, groups: Groups, rules: Reals) -> tuple[int, int, int]:
     """Return the chain of three groups to join first, zeros where none gains."""
     alive, cuts, cost = groups.alive, groups.cuts, groups.cost
@@ -134,7 +134,7 @@ def best_three(cells: Partition, groups: Groups, rules: Reals) -> tuple[int, int
     return one, two, last
 
 
-@compiled_as_is
+@compiled_later
 def join(owner: Owners, groups: Groups, one: int, other: int) -> None:
     """Give the cells of ``other`` to ``one``."""
     left, right, box, cuts = groups.left, groups.right, groups.box, groups.cuts
@@ -156,7 +156,7 @@ def join(owner: Owners, groups: Groups, one: int, other: int) -> None:
     groups.union[:, one] = np.nan
 
 
-@compiled_as_is
+@compiled_later
 def assess(cells: Partition, groups: Groups, one: int, rules: Reals) -> None:
     """Write down the misfit of a group."""
     alone = np.full(3, one, np.int32)
@@ -165,7 +165,7 @@ def assess(cells: Partition, groups: Groups, one: int, rules: Reals) -> None:
     )
 
 
-@compiled_as_is
+@compiled_later
 def energy_of(groups: Groups, hold: float) -> float:
     """Return the misfits of the groups left and the price of the cuts between them."""
     alive, cuts, cost = groups.alive, groups.cuts, groups.cost

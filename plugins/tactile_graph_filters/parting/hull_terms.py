@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import RIM_CELLS
 from tactile_graph_filters.parting.partition import Partition, Reals
 
@@ -35,7 +35,7 @@ class Levels(NamedTuple):
     floor: float
 
 
-@compiled_as_is
+@compiled_later
 def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
     """Return the terms of the cells that ``one`` or ``two`` owns, taken together, shape (6,).
 
@@ -99,7 +99,7 @@ def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
     return terms
 
 
-@compiled_as_is
+@compiled_later
 def hull_of(x: Reals, y: Reals, ends: int) -> tuple[Reals, Reals, int]:
     """Return the closed hull of the first and last cell of each row, and its number of points.
 

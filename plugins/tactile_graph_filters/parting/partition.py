@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 
 Reals: TypeAlias = NDArray[np.float64]
 Whole: TypeAlias = NDArray[np.int64]
@@ -34,7 +34,7 @@ class Partition(NamedTuple):
     known: Flags
 
 
-@compiled_as_is
+@compiled_later
 def cut_out(cells: Partition, top: int, bottom: int, left: int, right: int) -> Partition:
     """Return a copy of the box from the first to the last row and column named."""
     return Partition(

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, Levels, hull_terms
 from tactile_graph_filters.parting.partition import Owners, Partition, cut_out
 from tactile_graph_filters.parting.two_or_one import log_odds
@@ -21,7 +21,7 @@ COSINES = np.cos(np.arange(8) * math.pi / 8.0)
 SINES = np.sin(np.arange(8) * math.pi / 8.0)
 
 
-@compiled_as_is
+@compiled_later
 def joined_and_cut(
     cells: Partition, weak: float, full: float, cut_above: float, join_below: float
 ) -> None:
@@ -52,7 +52,7 @@ def joined_and_cut(
             group += 1
 
 
-@compiled_as_is
+@compiled_later
 def best_join(cells: Partition, most: int, levels: Levels, below: float) -> tuple[int, int]:
     """Return the two groups that are least likely two objects, (0, 0) where all others are."""
     boxes = boxes_of(cells.owner, most)
@@ -74,7 +74,7 @@ def best_join(cells: Partition, most: int, levels: Levels, below: float) -> tupl
     return first, second
 
 
-@compiled_as_is
+@compiled_later
 def boxes_of(owner: Owners, most: int) -> Owners:
     """Return first and last row, first and last column of each group; last ones -1 for none."""
     boxes = np.full((most + 1, 4), -1, np.int32)
@@ -87,7 +87,7 @@ def boxes_of(owner: Owners, most: int) -> Owners:
     return boxes
 
 
-@compiled_as_is
+@compiled_later
 def cut_best(cells: Partition, group: int, new: int, levels: Levels, above: float) -> bool:
     """Give one side of the likeliest cut of a group to ``new``; return whether any is likely."""
     top, bottom, left, right = boxes_of(cells.owner, new)[group]
@@ -115,7 +115,7 @@ def cut_best(cells: Partition, group: int, new: int, levels: Levels, above: floa
     return True
 
 
-@compiled_as_is
+@compiled_later
 def reach(owner: Owners, group: int, new: int, cosine: float, sine: float) -> tuple[float, float]:
     """Return how far the cells of both numbers reach across a direction."""
     low, high = np.inf, -np.inf
@@ -127,7 +127,7 @@ def reach(owner: Owners, group: int, new: int, cosine: float, sine: float) -> tu
     return low, high
 
 
-@compiled_as_is
+@compiled_later
 def moved_over(owner: Owners, group: int, new: int, cosine: float, sine: float, at: float) -> int:
     """Number the cells on the near side of a line ``new``, the others ``group``; count the new."""
     moved = 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.basin_groups import DIAGONAL
 from tactile_graph_filters.parting.hull_terms import (
     AREA,
@@ -30,7 +30,7 @@ NO_SEAM = -1.0
 """Taken for the seam's logarithm where the two do not touch."""
 
 
-@compiled_as_is
+@compiled_later
 def log_odds(cells: Partition, one: int, two: int, levels: Levels, both: Reals) -> float:
     """Return the log odds that the cells of ``one`` and of ``two`` are two objects.
 
@@ -48,7 +48,7 @@ def log_odds(cells: Partition, one: int, two: int, levels: Levels, both: Reals) 
     return odds
 
 
-@compiled_as_is
+@compiled_later
 def cut_terms(cells: Partition, one: int, two: int, levels: Levels, both: Reals) -> Reals:
     """Return what `log_odds` weighs, shape (10,), in the order of `NAMES`."""
     a = hull_terms(cells, one, one, levels)
@@ -69,7 +69,7 @@ def cut_terms(cells: Partition, one: int, two: int, levels: Levels, both: Reals)
     return terms
 
 
-@compiled_as_is
+@compiled_later
 def seam(cells: Partition, one: int, two: int, levels: Levels) -> tuple[float, float, float]:
     """Return length, number of cells, and sum of their readings' logarithms along the seam."""
     owner, values, full = cells.owner, cells.values, levels.full

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 
 KASA, TAUBIN, HYPER = range(3)
@@ -49,7 +49,7 @@ def moments(uv: NDArray[np.float64]) -> Moments:
     return uu, vv, uw / n, vw / n, ww / n
 
 
-@compiled_as_is
+@compiled_later
 def algebraic_circle(uv: NDArray[np.float64], method: int) -> tuple[float, float, float]:
     """Return centre (u, v) and radius of an algebraic fit to centred points on main axes.
 
@@ -84,7 +84,7 @@ def algebraic_circle(uv: NDArray[np.float64], method: int) -> tuple[float, float
     return u, v, math.sqrt(u * u + v * v + max(spread, 0.0))
 
 
-@compiled_as_is
+@compiled_later
 def distance_from_circle(uv: NDArray[np.float64], u: float, v: float, radius: float) -> float:
     """Return the root mean square of the points' distances from a circle."""
     total = 0.0
@@ -99,7 +99,7 @@ def distance_from_circle(uv: NDArray[np.float64], u: float, v: float, radius: fl
     return math.sqrt(total / uv.shape[1])
 
 
-@compiled_as_is
+@compiled_later
 def back(
     frame: Frame, u: float, v: float, radius: float, rms: float
 ) -> tuple[float, float, float, float]:
@@ -113,7 +113,7 @@ def back(
     )
 
 
-@compiled_as_is
+@compiled_later
 def algebraic_fit(
     xy: NDArray[np.float64], method: int
 ) -> tuple[int, float, float, float, float, int]:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
 from tactile_graph_pads.coverage.ellipse import ellipse_areas
 
@@ -43,7 +43,7 @@ class Readings(NamedTuple):
     shows_from: float
 
 
-@compiled_as_is
+@compiled_later
 def start_of(readings: Readings, p: Values) -> int:
     """Write the disc with the load's moments, and its full load, into ``p``; return the touched.
 
@@ -72,7 +72,7 @@ def start_of(readings: Readings, p: Values) -> int:
     return count
 
 
-@compiled_as_is
+@compiled_later
 def equations(readings: Readings, p: Values, normal: Values, slope: Values) -> tuple[float, int]:
     """Write the normal equations at ``p``; return the weighted cost and the elements in it."""
     loads, usable, grid = readings.loads, readings.usable, readings.grid
@@ -116,7 +116,7 @@ def equations(readings: Readings, p: Values, normal: Values, slope: Values) -> t
     return cost, count
 
 
-@compiled_as_is
+@compiled_later
 def even_disc(readings: Readings) -> Found:
     """Return the disc whose even load is nearest to an image's, by least squares.
 
@@ -162,7 +162,7 @@ def even_disc(readings: Readings) -> Found:
     return status, best[0], best[1], best[2], best[3], rms, centre, radius, count, rounds
 
 
-@compiled_as_is
+@compiled_later
 def _scatter(normal: Values, rms: float) -> tuple[float, float]:
     """Return standard deviations of centre and radius, by the inverse of the normal equations."""
     zero, unit, column = 0.0, np.zeros(4), np.zeros(4)

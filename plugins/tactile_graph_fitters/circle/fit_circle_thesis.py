@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.algebraic import back, distance_from_circle
 from tactile_graph_fitters.circle.circle_outcome import circle_from
@@ -106,7 +106,7 @@ def iterated(
     return False, x, y, radius, max_iterations
 
 
-@compiled_as_is
+@compiled_later
 def thesis_fit(
     xy: NDArray[np.float64], max_iterations: int, tolerance: float
 ) -> tuple[int, float, float, float, float, int]:

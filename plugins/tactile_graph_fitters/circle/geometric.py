@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_circle, back
 from tactile_graph_fitters.circle.principal_axes import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
 
@@ -116,7 +116,7 @@ def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     )
 
 
-@compiled_as_is
+@compiled_later
 def step_of(now: Slopes, damping: float) -> tuple[float, float, float, bool]:
     """Return the step of the centre, the decrease of F promised, whether F curves up all round.
 
@@ -136,7 +136,7 @@ def step_of(now: Slopes, damping: float) -> tuple[float, float, float, bool]:
     return du, dv, -(g_u * du + g_v * dv), upward
 
 
-@compiled_as_is
+@compiled_later
 def refined(
     uv: NDArray[np.float64], a: float, b: float
 ) -> tuple[int, float, float, float, float, int]:
@@ -178,7 +178,7 @@ def refined(
     return NOT_SETTLED, a, b, now[0], 0.0, ROUNDS
 
 
-@compiled_as_is
+@compiled_later
 def geometric_fit(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float, int]:
     """Return status, centre (x, y), radius and rms in cm, iterations."""
     status, uv, frame = into_frame(xy)

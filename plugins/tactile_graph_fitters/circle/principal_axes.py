@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 OK, TOO_FEW, NOT_FINITE, OUT_OF_RANGE, ALL_EQUAL, ONE_LINE, NOT_SETTLED = range(7)
 """What can come of a fit; words for each are in `why`."""
@@ -104,7 +104,7 @@ def turned(
     return uv, mean_x, mean_y, cos, sin
 
 
-@compiled_as_is
+@compiled_later
 def into_frame(xy: NDArray[np.float64]) -> tuple[int, NDArray[np.float64], Frame]:
     """Return a status, the points' (u, v), shape (2, N), and the frame that leads back.
 

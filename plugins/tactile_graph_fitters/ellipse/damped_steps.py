@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 
 Values = NDArray[np.float64]
 
 
-@compiled_as_is
+@compiled_later
 def damped_step(normal: Values, slope: Values, damping: float, step: Values) -> bool:
     """Write the solution of (N + damping * diag N) step = -slope; return False if there is none.
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 
@@ -29,7 +29,7 @@ NOTHING = 1e-29  # of the squared quadratics: what rounding leaves of them
 PLACES = 5  # an ellipse has five numbers
 
 
-@compiled_as_is
+@compiled_later
 def above(square: float, least: float) -> float:
     """Return a sum of squares, or 0 where it is but what rounding left of larger ones."""
     return square if square > least else 0.0
@@ -120,7 +120,7 @@ def quadratics(uv: Values) -> Quadratics:
     return scales, linear, (cos, sin, ww / n, rr / n), (zz / n, on_w, on_r, above(off, least) / n)
 
 
-@compiled_as_is
+@compiled_later
 def _left(uv: Values, by: tuple[float, float], linear: Linear, left: Values) -> tuple[float, float]:
     """Write z, w and r less what is linear in them; return the turn that parts w and r.
 
@@ -143,7 +143,7 @@ def _left(uv: Values, by: tuple[float, float], linear: Linear, left: Values) -> 
     return math.cos(turn), math.sin(turn)
 
 
-@compiled_as_is
+@compiled_later
 def least_bend(
     ww: float, rr: float, zz: float, on_w: float, on_r: float, off: float
 ) -> tuple[float, float]:
@@ -169,7 +169,7 @@ def least_bend(
     return by_w, by_r
 
 
-@compiled_as_is
+@compiled_later
 def direct_shape(uv: Values) -> tuple[int, float, float, float, float, float]:
     """Return a status, and centre (u, v), half axes and angle of the direct fit to framed points.
 
@@ -201,7 +201,7 @@ def direct_shape(uv: Values) -> tuple[int, float, float, float, float, float]:
     return OK, along * u, across * v, first, second, 0.5 * math.atan2(-b, c - a)
 
 
-@compiled_as_is
+@compiled_later
 def ellipse_frame(xy: Values) -> tuple[int, Values, Frame]:
     """Return what `into_frame` does, but that points at fewer than 5 places are refused."""
     status, uv, frame = into_frame(xy)
@@ -221,7 +221,7 @@ def ellipse_frame(xy: Values) -> tuple[int, Values, Frame]:
     return FEW_PLACES, uv, frame
 
 
-@compiled_as_is
+@compiled_later
 def in_pad(
     frame: Frame, ellipse: tuple[float, float, float, float, float], rms: float, rounds: int
 ) -> Found:
@@ -237,7 +237,7 @@ def in_pad(
     return OK, x, y, unit * a, unit * b, seen, unit * rms, rounds
 
 
-@compiled_as_is
+@compiled_later
 def direct_fit(xy: Values) -> Found:
     """Return the direct ellipse of points, shape (N, 2), in cm, and 0 rounds."""
     status, uv, frame = ellipse_frame(xy)

@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 Values: TypeAlias = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def reduced(
     return total
 
 
-@compiled_as_is
+@compiled_later
 def _pulled(
     uv: Values, ellipse: Values, cs: Values, rows: Values, slope: Values
 ) -> tuple[float, float, float, float, float]:

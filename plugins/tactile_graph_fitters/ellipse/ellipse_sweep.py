@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt, Le
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import LARGEST
@@ -94,7 +94,7 @@ def ellipse_sweep(
     return ellipse_of(Oriented(x, y, a, b, angle), rms, n, tried)
 
 
-@compiled_as_is
+@compiled_later
 def _at(dx: Values, dy: Values, angle: float) -> tuple[float, float, float]:
     """Return half axes and rms of the best ellipse at an angle as seen; infinite rms for none."""
     cos, sin = math.cos(angle), math.sin(angle)
@@ -108,7 +108,7 @@ def _at(dx: Values, dy: Values, angle: float) -> tuple[float, float, float]:
     return (a, b, rms) if status == OK else (0.0, 0.0, np.inf)
 
 
-@compiled_as_is
+@compiled_later
 def straight(points: Polar, a: float, b: float) -> tuple[float, float, float]:
     """Return half axes of least squared radial distances near a and b, and the sum of these.
 
@@ -145,7 +145,7 @@ def straight(points: Polar, a: float, b: float) -> tuple[float, float, float]:
     return 0.0, 0.0, 0.0
 
 
-@compiled_as_is
+@compiled_later
 def swept(dx: Values, dy: Values, n: int, refine: bool) -> tuple[float, float, float, float, int]:
     """Return half axes, the first one's angle as seen, rms and the orientations tried."""
     step = 0.5 * math.pi / n

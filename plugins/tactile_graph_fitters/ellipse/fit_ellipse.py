@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
@@ -60,7 +60,7 @@ def fit_ellipse(points: Points) -> FittedEllipse:
     return ellipse_from(points.xy_cm, geometric_fit)
 
 
-@compiled_as_is
+@compiled_later
 def geometric_fit(xy: Values) -> Found:
     """Return the nearest ellipse of points, shape (N, 2), in cm, and the rounds it took."""
     status, uv, frame = ellipse_frame(xy)
@@ -76,7 +76,7 @@ def geometric_fit(xy: Values) -> Found:
     return in_pad(frame, (p[0], p[1], p[2], p[3], p[4]), rms, rounds)
 
 
-@compiled_as_is
+@compiled_later
 def equations(uv: Values, p: Values, normal: Values, slope: Values) -> float:
     """Return the sum of squared distances; write the normal matrix and the slope of half of it."""
     a, b = p[2], p[3]
@@ -112,7 +112,7 @@ def equations(uv: Values, p: Values, normal: Values, slope: Values) -> float:
     return total
 
 
-@compiled_as_is
+@compiled_later
 def refined(uv: Values, p: Values, least: float) -> tuple[float, int]:
     """Bring ``p`` to the minimum; return the rms and the rounds made, < 0 if none was found.
 
@@ -153,7 +153,7 @@ def refined(uv: Values, p: Values, least: float) -> tuple[float, int]:
     return 0.0, -ROUNDS
 
 
-@compiled_as_is
+@compiled_later
 def _taken(
     uv: Values, p: Values, trial: Values, leap: bool, now: float, small: Values
 ) -> tuple[bool, float]:
@@ -177,7 +177,7 @@ def _taken(
     return True, min(now, new)
 
 
-@compiled_as_is
+@compiled_later
 def _lengthened(p: Values, trial: Values) -> None:
     """Write an ellipse twice as long with the same end and curvature near the points' middle.
 
@@ -192,7 +192,7 @@ def _lengthened(p: Values, trial: Values) -> None:
     trial[long] = 2.0 * p[long]
 
 
-@compiled_as_is
+@compiled_later
 def _stepped(p: Values, normal: Values, slope: Values, damping: float, trial: Values) -> float:
     """Write where a damped step leads to; return its size. Without one: nowhere, and infinity."""
     # On a circle the angle has no slope: a ridge, far below any other's, leaves it alone.
@@ -213,7 +213,7 @@ def _stepped(p: Values, normal: Values, slope: Values, damping: float, trial: Va
     return float(size)
 
 
-@compiled_as_is
+@compiled_later
 def _settled(uv: Values, p: Values, now: float) -> float:
     """Take undamped steps as long as they halve; return the sum of squared distances.
 

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, ellipse_of
@@ -121,7 +121,7 @@ def radial_error(r: Values, cos2: Values, sin2: Values, a: float, b: float, off:
     return total + other
 
 
-@compiled_as_is
+@compiled_later
 def simplex_search(
     points: Polar, a: float, b: float, tolerance: float, most: int
 ) -> tuple[bool, float, float, float, int]:
@@ -169,7 +169,7 @@ def simplex_search(
     return False, abs(s[0, 0]), abs(s[0, 1]), s[0, 2], most
 
 
-@compiled_as_is
+@compiled_later
 def polar(x: Values, y: Values) -> tuple[float, float, float, Polar]:
     """Return the scale, the start a and b, and the points' distances and angles, all scaled.
 
@@ -200,7 +200,7 @@ def polar(x: Values, y: Values) -> tuple[float, float, float, Polar]:
     return largest, a, b, Polar(r, cos2, sin2)
 
 
-@compiled_as_is
+@compiled_later
 def origin_fit(
     x: Values, y: Values, tolerance: float, most: int
 ) -> tuple[int, float, float, float, int]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 Values = NDArray[np.float64]
 
@@ -15,7 +15,7 @@ STEPS = 4  # of Newton's method for all points at once, before each is looked at
 NEAR_FOOT = 1e-7  # a step beyond which a foot is looked for again: its square is below rounding
 
 
-@compiled_as_is
+@compiled_later
 def _first_quadrant(a: float, b: float, px: float, py: float) -> tuple[float, float]:
     """Return the nearest point for a >= b and a point with coordinates >= 0."""
     if py <= 1e-300 or py <= 1e-15 * b:
@@ -44,7 +44,7 @@ def _first_quadrant(a: float, b: float, px: float, py: float) -> tuple[float, fl
     return ratio * px / (s + more), py / s
 
 
-@compiled_as_is
+@compiled_later
 def nearest(a: float, b: float, x: float, y: float) -> tuple[float, float]:
     """Return the point nearest to (x, y) of the ellipse with half axes a along x and b along y.
 
@@ -123,7 +123,7 @@ def feet(xy: Values, a: float, b: float) -> Values:
     return cs
 
 
-@compiled_as_is
+@compiled_later
 def along_axes(uv: Values, u: float, v: float, angle: float) -> Values:
     """Return points, shape (2, N), from a centre, along and across an angle."""
     cos, sin = math.cos(angle), math.sin(angle)
@@ -134,7 +134,7 @@ def along_axes(uv: Values, u: float, v: float, angle: float) -> Values:
     return xy
 
 
-@compiled_as_is
+@compiled_later
 def distances(uv: Values, u: float, v: float, a: float, b: float, angle: float) -> Values:
     """Return the signed distances of points of shape (2, N) from an ellipse, > 0 outside."""
     xy = along_axes(uv, u, v, angle)

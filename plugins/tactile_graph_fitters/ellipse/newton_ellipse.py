@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.circle.principal_axes import EPS
 from tactile_graph_fitters.ellipse.ellipse_equations import reduced
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import along_axes, feet
@@ -21,7 +21,7 @@ LAST_STEP = 1e-9  # of the half axes' sum, and the next one would be below round
 EVEN = 1e-12  # of the points' number: the least pivot of equations that have an answer
 
 
-@compiled_as_is
+@compiled_later
 def solved(normal: Values, slope: Values, least: float, step: Values) -> bool:
     """Write the solution of N step = -slope, N positive definite; return False if it is not."""
     for i in range(5):
@@ -48,7 +48,7 @@ def solved(normal: Values, slope: Values, least: float, step: Values) -> bool:
     return True
 
 
-@compiled_as_is
+@compiled_later
 def turned_feet(cs: Values, rows: Values, step: Values) -> None:
     """Move each nearest point's angle by what the five steps and its own slope take off it."""
     s_0, s_1, s_2, s_3, s_4 = step[0], step[1], step[2], step[3], step[4]
@@ -66,14 +66,14 @@ def turned_feet(cs: Values, rows: Values, step: Values) -> None:
         cs[1, i] = ((1.0 - half * half) * s + 2.0 * half * c) * size
 
 
-@compiled_as_is
+@compiled_later
 def as_matrix(a: float, b: float, angle: float) -> tuple[float, float, float]:
     """Return M's entries for half axes and the angle of the first."""
     cos, sin = math.cos(angle), math.sin(angle)
     return a * cos * cos + b * sin * sin, (a - b) * cos * sin, a * sin * sin + b * cos * cos
 
 
-@compiled_as_is
+@compiled_later
 def newton(uv: Values, p: Values, rounds: int) -> tuple[float, int]:
     """Bring ``p`` to the minimum next to it; return the sum of squares and the rounds made.
 
@@ -118,7 +118,7 @@ def newton(uv: Values, p: Values, rounds: int) -> tuple[float, int]:
     return 0.0, 0
 
 
-@compiled_as_is
+@compiled_later
 def _as_axes(uv: Values, ellipse: Values, cs: Values, p: Values, most: float) -> float:
     """Write centre, half axes and angle, and return the sum of squares.
 

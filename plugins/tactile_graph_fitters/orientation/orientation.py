@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask, Points
 from tactile_graph.wires.shapes import printed_angle_deg
@@ -140,7 +140,7 @@ def scatter_of(footprint: Mask | Points) -> Sums:
     return found
 
 
-@compiled_as_is
+@compiled_later
 def principal_variances(xx: float, xy: float, yy: float) -> tuple[float, float]:
     """Return the larger and the smaller eigenvalue of a covariance matrix; none below 0."""
     middle, off = 0.5 * xx + 0.5 * yy, math.hypot(0.5 * xx - 0.5 * yy, xy)
@@ -156,7 +156,7 @@ def principal_variances(xx: float, xy: float, yy: float) -> tuple[float, float]:
     return larger, smaller if smaller > 64.0 * 2.0**-52 * larger else 0.0
 
 
-@compiled_as_is
+@compiled_later
 def seen_angle(xx: float, xy: float, yy: float) -> float:
     """Return the angle of the major axis as seen, of moments with y down, in (-pi/2, pi/2]."""
     angle = -0.5 * math.atan2(2.0 * xy, xx - yy)

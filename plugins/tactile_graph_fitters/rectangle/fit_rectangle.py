@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
@@ -162,7 +162,7 @@ def equations(
     return 2.0 * scale * scale * total, weights
 
 
-@compiled_as_is
+@compiled_later
 def _boxed(uv: Values, angle: float, p: Values) -> None:
     """Write the points' bounding box along an angle, the outermost sixteenth each way left out."""
     n = uv.shape[1]
@@ -174,7 +174,7 @@ def _boxed(uv: Values, angle: float, p: Values) -> None:
     p[0], p[1] = mid_a * cos - mid_b * sin, mid_a * sin + mid_b * cos
 
 
-@compiled_as_is
+@compiled_later
 def _minimise(uv: Values, p: Values, scale: float, least: float) -> tuple[float, int]:
     """Bring ``p`` to a minimum; return the cost there and the rounds made, < 0 if given up."""
     normal, slope, step = np.empty((5, 5)), np.empty(5), np.empty(5)
@@ -214,7 +214,7 @@ def _minimise(uv: Values, p: Values, scale: float, least: float) -> tuple[float,
     return now, -ROUNDS
 
 
-@compiled_as_is
+@compiled_later
 def outline_fit(xy: Values, scale_cm: float, starts: int, least_step: float) -> Found:
     """Return status, centre (x, y), half sides and angle in cm and as seen, misfit and rounds.
 

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt, Lt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
@@ -165,7 +165,7 @@ OK, ONE_LINE, NOT_SETTLED = range(3)
 Found = tuple[int, float, float, float, float, float, float, int]
 
 
-@compiled_as_is
+@compiled_later
 def likeliest(window: Window, law: Values, cell: float) -> Found:
     """Return status, centre (x, y), half sides, angle of the first, cost and rounds."""
     n, x, y, xx, xy, yy = points_scatter(window.cells_cm)

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.orientation.oriented import Oriented
@@ -68,7 +68,7 @@ def min_area_rectangle(
     return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), cell_cm)
 
 
-@compiled_as_is
+@compiled_later
 def _furthest(corners: Values, start: int, dx: float, dy: float) -> int:
     """Return the corner furthest along a direction, going on from ``start``."""
     n = corners.shape[0]
@@ -81,7 +81,7 @@ def _furthest(corners: Values, start: int, dx: float, dy: float) -> int:
     return at
 
 
-@compiled_as_is
+@compiled_later
 def smallest(corners: Values) -> tuple[float, float, float, float, float, float]:
     """Return centre (x, y), two sides, the first one's angle as seen, and the hull's own area.
 

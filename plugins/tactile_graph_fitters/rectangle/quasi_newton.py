@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.rectangle.rectangle_likelihood import Window, cost
 
 Values = NDArray[np.float64]
@@ -17,7 +17,7 @@ FIRST = (0.024, 0.024, 0.03, 0.024, 0.0015)
 LONGEST = 0.8  # of one step, in cells, the angle counted at 6 cells from the centre
 
 
-@compiled_as_is
+@compiled_later
 def _restart(inverse: Values, cell: float) -> None:
     """Set the inverse second derivatives to their first guess."""
     for i in range(N):
@@ -26,7 +26,7 @@ def _restart(inverse: Values, cell: float) -> None:
         inverse[i, i] = FIRST[i] * (cell * cell if i < 4 else 1.0)
 
 
-@compiled_as_is
+@compiled_later
 def _direction(inverse: Values, slope: Values, cell: float, step: Values) -> float:
     """Write the step the search takes next, none too long; return the slope along it."""
     along = longest = 0.0
@@ -43,7 +43,7 @@ def _direction(inverse: Values, slope: Values, cell: float, step: Values) -> flo
     return along
 
 
-@compiled_as_is
+@compiled_later
 def _learn(inverse: Values, moved: Values, change: Values) -> None:
     """Update the inverse second derivatives by what a step has shown."""
     curve = 0.0
@@ -65,7 +65,7 @@ def _learn(inverse: Values, moved: Values, change: Values) -> None:
             )
 
 
-@compiled_as_is
+@compiled_later
 def minimise(
     p: Values, window: Window, law: Values, cell: float, tolerance: float, most: int
 ) -> tuple[float, int]:

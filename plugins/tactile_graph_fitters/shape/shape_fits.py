@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.circle.geometric import geometric_fit
 from tactile_graph_fitters.circle.principal_axes import into_frame
 from tactile_graph_fitters.ellipse.fit_ellipse import refined
@@ -25,7 +25,7 @@ FEWEST_POINTS = 12
 NEAR = 1e-4  # of a shape's size, at which a search ends: mean squares grow with its square
 
 
-@compiled_as_is
+@compiled_later
 def evenly(corners: Values, step: float) -> tuple[Values, float]:
     """Return points evenly spread over a polygon's outline about ``step`` apart, and its length."""
     count = corners.shape[0]
@@ -54,7 +54,7 @@ def evenly(corners: Values, step: float) -> tuple[Values, float]:
     return xy, length
 
 
-@compiled_as_is
+@compiled_later
 def squared_from_sides(corners: Values, xy: Values) -> float:
     """Return the mean squared distance of points, shape (N, 2), from the sides of a polygon."""
     count, total = corners.shape[0], 0.0
@@ -71,7 +71,7 @@ def squared_from_sides(corners: Values, xy: Values) -> float:
     return float(total / xy.shape[0])
 
 
-@compiled_as_is
+@compiled_later
 def _ellipse(xy: Values, found: Values) -> float:
     """Write the nearest ellipse: centre, half axes, angle in x and y; return the mean square.
 
@@ -100,7 +100,7 @@ def _ellipse(xy: Values, found: Values) -> float:
     return float(unit * unit * total / n)
 
 
-@compiled_as_is
+@compiled_later
 def _rectangle(xy: Values, scale: float, found: Values) -> float:
     """Write the nearest rectangle: centre, half sides, angle as seen; return the mean square."""
     status, x, y, first, second, angle, _, _ = outline_fit(xy, scale, 2, NEAR)
@@ -116,7 +116,7 @@ def _rectangle(xy: Values, scale: float, found: Values) -> float:
     return squared_from_sides(corners, xy)
 
 
-@compiled_as_is
+@compiled_later
 def shape_fits(
     corners: Values, step: float, most: int, scale: float
 ) -> tuple[int, float, Values, Values, Values]:

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
 
@@ -81,7 +81,7 @@ class SimplifyPolygon:
         return Polygon(met(xy, kept) if self._refine else xy[kept])
 
 
-@compiled_as_is
+@compiled_later
 def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: float) -> int:
     """Take out of the first ``count`` of ``kept`` the corners that go; return how many are left.
 
@@ -108,7 +108,7 @@ def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: flo
     return count
 
 
-@compiled_as_is
+@compiled_later
 def met(xy: Values, kept: Indices) -> Values:
     """Return where the lines through the outline's parts between kept corners meet."""
     n = kept.shape[0]
@@ -136,7 +136,7 @@ def met(xy: Values, kept: Indices) -> Values:
     return out
 
 
-@compiled_as_is
+@compiled_later
 def line_through(xy: Values, start: int, end: int, line: Values) -> None:
     """Write a point of, and the direction of, the line nearest to the outline from start to end.
 

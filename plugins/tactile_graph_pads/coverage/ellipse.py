@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
 
 Area = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ def _reference(
     return np.asarray(np.clip(below[1] - below[0], 0.0, element_cm**2))
 
 
-@compiled_as_is
+@compiled_later
 def primitive(x: float, radius: float) -> float:
     """Return the area under a half circle from its middle to x, |x| <= radius."""
     root = math.sqrt((radius - x) * (radius + x))
@@ -115,7 +115,7 @@ class _Strip(NamedTuple):
     P1: float
 
 
-@compiled_as_is
+@compiled_later
 def _line(h: float, conic: _Conic, line: Area) -> None:
     """Write a horizontal line's height, half length, start, end and the primitive at both."""
     A, B, m, k, stretch = conic
@@ -128,7 +128,7 @@ def _line(h: float, conic: _Conic, line: Area) -> None:
         line[4], line[5] = primitive(line[2], A), primitive(line[3], A)
 
 
-@compiled_as_is
+@compiled_later
 def _below(line: Area, conic: _Conic, strip: _Strip) -> float:
     """Return the area of the ellipse below a line and within a strip."""
     A, B, m, k, _ = conic

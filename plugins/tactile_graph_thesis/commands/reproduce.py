@@ -146,13 +146,11 @@ def made_how(work: Work) -> dict[str, str]:
     import platform
     from importlib.metadata import version
 
-    from tactile_graph.compiled import have_compiler
     from tactile_graph_thesis.work import PAD
 
     settings = f"--seed {work.seed} --readings {work.readings}" + " --quick" * work.quick
     settings += f" --pad {work.pad_name}" if work.pad_name != PAD else ""
-    packages = ["tactile-graph", "numpy", "scipy", "scikit-image", "matplotlib"]
-    packages += ["numba"] * have_compiler()
+    packages = ["tactile-graph", "numpy", "scipy", "scikit-image", "matplotlib", "numba"]
     return {
         "command": f"tactile-graph reproduce all {settings}",
         "pad": work.pad_name,

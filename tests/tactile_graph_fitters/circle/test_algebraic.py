@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from helpers_circles import arc_xy, three
-from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Circle, Points
 from tactile_graph_fitters.circle.algebraic import moments
 from tactile_graph_fitters.circle.fit_circle_hyper import fit_circle_hyper
@@ -87,7 +86,6 @@ def test_hyper_has_less_bias_than_taubin_and_taubin_than_kasa():
     assert hyper < taubin < kasa
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 def test_moments_and_their_twin_agree():
     uv = np.random.default_rng(9).normal(size=(2, 31))
     uv -= uv.mean(axis=1, keepdims=True)

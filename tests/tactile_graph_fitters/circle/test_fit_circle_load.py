@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_fitters.circle.even_load import OK, Readings, even_disc
@@ -138,7 +137,6 @@ def test_wrong_images_are_refused():
         FitCircleLoad()(Image(np.full((4, 4), np.nan), quantity="gram"))
 
 
-@pytest.mark.skipif(not have_compiler(), reason="needs numba")
 @pytest.mark.parametrize("sigma", [0.0, 0.5])
 def test_the_compiled_kernel_finds_the_same(sigma):
     rng = np.random.default_rng(5)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from helpers_circles import arc, arc_xy, three
-from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle
 from tactile_graph_fitters.circle.fit_circle import fit_circle
@@ -45,7 +44,6 @@ def test_point_at_the_centre_counts_for_the_radius_alone():
     assert iterated(uv, 50, 1e-9) == (True, 0.0, 0.0, pytest.approx(0.8), 1)
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 def test_iteration_and_its_twin_agree():
     uv = np.ascontiguousarray(arc_xy(DISC, 200, 21, 0.1, np.random.default_rng(1)).T)
     uv -= uv.mean(axis=1, keepdims=True)

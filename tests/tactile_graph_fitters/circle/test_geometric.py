@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from helpers_circles import arc_xy
-from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Circle
 from tactile_graph_fitters.circle.geometric import refined, slopes, step_of
 from tactile_graph_fitters.circle.principal_axes import ONE_LINE
@@ -34,7 +33,6 @@ def test_gradient_and_second_derivatives_are_those_of_the_cost(uv, centre):
     assert d_b[3] == pytest.approx(now[6] + now[9], rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 @pytest.mark.parametrize("centre", [(0.1, -0.2), (0.0, 0.0), (30.0, 400.0)])
 def test_slopes_and_their_twin_agree(uv, centre):
     uv[:, 3] = 0.0  # with (0, 0) as the centre: a point without a direction

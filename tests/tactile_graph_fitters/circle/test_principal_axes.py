@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import have_compiler
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
@@ -42,7 +41,6 @@ def test_status_says_what_is_wrong(status):
     assert into_frame(SETS[status])[0] == status
 
 
-@pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 @pytest.mark.parametrize("status", SETS)
 def test_frames_and_their_twins_agree(status):
     assert bounds.compiled(SETS[status]) == pytest.approx(bounds.reference(SETS[status]))

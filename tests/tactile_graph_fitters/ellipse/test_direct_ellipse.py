@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval, plainly
-from tactile_graph.compiled import have_compiler
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import OK, into_frame
@@ -23,8 +22,6 @@ from tactile_graph_fitters.ellipse.direct_ellipse import (
 )
 from tactile_graph_fitters.ellipse.fit_ellipse import geometric_fit
 from tactile_graph_fitters.ellipse.fit_ellipse_direct import fit_ellipse_direct
-
-compiles = pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 
 
 def by_eigenvectors(uv):
@@ -55,7 +52,6 @@ def test_it_is_the_eigenvector_of_halir_and_flusser(kind):
 
 
 @pytest.mark.parametrize("kind", [*WELL, *DEGENERATE])
-@compiles
 def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
     """Degenerate ones too: whether there is an ellipse, and which; never anything but a number."""
     sets = [drawn(kind, seed) for seed in range(150)]
@@ -72,7 +68,6 @@ def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
 @pytest.mark.parametrize(
     ("kind", "n"), [(k, 40) for k in WELL if k != "blob"] + [(k, 3) for k in ("blob", *DEGENERATE)]
 )
-@compiles
 def test_the_nearest_ellipse_plain_and_compiled(kind, n):
     sets = [drawn(kind, seed) for seed in range(n)]
     with plainly():

@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import have_compiler
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances, feet, nearest
-
-compiles = pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 
 
 def clouds():
@@ -35,7 +32,6 @@ def test_all_at_once_are_as_one_at_a_time():
         assert c * c + s * s == pytest.approx(np.ones(30), abs=1e-7)
 
 
-@compiles
 def test_the_twin_finds_places_as_near():
     for xy, a, b in clouds():
         one, two = feet.reference(xy, a, b), feet.compiled(xy, a, b)
@@ -43,7 +39,6 @@ def test_the_twin_finds_places_as_near():
         assert near[1] == pytest.approx(near[0], abs=1e-12 * (a + b))
 
 
-@compiles
 def test_the_twin_looks_again_where_it_went_wrong():
     """Within the evolute the first guess is on the far side of a ridge for many points."""
     x, y = np.meshgrid(np.linspace(-1.2, 1.2, 61), np.linspace(-0.3, 0.3, 31))

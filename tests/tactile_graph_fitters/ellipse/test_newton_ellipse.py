@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 
 from helpers_ellipses import drawn, oval
-from tactile_graph.compiled import have_compiler
 from tactile_graph_fitters.ellipse import fit_ellipse
 from tactile_graph_fitters.ellipse.direct_ellipse import direct_shape, ellipse_frame
 from tactile_graph_fitters.ellipse.ellipse_equations import _reduced, reduced
 from tactile_graph_fitters.ellipse.fit_ellipse import _lengthened, refined
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 from tactile_graph_fitters.ellipse.newton_ellipse import _as_axes, as_matrix, newton, solved
-
-compiles = pytest.mark.skipif(not have_compiler(), reason="numba is not installed")
 
 
 def axes_of(m_uu, m_uv, m_vv):
@@ -82,7 +79,6 @@ def test_away_from_the_nearest_points_a_step_brings_both_nearer():
     assert best <= 2.0 * squares(uv, [u, v, *as_matrix.loops(a, b, angle)])
 
 
-@compiles
 @pytest.mark.parametrize("kind", ["outline", "arc", "flat", "cells", "blob", "grid"])
 def test_equations_and_their_twin_agree_on_thousands_of_point_sets(kind):
     for seed in range(350):

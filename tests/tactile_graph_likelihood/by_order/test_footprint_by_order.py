@@ -9,7 +9,7 @@ import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn, made
 from tactile_graph import load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Mask, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
@@ -24,8 +24,7 @@ TABLE = hazards(np.array([SIGMA, 0.16, 1e-6, 0.0, 0.0, 0.0, 0.0, 0.0]))
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def distinct(n):

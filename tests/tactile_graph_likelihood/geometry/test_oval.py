@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, OVAL, bounds
@@ -17,8 +17,7 @@ from tactile_graph_likelihood.single.model import Model
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def ovals(n):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import DataError, Degenerate, UsageError
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
 from tactile_graph_classifiers.database.opening import load_known
@@ -25,8 +25,7 @@ TRUE = {
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def database(weights, shape="disc", area=100.0, quantity="gram"):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import drawn, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.over_time.at_rest import AtRest
@@ -16,8 +16,7 @@ PITCH_CM = 1.3
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def noisy(image, rng, scatter=0.034):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered
@@ -22,8 +22,7 @@ THREE = [Rectangle(5.0, 5.0, 7.0, 4.0, 0.3), Circle(14.5, 5.5, 2.8), Circle(9.0,
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def image_of(shapes, seed, loads=(90.0, 90.0, 90.0)):

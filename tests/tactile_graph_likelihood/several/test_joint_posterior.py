@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
@@ -36,8 +36,7 @@ BARE = np.zeros((16, 16))
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def table(points, *rows):

@@ -5,7 +5,7 @@ import pytest
 
 from helpers_likelihood import NOISE, drawn, made
 from tactile_graph import load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC
@@ -16,8 +16,7 @@ from tactile_graph_likelihood.single.model import Model
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def test_evidence_tells_discs_from_rectangles():

@@ -5,15 +5,14 @@ import pytest
 
 from helpers_likelihood import made
 from tactile_graph import load
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def recorded(scene, sigma, voids, frames=12):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, made
-from tactile_graph.compiled import have_compiler, warm_up
+from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
 from tactile_graph_likelihood.single.any_pressure import (
@@ -38,8 +38,7 @@ SHAPES = [
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():
-    if have_compiler():
-        warm_up()
+    warm_up()
 
 
 def distances(shape, x, y):

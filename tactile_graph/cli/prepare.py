@@ -1,0 +1,73 @@
+"""``tactile-graph prepare``: machine code made before it is needed."""
+
+from __future__ import annotations
+
+import os
+import time
+from itertools import islice
+
+import click
+
+from tactile_graph.cli.arguments import complete_pipeline
+from tactile_graph.errors import UsageError
+from tactile_graph.plugins import registry
+
+FRAMES = 10
+"""Of a pipeline's own source; by then most of what may be needed has been."""
+
+FAILED = "not prepared"
+
+
+@click.command()
+@click.argument("pipelines", metavar="[PIPELINE]...", nargs=-1, shell_complete=complete_pipeline)
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    show_default="one for each processor",
+    help="Processes that compile at the same time.",
+)
+def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
+    """Compile the kernels of pipelines now; without any named, of all installed.
+
+    Runs the first frames of each pipeline's own source, and keeps the machine code on disk. What
+    is there already is not compiled again. A pipeline without a source, or with a step that writes,
+    is left out.
+    """
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from multiprocessing import get_context
+
+    from tactile_graph.api.pipeline import load
+    from tactile_graph.cli.terminal import console
+
+    names = pipelines or tuple(registry.installed().names("pipelines"))
+    if not names:
+        raise UsageError("name a pipeline or a file of one: no plugin offers any")
+    for name in pipelines:
+        load(name)
+    out = console()
+    with ProcessPoolExecutor(
+        min(jobs, len(names)), get_context("spawn"), registry.restrict, (registry.selected(),)
+    ) as pool:
+        for done in as_completed([pool.submit(prepared, name) for name in names]):
+            out.print(done.result(), soft_wrap=True, highlight=False)
+
+
+def prepared(name: str) -> str:
+    """Compile what a pipeline's first frames need; return what to say of it."""
+    from tactile_graph.api.pipeline import load
+    from tactile_graph.compiled import warm_up
+    from tactile_graph.errors import TactileGraphError
+
+    start = time.monotonic()
+    warm_up()
+    try:
+        pipeline = load(name)
+        if pipeline.source is None:
+            return f"{name}: {FAILED}, declares no source"
+        if any(node.is_sink for node in pipeline.nodes.values()):
+            return f"{name}: {FAILED}, a step of it writes"
+        n = sum(1 for _ in islice(pipeline.stream(), FRAMES))
+    except TactileGraphError as error:
+        return f"{name}: {FAILED}, {error}"
+    return f"{name}: prepared by {n} frames in {time.monotonic() - start:.1f} s"

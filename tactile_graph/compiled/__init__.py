@@ -1,0 +1,23 @@
+"""Hot loops written in plain Python and compiled to machine code, kept on disk."""
+
+from tactile_graph.compiled.kernel import (
+    SWITCH_AFTER_CALLS,
+    SWITCH_AFTER_ELEMENTS,
+    Kernel,
+    compiled_as_is,
+    compiled_later,
+    compiled_twin_of,
+    mode,
+    warm_up,
+)
+
+__all__ = [
+    "SWITCH_AFTER_CALLS",
+    "SWITCH_AFTER_ELEMENTS",
+    "Kernel",
+    "compiled_as_is",
+    "compiled_later",
+    "compiled_twin_of",
+    "mode",
+    "warm_up",
+]

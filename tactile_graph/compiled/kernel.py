@@ -1,0 +1,156 @@
+"""A kernel: hot loops behind one name, answered by plain code or by machine code.
+
+Most kernels are compiled before their first answer. Kernels of short pipelines, which plain code
+answers sooner than the compiler can even be imported, are plain at first and compiled once
+there is enough to do. What counts is the calls and the elements handed over, never the clock, so
+that a replay is answered by the same code. The environment variable ``TACTILE_GRAPH_KERNELS``
+(``auto``, ``plain``, ``compiled``) decides otherwise.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any, Generic, ParamSpec, TypeVar
+
+from tactile_graph.errors import UsageError, did_you_mean
+
+ENVIRONMENT = "TACTILE_GRAPH_KERNELS"
+MODES = ("auto", "plain", "compiled")
+SWITCH_AFTER_CALLS = 200
+SWITCH_AFTER_ELEMENTS = 400_000
+"""Of all arrays handed over; plain loops take up to 10 us for each."""
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+_kernels: list[Kernel[Any, Any]] = []
+_warm = False
+
+
+def mode() -> str:
+    """Return the mode the environment asks for.
+
+    Raises
+    ------
+    UsageError
+        If the variable holds anything but one of `MODES`.
+    """
+    got = os.environ.get(ENVIRONMENT, "auto")
+    if got not in MODES:
+        raise UsageError(
+            f"{ENVIRONMENT}={got!r}: must be one of {', '.join(MODES)}{did_you_mean(got, MODES)}"
+        )
+    return got
+
+
+class Kernel(Generic[P, R]):
+    """A function answered by plain code or by machine code; calls look the same.
+
+    Parameters
+    ----------
+    loops : callable
+        Loops that numba can compile; positional arguments only.
+    reference : callable
+        Plain code with the same answers: the loops themselves, or what is faster uncompiled.
+    plain_first : bool
+        Whether the reference answers until there is enough to do for the compiler.
+
+    Attributes
+    ----------
+    call : callable
+        Whichever code answers now. A step in a hurry calls ``kernel.call(…)``, which spares
+        the way through the object; fetch it anew for each call.
+    """
+
+    def __init__(
+        self, loops: Callable[..., R], reference: Callable[P, R], plain_first: bool
+    ) -> None:
+        self.loops = loops
+        self.reference = reference
+        self.plain_first = plain_first
+        self.__name__ = reference.__name__
+        self.__doc__ = reference.__doc__
+        self._entry: Callable[..., R] | None = None
+        self._callee: Any = None
+        self.reset()
+        _kernels.append(self)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Run whichever code answers now; positional arguments only."""
+        if kwargs:
+            raise TypeError(f"{self.__name__}() takes positional arguments only, got {[*kwargs]}")
+        return self.call(*args)
+
+    def reset(self) -> None:
+        """Go back to the start, as the mode and `warm_up` say."""
+        wanted = mode()
+        self._calls_left = SWITCH_AFTER_CALLS
+        self._elements_left = SWITCH_AFTER_ELEMENTS
+        if wanted == "plain":
+            self.call: Callable[..., R] = self.reference
+        elif wanted == "compiled" or _warm or not self.plain_first:
+            self.call = self._first_compiled
+        else:
+            self.call = self._counted
+
+    def _counted(self, *args: Any) -> R:
+        self._calls_left -= 1
+        self._elements_left -= sum(getattr(a, "size", 1) for a in args)
+        if self._calls_left < 0 or self._elements_left < 0:
+            return self._first_compiled(*args)
+        return self.reference(*args)  # type: ignore[call-arg]
+
+    def _first_compiled(self, *args: Any) -> R:
+        self.call = self.compiled
+        return self.call(*args)
+
+    @property
+    def compiled(self) -> Callable[..., R]:
+        """The machine code, made at its first call or loaded from disk; imports numba."""
+        if self._entry is None:
+            from tactile_graph.compiled.machine_code import entry
+
+            self._entry = entry(self.loops)
+        return self._entry
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What lets compiled loops call this kernel as they call a function of their own."""
+        if self._callee is None:
+            from tactile_graph.compiled.machine_code import Callee
+
+            self._callee = Callee(self.loops)
+        return self._callee.numba_type()
+
+
+def compiled_as_is(loops: Callable[P, R]) -> Kernel[P, R]:
+    """Decorate loops that are compiled before their first answer."""
+    return Kernel(loops, loops, plain_first=False)
+
+
+def compiled_later(loops: Callable[P, R]) -> Kernel[P, R]:
+    """Decorate loops that run as they are until there is enough to do for the compiler."""
+    return Kernel(loops, loops, plain_first=True)
+
+
+def compiled_twin_of(reference: Callable[P, R]) -> Callable[[Callable[..., R]], Kernel[P, R]]:
+    """Decorate loops that take over from ``reference`` once there is enough to do.
+
+    The name then means the pair. A reference is worth its lines where it answers the first frames
+    much sooner than the loops do uncompiled.
+    """
+
+    def pair(loops: Callable[..., R]) -> Kernel[P, R]:
+        return Kernel(loops, reference, plain_first=True)
+
+    return pair
+
+
+def warm_up() -> None:
+    """Use machine code from the next call on: for live sources and long runs."""
+    global _warm
+    if not _warm:
+        _warm = True
+        for kernel in _kernels:
+            kernel.reset()

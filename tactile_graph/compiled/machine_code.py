@@ -1,0 +1,71 @@
+"""How loops become machine code: whole below what Python calls, kept on disk.
+
+numba makes each function ready to be called from Python: optimised, with wrappers, as machine
+code; a caller takes the callee's code in, and optimises and emits it again. In a tree of a hundred
+kernels that is most of the time. Here a kernel within others is only typed and lowered; the one
+that Python calls, the entry, takes in all below it, is optimised once and emitted once, and is
+alone kept on disk, under a digest of all it is made of.
+
+What this takes of numba is no public interface. In a version that it was not tried with, kernels
+are compiled in numba's own way, with the same answers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+from numba import types
+
+TRIED = ("0.68",)
+"""Versions of numba whose inner working is known to fit."""
+
+
+def whole() -> bool:
+    """Return whether kernels are compiled whole below their entries."""
+    return ".".join(numba.__version__.split(".")[:2]) in TRIED
+
+
+def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
+    """Return what runs the machine code of ``loops``; made at the first call, kept on disk."""
+    if not whole():
+        return numba.njit(cache=True, error_model="numpy")(loops)
+    from tactile_graph.compiled.whole import entry_of
+
+    return entry_of(loops)
+
+
+class Callee:
+    """``loops`` as other compiled code calls them.
+
+    An entry takes them in as a part; a plugin's own function, compiled by numba alone, finds them
+    compiled in the same way.
+    """
+
+    def __init__(self, loops: Callable[..., Any]) -> None:
+        self._loops = loops
+        self._part: Any = None
+        self._alone: Any = None
+
+    def numba_type(self) -> types.Dispatcher:
+        """Return the type that numba calls them by."""
+        if whole() and _under_way():
+            if self._part is None:
+                self._part = _part_of(self._loops)
+            return types.Dispatcher(self._part)
+        if self._alone is None:
+            self._alone = numba.njit(cache=True, error_model="numpy")(self._loops)
+        return types.Dispatcher(self._alone)
+
+
+def _under_way() -> bool:
+    from tactile_graph.compiled.whole import entry_under_way
+
+    return entry_under_way()
+
+
+def _part_of(loops: Callable[..., Any]) -> Any:
+    from tactile_graph.compiled.whole import part_of
+
+    return part_of(loops)

@@ -1,0 +1,94 @@
+"""Who waits for the compiler is told what is prepared and how far it is."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+WORTH_A_LINE_S = 1.0
+REDRAW_S = 0.1
+NEXT_LINE_S = 5.0
+
+Teller = Callable[[str | None], None]
+"""Takes what to say, again and again; None when all is prepared."""
+
+_tellers: list[Teller] = []
+
+
+@contextmanager
+def told_by(teller: Teller) -> Iterator[None]:
+    """Let ``teller`` say what is prepared, in place of whoever did."""
+    _tellers.append(teller)
+    try:
+        yield
+    finally:
+        _tellers.remove(teller)
+
+
+class Line:
+    """Says it on a stream: on a terminal one line that changes, in a log one every few seconds."""
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self._stream = stream
+        self._next = 0.0
+        self._drawn = False
+
+    def __call__(self, text: str | None) -> None:
+        """Say ``text``, or take the line away."""
+        stream = self._stream or sys.stderr
+        on_terminal = stream.isatty()
+        now = time.monotonic()
+        if text is None:
+            if self._drawn and on_terminal:
+                stream.write("\r\x1b[K")
+                stream.flush()
+            self._drawn = False
+        elif now >= self._next:
+            stream.write(f"\r{text}\x1b[K" if on_terminal else f"{text}\n")
+            stream.flush()
+            self._drawn = True
+            self._next = now + (REDRAW_S if on_terminal else NEXT_LINE_S)
+
+
+class Preparing:
+    """One kernel, while it and all kernels within are compiled."""
+
+    def __init__(self) -> None:
+        self._name = ""
+        self._total = 0
+        self._done: set[int] = set()
+        self._spent_s = 0.0
+        self._since = 0.0
+
+    @contextmanager
+    def of(self, name: str, total: int) -> Iterator[None]:
+        """Say how far the kernel ``name`` is, of ``total`` kernels, until it is done."""
+        self._name, self._total, self._since = name, total, time.monotonic()
+        self._done.clear()
+        try:
+            yield
+        finally:
+            self._spent_s += time.monotonic() - self._since
+            if _tellers:
+                _tellers[-1](None)
+
+    def at(self, function: object) -> None:
+        """Note that ``function`` is compiled now."""
+        self._done.add(id(function))
+        n = min(len(self._done), self._total)
+        self._say(f"{n} of {self._total} kernels")
+
+    def all_together(self) -> None:
+        """Note that the code of all is optimised and made into machine code."""
+        self._say(f"{self._total} kernels into one")
+
+    def _say(self, what: str) -> None:
+        spent_s = self._spent_s + time.monotonic() - self._since
+        if _tellers and spent_s > WORTH_A_LINE_S:
+            _tellers[-1](f"compiling {self._name}, once on this machine: {what}, {spent_s:.0f} s")
+
+
+preparing = Preparing()

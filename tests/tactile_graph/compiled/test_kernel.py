@@ -1,0 +1,121 @@
+"""A kernel is answered by plain or by machine code, whichever mode, calls and sizes say."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_graph.compiled import (
+    SWITCH_AFTER_CALLS,
+    SWITCH_AFTER_ELEMENTS,
+    Kernel,
+    compiled_as_is,
+    compiled_later,
+    compiled_twin_of,
+    kernel,
+    warm_up,
+)
+from tactile_graph.errors import UsageError
+
+
+def plain(x: Any) -> str:
+    return "plain"
+
+
+class Light(Kernel[Any, Any]):
+    """A kernel that is plain first, with a stand-in for a compiler."""
+
+    def __init__(self) -> None:
+        super().__init__(plain, plain, plain_first=True)
+
+    @property
+    def compiled(self) -> Any:
+        return lambda x: "compiled"
+
+
+@pytest.fixture(autouse=True)
+def clean(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("TACTILE_GRAPH_KERNELS", raising=False)
+    monkeypatch.setattr(kernel, "_warm", False)
+    monkeypatch.setattr(kernel, "_kernels", [])
+
+
+def test_plain_code_answers_until_the_calls_are_many() -> None:
+    light = Light()
+    answers = [light(1.0) for _ in range(SWITCH_AFTER_CALLS + 3)]
+    assert answers == ["plain"] * SWITCH_AFTER_CALLS + ["compiled"] * 3
+
+
+def test_one_large_array_is_worth_the_compiler_at_once() -> None:
+    large = np.empty(SWITCH_AFTER_ELEMENTS + 1, dtype=bool)
+    assert Light()(large) == "compiled"
+
+
+def test_elements_are_counted_over_the_calls() -> None:
+    light = Light()
+    part = np.empty(SWITCH_AFTER_ELEMENTS // 4)
+    assert [light(part) for _ in range(5)] == ["plain"] * 4 + ["compiled"]
+
+
+def test_kernels_that_are_never_plain_are_compiled_before_their_first_answer() -> None:
+    class Heavy(Light):
+        def __init__(self) -> None:
+            Kernel.__init__(self, plain, plain, plain_first=False)
+
+    assert Heavy()(1.0) == "compiled"
+
+
+def test_the_decorators_say_when_to_compile() -> None:
+    def other(x: Any) -> str:
+        return "plain"
+
+    made = [compiled_as_is(plain), compiled_later(plain), compiled_twin_of(plain)(other)]
+    assert [k.plain_first for k in made] == [False, True, True]
+    assert [k.reference for k in made] == [plain] * 3
+    assert [k.loops for k in made] == [plain, plain, other]
+
+
+def test_warm_up_switches_at_once_and_for_kernels_to_come() -> None:
+    old = Light()
+    assert old(1.0) == "plain"
+    warm_up()
+    assert old(1.0) == "compiled"
+    assert Light()(1.0) == "compiled"
+
+
+@pytest.mark.parametrize(("mode", "answer"), [("plain", "plain"), ("compiled", "compiled")])
+def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, mode: str, answer: str) -> None:
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", mode)
+    light = Light()
+    warm_up()
+    assert {light(1.0) for _ in range(SWITCH_AFTER_CALLS + 3)} == {answer}
+
+
+def test_a_mode_that_is_none_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", "plane")
+    with pytest.raises(
+        UsageError,
+        match="TACTILE_GRAPH_KERNELS='plane': must be one of auto, plain, "
+        "compiled; did you mean 'plain'",
+    ):
+        Light()
+
+
+def test_keyword_arguments_are_refused_not_lost() -> None:
+    with pytest.raises(TypeError, match=r"plain\(\) takes positional arguments only, got \['x'\]"):
+        Light()(x=1.0)
+
+
+def test_a_kernel_looks_like_its_reference() -> None:
+    def doubled(x: float) -> float:
+        """Return twice as much."""
+        return 2.0 * x
+
+    @compiled_twin_of(doubled)
+    def kernel(x: float) -> float:
+        return x + x
+
+    assert (kernel.__name__, kernel.__doc__) == ("doubled", "Return twice as much.")
+    assert kernel(2.0) == kernel.loops(2.0) == 4.0

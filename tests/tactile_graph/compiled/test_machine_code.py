@@ -1,0 +1,97 @@
+"""Machine code agrees with plain code, whichever way numba makes it, and is kept on disk."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from numba.core import config
+
+import helpers_kernels
+from tactile_graph.compiled import Kernel, machine_code
+
+VALUES = np.array([3.0, 1.0, 4.0, 1.0, 5.0])
+KERNELS = ("doubled", "summed", "spread", "total")
+
+
+@pytest.fixture
+def fresh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return a function that makes the small kernels anew, as another run would find them."""
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+
+    def make() -> Any:
+        for name in KERNELS:
+            old = getattr(helpers_kernels, name)
+            new = Kernel(old.loops, old.reference, plain_first=False)
+            monkeypatch.setattr(helpers_kernels, name, new)
+        return helpers_kernels
+
+    return make
+
+
+def kept(folder: Path) -> set[str]:
+    return {path.name.split("-")[0] for path in folder.rglob("*.nbc")}
+
+
+@pytest.mark.parametrize("tried", [("0.0",), machine_code.TRIED])
+def test_machine_code_answers_as_plain_code_does(
+    fresh: Any, monkeypatch: pytest.MonkeyPatch, tried: tuple[str, ...]
+) -> None:
+    monkeypatch.setattr(machine_code, "TRIED", tried)
+    kernels = fresh()
+    assert kernels.total.compiled(3.0, 4) == kernels.total.reference(3.0, 4) == 12.0
+    assert kernels.spread.compiled(VALUES) == kernels.spread.loops(VALUES) == 3.0
+    with pytest.raises(ValueError, match="too many values"):
+        kernels.spread.compiled(np.ones(helpers_kernels.MOST + 2))
+
+
+def test_this_numba_is_one_that_was_tried() -> None:
+    assert machine_code.whole()
+
+
+def test_only_what_python_calls_is_kept_on_disk(fresh: Any, tmp_path: Path) -> None:
+    fresh().spread.compiled(VALUES)
+    assert kept(tmp_path) == {"helpers_kernels.spread"}
+
+
+def test_a_kernel_serves_python_and_other_kernels_alike(fresh: Any, tmp_path: Path) -> None:
+    kernels = fresh()
+    assert kernels.spread.compiled(VALUES) == 3.0
+    assert kernels.summed.compiled(VALUES) == 31.0
+    assert kept(tmp_path) == {"helpers_kernels.spread", "helpers_kernels.summed"}
+
+
+def test_the_next_run_loads_what_was_kept_and_can_raise(fresh: Any) -> None:
+    fresh().spread.compiled(VALUES)
+    again = fresh().spread.compiled
+    assert again(VALUES) == 3.0
+    assert (sum(again.stats.cache_hits.values()), len(again.stats.cache_misses)) == (1, 0)
+    with pytest.raises(ValueError, match="too many values"):
+        again(np.ones(helpers_kernels.MOST + 2))
+
+
+def test_a_change_beneath_outdates_what_was_kept(
+    fresh: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fresh().spread.compiled(VALUES)
+    monkeypatch.setattr(helpers_kernels, "MOST", 2)
+    again = fresh().spread.compiled
+    with pytest.raises(ValueError, match="too many values"):
+        again(VALUES)
+
+
+def test_a_function_that_numba_alone_compiles_may_call_kernels(fresh: Any) -> None:
+    kernels = fresh()
+    summed = kernels.summed
+    kernels.spread.compiled(VALUES)
+
+    @numba.njit
+    def twice(values: Any) -> float:
+        return 2.0 * summed(values)
+
+    assert twice(VALUES) == 62.0
+    with pytest.raises(ValueError, match="too many values"):
+        twice(np.ones(helpers_kernels.MOST + 2))
