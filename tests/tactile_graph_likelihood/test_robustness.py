@@ -5,14 +5,18 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
-from tactile_graph_likelihood.single.patterns import dome, neighbours_alike, trend
 
 from helpers_likelihood import GRID, NOISE, drawn
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
-from tactile_graph_likelihood.single.goodness_of_fit import standardised
+from tactile_graph_likelihood.single.goodness_of_fit import (
+    dome,
+    neighbours_alike,
+    standardised,
+    trend,
+)
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 from tactile_graph_pads.contact import spread

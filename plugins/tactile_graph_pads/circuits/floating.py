@@ -23,6 +23,7 @@ NEGLIGIBLE = 1e-100
 """Conductance over the frame's largest below which an element conducts nothing."""
 
 
+@np.errstate(over="ignore")  # a conductance near 0 has a resistance that is infinite
 def _equivalent(siemens: Array) -> Array:
     """Return the conductance between each row and column through the whole network.
 

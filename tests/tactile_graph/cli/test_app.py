@@ -139,7 +139,7 @@ def test_plugins_lists_what_is_offered_broken_blocked_and_refused(hand_made, mon
     assert got.exit_code == 0
     cells = {line.split()[0]: line.split() for line in got.stdout.splitlines() if line.strip()}
     assert cells["hand"][1:3] == ["hand-made", "1.2"]
-    assert cells["hand"][4:] == ["9", "steps,", "2", "pipelines,", "1", "command"]
+    assert cells["hand"][4:] == ["9", "steps,", "1", "reader,", "2", "pipelines,", "1", "command"]
     assert cells["torn"][4:] == ["failed", "to", "load,", "see", "below"]
     assert cells["twin"][4:] == ["1", "step"]
     assert cells["shut"] == ["shut", "shut-package", "4", "blocked"]
