@@ -20,8 +20,8 @@ class Reach:
     n_kernels : int
         Functions of the project among them, the loops counted.
     digest : str
-        Changes with the code of any of them and with any constant they read, and with nothing
-        else: neither comments nor other functions of their files matter.
+        Changes with the code and the place of any of them and with any constant they read, and with
+        nothing else: neither comments nor other functions of their files matter.
     """
 
     def __init__(self, loops: Callable[..., Any]) -> None:
@@ -35,6 +35,8 @@ class Reach:
         if id(function) in self._seen:
             return
         self._seen.add(id(function))
+        # What is kept on disk names the modules its functions came from.
+        self._add(f"{function.__module__}.{function.__qualname__}".encode())
         self._code(function.__code__)
         for cell in function.__closure__ or ():
             self._value("", cell.cell_contents, function.__code__)

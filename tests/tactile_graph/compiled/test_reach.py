@@ -66,6 +66,10 @@ def test_a_change_of_a_constant_changes_it(one: Any, two: Any) -> None:
     assert digest(SCALE=one) != digest(SCALE=two)
 
 
+def test_a_renamed_file_changes_it() -> None:
+    assert digest(__name__="old") != digest(__name__="new")
+
+
 def test_constants_of_modules_count() -> None:
     source = SOURCE.replace("SCALE", "sizes.scale")
     found = []
