@@ -170,7 +170,9 @@ def test_energies_are_2_sigma_squared_times_minus_the_log_of_the_posterior() -> 
 
 def test_every_cost_is_finite_so_that_every_image_has_a_probability_above_0() -> None:
     problem = prepare(Model(n_levels=20), Image(np.arange(20.0).reshape(4, 5)))
-    assert all(np.isfinite(t).all() for t in (problem.table, problem.bare_smooth, problem.pattern))
+    _, pairwise, lines = problem.potentials
+    costs = (problem.own_costs(), pairwise.smooth, pairwise.bare, lines.pattern)
+    assert all(np.isfinite(each).all() for each in costs)
 
 
 def test_rows_have_three_cells_and_places_come_once_in_their_section() -> None:
