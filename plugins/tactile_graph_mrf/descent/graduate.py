@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.potentials import Potentials, smoothness_costs
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import State, with_lines
-from tactile_graph_mrf.kernels import fit_for
+from tactile_graph_mrf.energy.total import total
 
 CONVEX = 0.25
 """Concavity that unit data terms and four neighbours just outweigh (Blake and Zisserman 1987)."""
@@ -81,9 +82,8 @@ def graduated(
     if not problem.has_data.all():
         levels[~problem.has_data] = levels[problem.has_data].mean()
     out = np.empty((len(influences), *problem.shape))
-    kernel = fit_for(relax, out.size * relaxation.sweeps // 20)
     visits = _visits(problem.shape, problem.model.order)
-    kernel(problem.potentials, problem.observed, influences, relaxation, visits, levels, out)
+    relax.call(problem.potentials, problem.observed, influences, relaxation, visits, levels, out)
     return out
 
 
@@ -92,6 +92,37 @@ def rounded(problem: Problem, levels: NDArray[np.float64]) -> State:
     labels = np.rint(levels).astype(np.int64)
     labels[~problem.in_field] = 0
     return with_lines(problem, labels)
+
+
+def rounded_energies(problem: Problem, stages: NDArray[np.float64]) -> list[float]:
+    """Return the energy of what `rounded` makes of each of several levels."""
+    explicit = problem.model.lines == "explicit"
+    price = problem.model.line_price if explicit else math.inf
+    found: list[float] = round_all.call(problem.potentials, float(price), stages).tolist()
+    return found
+
+
+@compiled_as_is
+def round_all(potentials: Potentials, price: float, stages: Any) -> NDArray[np.float64]:
+    """Return the energy of each of ``stages``, rounded, with lines on where a step is dearer."""
+    in_field, bare = potentials.unary.in_field, potentials.pairwise.bare
+    n_stages, rows, columns = stages.shape
+    labels = np.zeros((rows, columns), np.int64)
+    across = np.zeros((max(rows - 1, 0), columns), np.bool_)
+    down = np.zeros((rows, max(columns - 1, 0)), np.bool_)
+    energies = np.empty(n_stages)
+    for k in range(n_stages):
+        for i in range(rows):
+            for j in range(columns):
+                if not in_field[i, j]:
+                    continue
+                labels[i, j] = int(np.rint(stages[k, i, j]))
+                if i > 0 and in_field[i - 1, j]:
+                    across[i - 1, j] = bare[abs(labels[i, j] - labels[i - 1, j])] > price
+                if j > 0 and in_field[i, j - 1]:
+                    down[i, j - 1] = bare[abs(labels[i, j] - labels[i, j - 1])] > price
+        energies[k] = total(potentials, labels, across, down)
+    return energies
 
 
 @lru_cache(maxsize=8)

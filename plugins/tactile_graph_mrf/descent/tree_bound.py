@@ -13,7 +13,6 @@ from tactile_graph_mrf.energy.line_field import no_lines
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import State, nothing
 from tactile_graph_mrf.energy.total import energy
-from tactile_graph_mrf.kernels import fit_for
 
 MOST = 10_000_000
 """Numbers a table of messages of one direction may hold: cells times levels."""
@@ -181,13 +180,12 @@ def lower_bound(problem: Problem, n_sweeps: int = 50) -> Bounded:
     grid = Grid(problem.in_field, unary, smooth, weights, reach)
     messages: NDArray[np.float64] = np.zeros((4, *unary.shape))
     labels = np.zeros(problem.shape, np.int64)
-    sweep = fit_for(trw_sweep, unary.size)
     bound, least, best = -np.inf, np.inf, labels
     for _ in range(n_sweeps):
-        sweep(grid, True, messages, labels)
+        trw_sweep.call(grid, True, messages, labels)
         reached = energy(problem, labels)
         if reached < least:
             least, best = reached, labels.copy()
-        sweep(grid, False, messages, labels)
-    bound = float(fit_for(chain_bound, unary.size)(grid, messages))
+        trw_sweep.call(grid, False, messages, labels)
+    bound = float(chain_bound.call(grid, messages))
     return Bounded(bound, State(best, *no_lines(problem.shape)), least)

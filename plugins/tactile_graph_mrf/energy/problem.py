@@ -87,11 +87,6 @@ class Problem:
         free = model.lines != "marginal" and model.smoothness == "quadratic"
         return model.noise == "gaussian" and (free or model.lambda_d == 0.0)
 
-    @property
-    def levels_per_draw(self) -> int:
-        """How many levels a sampler looks at for one draw, about."""
-        return 1 if self.gaussian else self.n_levels
-
     def own_costs(self) -> NDArray[np.float64]:
         """Return each cell's own cost of each label, shape (rows, columns, L); 0 off the field."""
         own = self.unary

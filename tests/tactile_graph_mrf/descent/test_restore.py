@@ -5,7 +5,6 @@ import pytest
 
 from helpers_restorers import square, tiny, tiny_model
 from tactile_graph.wires import Image
-from tactile_graph_mrf.descent import region_moves
 from tactile_graph_mrf.descent.box_moves import move_boxes
 from tactile_graph_mrf.descent.chain_moves import PROPOSALS, Chain, move_chains, propose
 from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
@@ -116,7 +115,7 @@ def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, mon
     other = rng.integers(0, 30, (8, 8))
     ends = []
     for kernel in (shift_all.reference, shift_all.compiled):
-        monkeypatch.setattr(region_moves, "fit_for", lambda *_, kernel=kernel: kernel)
+        monkeypatch.setattr(shift_all, "call", kernel)
         state = State(*(x.copy() for x in start))
         reached = [energy(problem, *state)]
         for move in (lambda s: fuse(problem, s, other), lambda s: shift_regions(problem, s)):
