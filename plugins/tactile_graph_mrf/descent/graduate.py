@@ -82,8 +82,7 @@ def graduated(
     if not problem.has_data.all():
         levels[~problem.has_data] = levels[problem.has_data].mean()
     out = np.empty((len(influences), *problem.shape))
-    visits = _visits(problem.shape, problem.model.order)
-    relax.call(problem.potentials, problem.observed, influences, relaxation, visits, levels, out)
+    relax.call(problem.potentials, problem.observed, influences, relaxation, levels, out)
     return out
 
 
@@ -125,85 +124,73 @@ def round_all(potentials: Potentials, price: float, stages: Any) -> NDArray[np.f
     return energies
 
 
-@lru_cache(maxsize=8)
-def _visits(shape: tuple[int, int], order: int) -> NDArray[np.int64]:
-    """Return the (row, column) of each cell, by colours of which no two cells are neighbours."""
-    i, j = (x.ravel() for x in np.indices(shape))
-    colour = (i + j) % 2 if order == 1 else i % 3 * 3 + j % 3
-    visits = np.column_stack([i, j])[np.argsort(colour, kind="stable")]
-    visits.setflags(write=False)
-    return visits
-
-
 @compiled_as_is
 def relax(
-    potentials: Potentials, observed: Any, influences: Any, relaxation: Relaxation, visits: Any,
-    levels: Any, out: Any,
+    potentials: Potentials, observed: Any, influences: Any, relaxation: Relaxation, levels: Any,
+    out: Any,
 ) -> None:  # fmt: skip
     """Write into ``out`` the levels after the sweeps with each row of ``influences``."""
-    in_field = potentials.unary.in_field
     awake = np.empty(levels.shape, np.bool_)
     for k in range(len(influences)):
-        bends = influences[k]
-        for s in range(len(visits)):
-            i, j = visits[s, 0], visits[s, 1]
-            awake[i, j] = in_field[i, j]
+        awake[:] = potentials.unary.in_field
         for _ in range(relaxation.sweeps):
-            if not relax_once(potentials, observed, bends, relaxation, visits, levels, awake):
+            if not relax_once(potentials, observed, influences[k], relaxation, levels, awake):
                 break
-        for s in range(len(visits)):
-            i, j = visits[s, 0], visits[s, 1]
-            out[k, i, j] = levels[i, j]
+        out[k] = levels
 
 
 @compiled_as_is
 def relax_once(
-    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, visits: Any,
-    levels: Any, awake: Any,
+    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, levels: Any,
+    awake: Any,
 ) -> bool:  # fmt: skip
     """Move each cell that is awake; return whether any went so far as to wake those beside it.
 
     It goes ``over`` times the way to the minimum of the parabola that touches its conditional
-    energy from above (half-quadratic majorisation).
+    energy from above (half-quadratic majorisation). Cells are visited by colours, of which no two
+    are neighbours.
     """
     in_field, curvature, centre, table, row = potentials.unary
     offsets, weights = potentials.pairwise.offsets, potentials.pairwise.weights
     rows, columns = levels.shape
     top = table.shape[1] - 1
     over, still = relaxation.over, relaxation.still * top
+    nearest_only = len(weights) == 2
+    n_colours, rise, run = (2, 1, 2) if nearest_only else (9, 3, 3)
     stirred = False
-    for s in range(len(visits)):
-        i, j = visits[s, 0], visits[s, 1]
-        if not awake[i, j]:
-            continue
-        awake[i, j] = False
-        x = levels[i, j]
-        mass, goal = curvature[i, j], observed[i, j]
-        if mass > 0:
-            goal = centre[i, j]
-        if row[i, j] > 0:
-            away = abs(x - observed[i, j])
-            at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
-            slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
-            mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
-        pull = mass * (goal - x)
-        for q in range(len(weights)):
-            for sign in (1, -1):
-                m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
-                if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
-                    step = levels[m, n] - x
-                    d = min(abs(step), top)
-                    whole = int(d)
-                    low, high = bends[whole], bends[whole + 1]
-                    w = weights[q] * (low + (d - whole) * (high - low))
-                    pull += w * step
-                    mass += w
-        if mass > 0:
-            after = min(max(x + over * pull / mass, 0.0), top)
-            levels[i, j] = after
-            if abs(after - x) >= still:
-                stirred = awake[i, j] = True
-                wake_beside(in_field, offsets, i, j, awake)
+    for c in range(n_colours):
+        for i in range(0 if nearest_only else c // 3, rows, rise):
+            for j in range((i + c) % 2 if nearest_only else c % 3, columns, run):
+                if not awake[i, j]:
+                    continue
+                awake[i, j] = False
+                x = levels[i, j]
+                mass, goal = curvature[i, j], observed[i, j]
+                if mass > 0:
+                    goal = centre[i, j]
+                if row[i, j] > 0:
+                    away = abs(x - observed[i, j])
+                    at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
+                    slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
+                    mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
+                pull = mass * (goal - x)
+                for q in range(len(weights)):
+                    for sign in (1, -1):
+                        m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+                        if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                            step = levels[m, n] - x
+                            d = min(abs(step), top)
+                            whole = int(d)
+                            low, high = bends[whole], bends[whole + 1]
+                            w = weights[q] * (low + (d - whole) * (high - low))
+                            pull += w * step
+                            mass += w
+                if mass > 0:
+                    after = min(max(x + over * pull / mass, 0.0), top)
+                    levels[i, j] = after
+                    if abs(after - x) >= still:
+                        stirred = awake[i, j] = True
+                        wake_beside(in_field, offsets, i, j, awake)
     return stirred
 
 

@@ -49,16 +49,24 @@ class Grid(NamedTuple):
 
 
 @compiled_as_is
+def offer(costs: Any, price: float, out: Any) -> None:
+    """Lower each of ``out`` to ``costs`` and the price, if that is less; all begin at 0.
+
+    So the compiler sees that it may do several at once.
+    """
+    for y in range(len(out)):
+        out[y] = min(out[y], costs[y] + price)
+
+
+@compiled_as_is
 def passed(costs: Any, smooth: Any, weight: float, reach: int, out: Any) -> None:
     """Write the least over x of costs[x] + weight smooth[|x - y|] for each y; see `Grid`."""
     n = len(costs)
     out[:] = costs.min() + weight * smooth[min(reach, n - 1)]
     for d in range(min(reach, n)):
         price = weight * smooth[d]
-        for y in range(n - d):
-            out[y] = min(out[y], costs[y + d] + price)
-        for y in range(d, n):
-            out[y] = min(out[y], costs[y - d] + price)
+        offer(costs[d:], price, out[: n - d])
+        offer(costs[: n - d], price, out[d:])
 
 
 @compiled_as_is
