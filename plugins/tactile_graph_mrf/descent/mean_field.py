@@ -191,7 +191,7 @@ def _sites(problem: Problem) -> NDArray[np.int64]:
     """Return (1 if vertical, row, column) of each line site; none unless lines are explicit."""
     if problem.model.lines != "explicit":
         return np.zeros((0, 3), np.int64)
-    across, down = (np.argwhere(sites) for sites in problem.sites())
+    across, down = (np.argwhere(sites) for sites in problem.sites)
     kinds = np.repeat([0, 1], [len(across), len(down)])
     return np.ascontiguousarray(np.column_stack([kinds, np.concatenate([across, down])]))
 

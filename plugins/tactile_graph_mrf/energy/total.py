@@ -36,7 +36,7 @@ def energy(
     """
     across, down = no_lines(problem.shape)
     if problem.model.lines != "marginal":
-        sites_h, sites_v = problem.sites()
+        sites_h, sites_v = problem.sites
         across = across if lines_h is None else np.ascontiguousarray(lines_h & sites_h)
         down = down if lines_v is None else np.ascontiguousarray(lines_v & sites_v)
     labels = np.ascontiguousarray(labels, np.int64)

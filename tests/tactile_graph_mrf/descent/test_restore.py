@@ -111,7 +111,7 @@ def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, mon
     model = Model(n_levels=30, lines=lines, lambda_l=60.0, smoothness="truncated_quadratic",
                   truncation=6.0)  # fmt: skip
     problem = prepare(model, square(20.0, 8))
-    sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites())
+    sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites)
     drawn = no_lines((8, 8)) if lines != "explicit" else sites
     start = State(rng.integers(0, 30, (8, 8)), *drawn)
     other = rng.integers(0, 30, (8, 8))
@@ -138,7 +138,7 @@ def test_polishing_tells_the_energy_it_ends_with_and_agrees_compiled(lines, orde
     problem = prepare(model, square(20.0, 8))
     drawn = no_lines((8, 8))
     if lines == "explicit":
-        drawn = tuple(x & (rng.random(x.shape) < 0.3) for x in problem.sites())
+        drawn = tuple(x & (rng.random(x.shape) < 0.3) for x in problem.sites)
     start = State(rng.integers(0, 30, (8, 8)), *drawn)
     ends, traces = [], []
     for code in (polish_all.reference, polish_all.compiled):
