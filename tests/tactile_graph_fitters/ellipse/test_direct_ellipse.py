@@ -1,4 +1,4 @@
-"""The direct ellipse in one unknown: beside the eigenproblem it solves, and plain beside compiled."""
+"""The direct ellipse in one unknown: beside the eigenproblem it solves, and plain by compiled."""
 
 import math
 
