@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from tactile_graph.engine.freeze import IMMUTABLE
 from tactile_graph.engine.outcome import NO_VALUE, Skipped, failure
 from tactile_graph.engine.plan import Item
 from tactile_graph.engine.step_operation import Operation, State
 from tactile_graph.pipeline.conditions import Guard
-
-IMMUTABLE = frozenset({bool, int, float, str})
 
 
 def guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:

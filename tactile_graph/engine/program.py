@@ -11,7 +11,7 @@ from collections.abc import Callable
 from operator import itemgetter
 from typing import Any
 
-from tactile_graph.engine.freeze import FROZEN, freeze
+from tactile_graph.engine.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.guards import guarded
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
@@ -124,11 +124,21 @@ def _unless_settled(slot: int, body: Operation) -> Operation:
 
 
 def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
-    """Settle a field of a node, and return it: a guard reads it by this."""
+    """Settle a field of a node, and return it: a guard reads it by this.
+
+    The field of the very value that the last frame gave is kept: a pad that stays empty gives one
+    mask for all.
+    """
     source, slot = item.source, item.slot
+    known: Any = item  # no value is it
+    kept: Any = None
 
     def operation(state: State) -> Any:
+        nonlocal known, kept
         value = state[source]
+        if value is known:
+            state[slot] = kept
+            return kept
         if value.__class__ in NO_VALUE:
             state[slot] = value
             return value
@@ -142,6 +152,8 @@ def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
         elif field.__class__ not in FROZEN:
             field = freeze(field)  # a property may make its array anew
         state[slot] = field
+        if value.__class__ in IMMUTABLE:
+            known, kept = value, field
         return field
 
     return operation
