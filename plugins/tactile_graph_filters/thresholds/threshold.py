@@ -9,20 +9,14 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_nan
 
 
-def _at_least_plain(values: NDArray[Any], level: float, out: NDArray[np.bool_]) -> int:
-    """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
-    np.greater_equal(values, level, out=out)
-    return -1 if np.isnan(values).any() else int(np.count_nonzero(out))
-
-
-@compiled_twin_of(_at_least_plain)
+@compiled_later
 def at_least(values, level, out):  # type: ignore[no-untyped-def]
     """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
     count = numbers = 0

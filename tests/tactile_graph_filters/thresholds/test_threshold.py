@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+import references_filters as references
 from helpers_filters import image_of, same_grid
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
@@ -122,9 +123,11 @@ def test_the_level_must_be_finite():
 
 
 @given(arrays(np.float64, (5, 7)), st.floats(allow_nan=False))
-def test_the_twins_agree(values, level):
+def test_it_compares_as_the_reference_does(values, level):
     pytest.importorskip("numba")
-    outs = np.empty((2, 5, 7), bool)
-    counts = [at_least.reference(values, level, outs[0]), at_least.compiled(values, level, outs[1])]
-    assert counts[0] == counts[1] == (-1 if np.isnan(values).any() else np.sum(values >= level))
+    outs = np.empty((3, 5, 7), bool)
+    kernels = (references.at_least, at_least.loops, at_least.compiled)
+    counts = {which(values, level, out) for which, out in zip(kernels, outs, strict=True)}
+    assert counts == {-1 if np.isnan(values).any() else int(np.sum(values >= level))}
     assert np.array_equal(outs[0], outs[1])
+    assert np.array_equal(outs[0], outs[2])
