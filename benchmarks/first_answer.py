@@ -2,8 +2,9 @@
 
 Run ``python benchmarks/first_answer.py [PIPELINE ...]``. The whole command
 ``tactile-graph run PIPELINE`` on the pipeline's own frames is timed, first on an empty cache, then
-``--rounds`` times on what that left. Besides the time that passed, processor time is given, which
-neighbours on the machine change little.
+``--rounds`` times on what that left; Python may keep its byte code, as it does unless told
+otherwise. Besides the time that passed, processor time is given, which neighbours on the machine
+change little.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Cost(NamedTuple):
 
 def cost(arguments: list[str], cache: str) -> Cost:
     """Return what a command costs that keeps its machine code in ``cache``."""
-    environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
+    environment = {**os.environ, "NUMBA_CACHE_DIR": cache, "PYTHONDONTWRITEBYTECODE": ""}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     start = time.perf_counter()
     done = subprocess.run(
