@@ -1,14 +1,10 @@
-"""Shared by the ellipse fits' tests: point sets of every kind, and kernels made plain."""
+"""Shared by the ellipse fits' tests: point sets of every kind."""
 
 from __future__ import annotations
-
-from contextlib import contextmanager
-from unittest.mock import patch
 
 import numpy as np
 
 from helpers_rectangles import turned
-from tactile_graph import compiled
 from tactile_graph.wires import Points
 
 WELL = ("outline", "arc", "exact", "flat", "far", "cells", "blob")
@@ -16,17 +12,6 @@ DEGENERATE = (
     "line", "near line", "parallel lines", "crossing lines", "parabola", "hyperbola", "places",
     "repeated", "grid", "five", "thin cluster",
 )  # fmt: skip
-
-
-@contextmanager
-def plainly():
-    """Run kernels as their references, as without a compiler."""
-    with patch.dict("os.environ", {compiled.ENVIRONMENT: "plain"}):
-        for kernel in compiled._kernels:
-            kernel.reset()
-        yield
-    for kernel in compiled._kernels:
-        kernel.reset()
 
 
 def oval(rng, n, degrees=360.0, ratio=(0.2, 1.0), noise=0.0):

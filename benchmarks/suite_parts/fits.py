@@ -79,9 +79,8 @@ def circle_cases(n_sets: int, seed: int) -> Iterator[Case]:
 
 
 def circle_fits() -> dict[str, Fit]:
-    base = "tactile_graph_fitters"
     kinds = ("", "_thesis", "_kasa", "_taubin", "_hyper")
-    fits = ours(*(f"{base}.fit_circle{k}:fit_circle{k}" for k in kinds))
+    fits = ours(*(f"fit_circle{kind}" for kind in kinds))
     if find_spec("circle_fit"):
         module = import_module("circle_fit")
         for name in ("kmh", "prattSVD", "taubinSVD", "hyperSVD", "riemannSWFLa"):
@@ -162,10 +161,7 @@ def rectangle_cases(n_sets: int, seed: int) -> Iterator[Case]:
 
 
 def rectangle_fits() -> dict[str, Fit]:
-    base = "tactile_graph_fitters"
-    fits = ours(
-        f"{base}.fit_rectangle:fit_rectangle", f"{base}.min_area_rectangle:min_area_rectangle"
-    )
+    fits = ours("fit_rectangle", "min_area_rectangle")
     if find_spec("cv2"):
         import cv2
 
@@ -193,9 +189,7 @@ def _exact_hull(xy: Values) -> Polygon:
 
 
 def hulls() -> dict[str, Fit]:
-    base = "tactile_graph_hull"
-    kinds = ("hull", "hull_graham", "hull_beneath_beyond", "hull_qhull")
-    fits = ours(*(f"{base}.{k}:{k}" for k in kinds))
+    fits = ours("hull", "hull_graham", "hull_beneath_beyond", "hull_qhull")
     if find_spec("cv2"):
         import cv2
 

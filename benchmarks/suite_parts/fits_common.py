@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Points
+from tactile_graph.plugins.registry import installed
 from tactile_graph.wires.frame import TrueObject
 
 Values = NDArray[np.float64]
@@ -28,14 +28,10 @@ class Case:
     truth: tuple[TrueObject, ...]
 
 
-def ours(*steps: str) -> dict[str, Fit]:
-    """Return steps, each named ``module:function``, as fits."""
-    found: dict[str, Fit] = {}
-    for where in steps:
-        module, _, name = where.rpartition(":")
-        step = getattr(import_module(module), name)
-        found[name] = lambda xy, step=step: [step(Points(xy))]
-    return found
+def ours(*names: str) -> dict[str, Fit]:
+    """Return steps by name, as fits."""
+    steps = {name: installed().load("steps", name) for name in names}
+    return {name: lambda xy, step=step: [step(Points(xy))] for name, step in steps.items()}
 
 
 def opencv_box(function: Callable[..., Any], kind: type, share: float) -> Fit:

@@ -86,8 +86,7 @@ def _outlines(n_sets: int, seed: int) -> Iterator[Case]:
 
 def ellipse_fits() -> dict[str, Fit]:
     """Return our fits and those of the peers that are installed."""
-    base = "tactile_graph_fitters"
-    fits = ours(f"{base}.fit_ellipse:fit_ellipse", f"{base}.fit_ellipse_direct:fit_ellipse_direct")
+    fits = ours("fit_ellipse", "fit_ellipse_direct")
     if find_spec("cv2"):
         import cv2
 

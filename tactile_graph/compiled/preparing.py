@@ -20,7 +20,12 @@ _tellers: list[Teller] = []
 
 @contextmanager
 def told_by(teller: Teller) -> Iterator[None]:
-    """Let ``teller`` say what is prepared, in place of whoever did."""
+    """Let ``teller`` say what is prepared, in place of whoever did.
+
+    The first one starts the clock: what was prepared before kept nobody waiting who listens.
+    """
+    if not _tellers:
+        preparing.start_clock()
     _tellers.append(teller)
     try:
         yield
@@ -62,6 +67,10 @@ class Preparing:
         self._done: set[int] = set()
         self._spent_s = 0.0
         self._since = 0.0
+
+    def start_clock(self) -> None:
+        """Count the time spent from now on."""
+        self._spent_s = 0.0
 
     @contextmanager
     def of(self, name: str, total: int) -> Iterator[None]:

@@ -155,7 +155,7 @@ def test_5_9_is_the_same_with_the_whole_energy_as_with_the_cliques_at_the_cell()
 def test_a_difference_counts_once_and_not_where_the_line_is_on() -> None:
     problem = prepare(Model(n_levels=10, lambda_d=3.0, lambda_l=0.0), Image(np.array([[0.0, 9.0]])))
     labels = np.array([[0, 9]])
-    across, down = (np.zeros(sites.shape, np.bool_) for sites in problem.sites())
+    across, down = (np.zeros(sites.shape, np.bool_) for sites in problem.sites)
     assert energy(problem, labels, across, down) == pytest.approx(3.0 * 81.0)
     assert energy(problem, labels, across | True, down | True) == pytest.approx(0.0)
 
@@ -170,7 +170,9 @@ def test_energies_are_2_sigma_squared_times_minus_the_log_of_the_posterior() -> 
 
 def test_every_cost_is_finite_so_that_every_image_has_a_probability_above_0() -> None:
     problem = prepare(Model(n_levels=20), Image(np.arange(20.0).reshape(4, 5)))
-    assert all(np.isfinite(t).all() for t in (problem.table, problem.bare_smooth, problem.pattern))
+    _, pairwise, lines = problem.potentials
+    costs = (problem.own_costs(), pairwise.smooth, pairwise.bare, lines.pattern)
+    assert all(np.isfinite(each).all() for each in costs)
 
 
 def test_rows_have_three_cells_and_places_come_once_in_their_section() -> None:

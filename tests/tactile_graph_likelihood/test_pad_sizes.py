@@ -90,4 +90,4 @@ def test_an_object_is_identified_and_a_stranger_is_unknown_without_sizes(geometr
 @pytest.mark.parametrize("step", [FootprintByOrder, FollowFootprint, IdentifyFootprint])
 def test_sizes_out_of_order_are_refused(step):
     with pytest.raises(ValueError, match="smallest_cm: must be below largest_cm, got 9 and 3"):
-        step(smallest_cm=9.0, largest_cm=3.0)
+        made(step, smallest_cm=9.0, largest_cm=3.0)

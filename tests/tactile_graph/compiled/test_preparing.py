@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import time
 
 import pytest
 
@@ -69,6 +70,17 @@ def test_the_last_who_asked_is_told() -> None:
             work.at("turn")
     assert [str(text)[:14] for text in second] == ["compiling fit,", "None"]
     assert [str(text)[:14] for text in first] == ["compiling turn", "None"]
+
+
+def test_what_was_prepared_before_anybody_listened_is_not_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told: list[str | None] = []
+    with preparing.preparing.of("fit", 1):
+        monkeypatch.setattr(time, "monotonic", lambda now=time.monotonic: now() + 60.0)
+    with told_by(told.append), preparing.preparing.of("turn", 1):
+        preparing.preparing.at("turn")
+    assert told == [None]
 
 
 @pytest.mark.usefixtures("slow")

@@ -28,10 +28,10 @@ from tactile_graph_classifiers.database import rows as table
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.store import ObjectDatabase
 
-keep = table.keep
+store = table.store_statistics
 def slow(connection, number, statistics):
     # all rows but the statistics are written by now: half a lesson is on the disc
-    keep(connection, number, statistics)
+    store(connection, number, statistics)
     if statistics.n > 80:
         connection.execute("PRAGMA cache_spill = 1")
         connection.execute("PRAGMA cache_size = 1")
@@ -39,7 +39,7 @@ def slow(connection, number, statistics):
         connection.executemany("INSERT INTO readings (object_id, source) VALUES (?, ?)", rows)
         print("within", flush=True)
         sys.stdin.read()
-table.keep = slow
+table.store_statistics = slow
 rng = np.random.default_rng(0)
 database = ObjectDatabase(sys.argv[1])
 for k in range(3):

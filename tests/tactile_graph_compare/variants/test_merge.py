@@ -14,7 +14,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, STEPS, cases, documents, frame, registry, shown
-from tactile_graph import Pipeline, compiled, load, loads
+from helpers_modes import answered_by
+from tactile_graph import Pipeline, load, loads
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.engine.rows import as_data
 from tactile_graph.plugins.registry import installed
@@ -242,15 +243,10 @@ def test_a_step_that_draws_is_shared_only_by_those_who_draw_the_same(
 
 
 @pytest.fixture
-def plain_kernels(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def plain_kernels() -> Iterator[None]:
     """References only: a twin that is compiled half way through differs in the last digit."""
-    monkeypatch.setenv(compiled.ENVIRONMENT, "plain")
-    for kernel in compiled._kernels:
-        kernel.reset()
-    yield
-    monkeypatch.undo()
-    for kernel in compiled._kernels:
-        kernel.reset()
+    with answered_by("plain"):
+        yield
 
 
 @pytest.mark.slow

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval, plainly
+from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval
+from helpers_modes import answered_by
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import OK, into_frame
@@ -55,7 +56,7 @@ def test_it_is_the_eigenvector_of_halir_and_flusser(kind):
 def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
     """Degenerate ones too: whether there is an ellipse, and which; never anything but a number."""
     sets = [drawn(kind, seed) for seed in range(150)]
-    with plainly():
+    with answered_by("plain"):
         plain = [direct_fit.loops(xy) for xy in sets]
     for xy, one in zip(sets, plain, strict=True):
         two = direct_fit.compiled(xy)
@@ -70,7 +71,7 @@ def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
 )
 def test_the_nearest_ellipse_plain_and_compiled(kind, n):
     sets = [drawn(kind, seed) for seed in range(n)]
-    with plainly():
+    with answered_by("plain"):
         plain = [geometric_fit.loops(xy) for xy in sets]
     for xy, one in zip(sets, plain, strict=True):
         two = geometric_fit.compiled(xy)

@@ -7,16 +7,18 @@ import inspect
 import numpy as np
 import pytest
 
+from helpers_modes import answered_by
 from helpers_mrf import picture
-from tactile_graph import compiled, loads
+from tactile_graph import loads
 from tactile_graph.errors import PipelineError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.energy.line_field import Restored
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
-from tactile_graph_mrf.samplers import annealing, sweep
+from tactile_graph_mrf.samplers import annealing
 from tactile_graph_mrf.samplers.gibbs import gibbs
+from tactile_graph_mrf.samplers.sweep import anneal
 
 
 def restore(image, *ports, seed=1, **settings):
@@ -58,27 +60,14 @@ def test_defaults_are_the_thesis():
     assert Model().n_levels == 200
 
 
-@pytest.fixture
-def kernels(monkeypatch):
-    def switch(mode):
-        monkeypatch.setenv(compiled.ENVIRONMENT, mode)
-        for kernel in compiled._kernels:
-            kernel.reset()
-
-    yield switch
-    monkeypatch.undo()
-    for kernel in compiled._kernels:
-        kernel.reset()
-
-
 @pytest.mark.parametrize("model", MODELS, ids=str)
-def test_same_seed_same_bits_compiled_or_not(model, kernels):
+def test_same_seed_same_bits_compiled_or_not(model):
     pytest.importorskip("numba")
     image = picture(7, 6)
     runs = []
     for mode in ("plain", "compiled", "compiled"):
-        kernels(mode)
-        runs.append(restore(image, model=model, n_sweeps=6, energy_scale=0.003))
+        with answered_by(mode):
+            runs.append(restore(image, model=model, n_sweeps=6, energy_scale=0.003))
     for other in runs[1:]:
         assert (runs[0].image.values == other.image.values).all()
         assert (runs[0].lines.horizontal == other.lines.horizontal).all()
@@ -170,10 +159,8 @@ def test_annealing_stops_once_nothing_can_change_and_loses_nothing_by_it(monkeyp
     stopped = restore(image, n_sweeps=400)
     assert stopped.sweeps < 150
     assert stopped.trace[-1] == stopped.trace[-2]
-    kernel = sweep.anneal
-    monkeypatch.setattr(
-        annealing, "fit_for", lambda *_: lambda *args: (kernel.call(*args)[0], False)
-    )
+    compiled_sweeps = anneal.call
+    monkeypatch.setattr(anneal, "call", lambda *args: (compiled_sweeps(*args)[0], False))
     blocks = restore(image, n_sweeps=400)  # goes on, if at all, with the same state
     assert (blocks.image.values == stopped.image.values).all()
 
