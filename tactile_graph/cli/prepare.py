@@ -46,6 +46,10 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
     for name in pipelines:
         load(name)
     out = console()
+    if jobs == 1:
+        for name in names:
+            out.print(prepared(name), soft_wrap=True, highlight=False)
+        return
     with ProcessPoolExecutor(
         min(jobs, len(names)), get_context("spawn"), registry.restrict, (registry.selected(),)
     ) as pool:

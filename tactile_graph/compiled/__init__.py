@@ -1,5 +1,6 @@
 """Hot loops written in plain Python and compiled to machine code, kept on disk."""
 
+from tactile_graph.compiled.beside import prepared_beside
 from tactile_graph.compiled.kernel import (
     SWITCH_AFTER_CALLS,
     SWITCH_AFTER_ELEMENTS,
@@ -19,5 +20,6 @@ __all__ = [
     "compiled_later",
     "compiled_twin_of",
     "mode",
+    "prepared_beside",
     "warm_up",
 ]

@@ -59,9 +59,19 @@ class Line:
 
 
 class Preparing:
-    """One kernel, while it and all kernels within are compiled."""
+    """One kernel, while it and all kernels within are compiled.
+
+    Attributes
+    ----------
+    on_first : callable or None
+        Called once, when the next kernel is about to be compiled.
+    beside : str
+        What another process prepares meanwhile.
+    """
 
     def __init__(self) -> None:
+        self.on_first: Callable[[], None] | None = None
+        self.beside = ""
         self._name = ""
         self._total = 0
         self._done: set[int] = set()
@@ -77,6 +87,9 @@ class Preparing:
         """Say how far the kernel ``name`` is, of ``total`` kernels, until it is done."""
         self._name, self._total, self._since = name, total, time.monotonic()
         self._done.clear()
+        start, self.on_first = self.on_first, None
+        if start is not None:
+            start()
         try:
             yield
         finally:
@@ -97,7 +110,10 @@ class Preparing:
     def _say(self, what: str) -> None:
         spent_s = self._spent_s + time.monotonic() - self._since
         if _tellers and spent_s > WORTH_A_LINE_S:
-            _tellers[-1](f"compiling {self._name}, once on this machine: {what}, {spent_s:.0f} s")
+            beside = f"; meanwhile {self.beside}" if self.beside else ""
+            _tellers[-1](
+                f"compiling {self._name}, once on this machine: {what}, {spent_s:.0f} s{beside}"
+            )
 
 
 preparing = Preparing()

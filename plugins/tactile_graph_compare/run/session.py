@@ -10,6 +10,7 @@ import numpy as np
 
 from tactile_graph import Result
 from tactile_graph.inspect import Runner, check_frame
+from tactile_graph.plugins.registry import selected
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.logs import MergedLog, VariantLog
@@ -79,20 +80,23 @@ class Session:
     def warm_up(self, frames: Sequence[Frame]) -> None:
         """Run some frames through a copy, so that what is compiled or made once is not timed.
 
-        Sinks would write twice: with one among the nodes, nothing is run.
+        While kernels of the first variant are compiled, those of the others are too. Sinks would
+        write twice: with one among the nodes, nothing is run.
         """
-        from tactile_graph.compiled import warm_up
+        from tactile_graph.compiled import prepared_beside, warm_up
 
         warm_up()
         if any(i.node is not None and i.node.is_sink for i in self.plan.nodes):
             return
         copy = self.merged.pipeline.runner(seed=self.seed)
+        _, *others = dict.fromkeys(p.pipeline.file for p in self.prepared)
         until = time.perf_counter() + WARM_S
-        for frame in frames[:WARM_FRAMES]:
-            self._check(frame)
-            copy(frame)
-            if time.perf_counter() > until:
-                break
+        with prepared_beside(others, selected()):
+            for frame in frames[:WARM_FRAMES]:
+                self._check(frame)
+                copy(frame)
+                if time.perf_counter() > until:
+                    break
 
     def warmed(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         """Yield the frames, having warmed up with the first of them."""
