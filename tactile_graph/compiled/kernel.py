@@ -2,17 +2,19 @@
 
 Most kernels are compiled before their first answer. Kernels of short pipelines, which plain code
 answers sooner than the compiler can even be imported, are plain at first and compiled once
-there is enough to do. Plain loops are as silent as machine code: no warning of an overflow or of
-an infinity's difference. What counts is the calls and the elements handed over, never the clock, so
-that a replay is answered by the same code. The environment variable ``TACTILE_GRAPH_KERNELS``
+there is enough to do. Plain loops answer as machine code does: without a warning of an overflow or
+of an infinity's difference, and with Python's own numbers. What counts is the calls and the
+elements handed over, never the clock, so that a replay is answered by the same code. The
+environment variable ``TACTILE_GRAPH_KERNELS``
 (``auto``, ``plain``, ``compiled``) decides otherwise.
 """
 
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar, cast
 
 import numpy as np
 
@@ -28,6 +30,14 @@ at most; loops that take much longer have a reference beside them, see `compiled
 P = ParamSpec("P")
 R = TypeVar("R")
 
+
+class _Running(threading.local):
+    """Whether this thread is within a kernel's plain loops."""
+
+    plain_loops = False
+
+
+_running = _Running()
 _kernels: list[Kernel[Any, Any]] = []
 _warm = False
 
@@ -108,8 +118,14 @@ class Kernel(Generic[P, R]):
     def _plain(self, *args: Any) -> R:
         if self.reference is not self.loops:
             return self.reference(*args)  # type: ignore[call-arg]
-        with np.errstate(all="ignore"):
+        if _running.plain_loops:  # within others': a number's kind decides what dividing by 0 does
             return self.loops(*args)
+        _running.plain_loops = True
+        try:
+            with np.errstate(all="ignore"):
+                return cast(R, _unboxed(self.loops(*args)))
+        finally:
+            _running.plain_loops = False
 
     def _first_compiled(self, *args: Any) -> R:
         self.call = self.compiled
@@ -132,6 +148,15 @@ class Kernel(Generic[P, R]):
 
             self._callee = Callee(self.loops)
         return self._callee.numba_type()
+
+
+def _unboxed(answer: object) -> object:
+    """Return an answer of plain loops with Python's own numbers, as machine code gives them."""
+    if isinstance(answer, np.generic):
+        return answer.item()
+    if type(answer) is tuple:
+        return tuple(map(_unboxed, answer))
+    return answer
 
 
 def compiled_as_is(loops: Callable[P, R]) -> Kernel[P, R]:

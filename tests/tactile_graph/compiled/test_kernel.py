@@ -119,3 +119,32 @@ def test_a_kernel_looks_like_its_reference() -> None:
 
     assert (kernel.__name__, kernel.__doc__) == ("doubled", "Return twice as much.")
     assert kernel(2.0) == kernel.loops(2.0) == 4.0
+
+
+@pytest.mark.parametrize("mode", ["auto", "plain"])
+def test_plain_loops_are_silent_and_answer_python_numbers(
+    monkeypatch: pytest.MonkeyPatch, mode: str
+) -> None:
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", mode)
+
+    @compiled_later
+    def kernel(x: Any) -> Any:
+        return x[0] - x[0], (x[1] + 1.0, x[1] > 0.0)
+
+    nothing, (more, above) = kernel(np.array([np.inf, 1.0]))
+    assert np.isnan(nothing)
+    assert (more, above) == (2.0, True)
+    assert [type(v) for v in (nothing, more, above)] == [float, float, bool]
+
+
+def test_plain_loops_within_others_keep_their_kind_of_numbers() -> None:
+    @compiled_later
+    def inner(x: Any) -> Any:
+        return x[0]
+
+    @compiled_later
+    def outer(x: Any) -> Any:
+        return 1.0 / inner(x)
+
+    assert outer(np.zeros(1)) == np.inf
+    assert type(inner(np.zeros(1))) is float
