@@ -44,3 +44,9 @@ def summed(values: NDArray[np.float64]) -> float:
 def spread(values: NDArray[np.float64]) -> float:
     """Return what every second value differs by from all."""
     return summed(values) - summed(values[::2])
+
+
+@compiled_as_is
+def hashed(text: str) -> int:
+    """Return the hash of a text, which is salted anew for each process."""
+    return hash(text)

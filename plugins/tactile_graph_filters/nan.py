@@ -7,17 +7,12 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
 
 
-def _all_finite_plain(values: NDArray[Any]) -> bool:
-    """Return whether no value is NaN or infinite."""
-    return bool(np.isfinite(values).all())
-
-
-@compiled_twin_of(_all_finite_plain)
+@compiled_later
 def all_finite(values):  # type: ignore[no-untyped-def]
     """Return whether no value is NaN or infinite."""
     bad = 0

@@ -15,7 +15,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 
 Array = NDArray[np.float64]
 
@@ -23,21 +23,9 @@ LEAST_ROOM = 1e-12
 """Of the conductance left above saturation: below it rounding decides, so no load is told."""
 
 
-def _conductance(load_g: Array, law: Array) -> Array:
+@compiled_later
+def conductance_kernel(load_g: Array, law: Array) -> Array:
     """Return the conductance in siemens of each element under ``load_g``; ``law`` as packed."""
-    p, log_c, log_on, bend, log_sat, headroom = law
-    out = np.zeros(load_g.shape)
-    on = load_g > 0.0
-    log_load = np.log(load_g[on])
-    below = np.minimum(log_load - log_on, 0.0)
-    over = np.maximum(log_load - log_sat, 0.0)
-    power = np.exp(log_c + p * (log_load - over) - bend * below**2)
-    out[on] = power * (1.0 - headroom * np.expm1(-p / headroom * over))
-    return out
-
-
-@compiled_twin_of(_conductance)
-def conductance_kernel(load_g: Array, law: Array) -> Array:  # noqa: D103
     p, log_c, log_on, bend, log_sat, headroom = law
     out = np.zeros(load_g.shape)
     for r in range(load_g.shape[0]):
@@ -55,29 +43,9 @@ def conductance_kernel(load_g: Array, law: Array) -> Array:  # noqa: D103
     return out
 
 
-def _load(siemens: Array, law: Array) -> Array:
+@compiled_later
+def load_kernel(siemens: Array, law: Array) -> Array:
     """Return the force in grams behind each conductance; inf where no force can reach it."""
-    p, log_c, log_on, bend, log_sat, headroom = law
-    out = np.zeros(siemens.shape)
-    on = siemens > 0.0
-    y = np.log(siemens[on]) - log_c
-    with np.errstate(over="ignore"):  # no force reaches such conductances: inf
-        excess = np.exp(np.maximum(y - p * log_sat, 0.0)) - 1.0
-        room = 1.0 - excess / headroom
-    with np.errstate(divide="ignore"):
-        saturated = log_sat - headroom / p * np.log(np.where(room > LEAST_ROOM, room, 0.0))
-    log_load = np.where(excess > 0.0, saturated, y / p)
-    if bend > 0.0:
-        drop = np.minimum(y - p * log_on, 0.0)
-        # the root that stays exact for small drops: no difference of near equals
-        turn_on = log_on + 2.0 * drop / (p + np.sqrt(p * p - 4.0 * bend * drop))
-        log_load = np.where(drop < 0.0, turn_on, log_load)
-    out[on] = np.exp(log_load)
-    return out
-
-
-@compiled_twin_of(_load)
-def load_kernel(siemens: Array, law: Array) -> Array:  # noqa: D103
     p, log_c, log_on, bend, log_sat, headroom = law
     out = np.zeros(siemens.shape)
     for r in range(siemens.shape[0]):

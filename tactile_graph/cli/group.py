@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any
 
 import click
@@ -62,11 +63,20 @@ class Group(click.Group):
         name = args[0]
         if self.get_command(ctx, name) is None and not name.startswith("-"):
             names = self.list_commands(ctx)
-            hint = did_you_mean(name, names) or f"; there are: {one_of(names, 30)}"
+            hint = did_you_mean(name, names) or self._about(name)
+            hint = hint or f"; there are: {one_of(names, 30)}"
             if registry.installed().has("pipelines", name) or name.endswith((".yaml", ".yml")):
                 hint = f"; a pipeline is run by '{ctx.info_name} run {name}'"
             ctx.fail(f"no command named {name!r}{hint}")
         return super().resolve_command(ctx, args)
+
+    def _about(self, word: str) -> str:
+        """Return which command says that it is about such a thing, or an empty text."""
+        said = {**self.built_in, **{name: self._summary(name) for name in self._offered()}}
+        about = {w.strip(".,:;()").lower(): name for name, text in said.items()
+                 for w in text.split()}  # fmt: skip
+        near = get_close_matches(word.lower(), about, n=1, cutoff=0.65)
+        return f"; {about[near[0]]!r} is about {near[0]!r}" if near else ""
 
     # -- help --------------------------------------------------------------------------------
 

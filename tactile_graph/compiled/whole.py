@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any
 
 from numba import njit
@@ -14,6 +15,7 @@ from numba.core.codegen import CodeLibrary, JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.runtime import rtsys
 
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
@@ -165,6 +167,20 @@ class EntryCache(FunctionCache):
         self._cache_file = IndexDataCacheFile(
             self.cache_path, f"{self._impl.filename_base}.whole", Reach(loops).digest
         )
+
+    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
+        """Return what is on disk for a signature, None if nothing is.
+
+        numba alone gets ready to compile first: it imports how each function is lowered, and
+        scipy's linear algebra, which takes longer than to load the code. The compiler does so
+        itself when nothing is found. Loaded code needs the symbols of numba's runtime only, and
+        of its hashing.
+        """
+        import_module("numba.cpython.hashing")
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            found: CompileResult | None = self._load_overload(sig, target_context)
+        return found
 
 
 def entry_of(loops: Callable[..., Any]) -> Callable[..., Any]:

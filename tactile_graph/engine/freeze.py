@@ -11,10 +11,13 @@ from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
 
-FROZEN: set[type] = {
-    *(bool, int, float, complex, str, bytes),
-    *(Image, Mask, Points, Circle, Ellipse, Rectangle, Polygon),
-}
+IMMUTABLE = frozenset(
+    {bool, int, float, complex, str, bytes, Mask, Points, Circle, Ellipse, Rectangle, Polygon}
+)
+"""Types of which the same object is the same value. An image's is not here: frames may come from
+a buffer that its source fills anew."""
+
+FROZEN: set[type] = {*IMMUTABLE, Image}
 """Types that need no second look: frozen by construction, or records of numbers met before."""
 
 

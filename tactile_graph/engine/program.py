@@ -11,17 +11,15 @@ from collections.abc import Callable
 from operator import itemgetter
 from typing import Any
 
-from tactile_graph.engine.freeze import FROZEN, freeze
+from tactile_graph.engine.freeze import FROZEN, IMMUTABLE, freeze
+from tactile_graph.engine.guards import guarded
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
-from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
 
 FieldOf = Callable[[Ref], Callable[[Any], Any]]
-
-IMMUTABLE = frozenset({bool, int, float, str})
 
 
 def _getter(ref: Ref) -> Callable[[Any], Any]:
@@ -97,7 +95,7 @@ def _operation(
     if node.guard is not None:
         own = _guard_fields(item, plan)
         reads = [operations[s] if s in own else itemgetter(s) for s in item.guard]
-        body = _guarded(item, node.guard, reads, body)
+        body = guarded(item, node.guard, reads, body)
     if item.constant:
         return _once(item.slot, time, body, blank)
     return body
@@ -126,11 +124,21 @@ def _unless_settled(slot: int, body: Operation) -> Operation:
 
 
 def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
-    """Settle a field of a node, and return it: a guard reads it by this."""
+    """Settle a field of a node, and return it: a guard reads it by this.
+
+    The field of the very value that the last frame gave is kept: a pad that stays empty gives one
+    mask for all.
+    """
     source, slot = item.source, item.slot
+    known: Any = item  # no value is it
+    kept: Any = None
 
     def operation(state: State) -> Any:
+        nonlocal known, kept
         value = state[source]
+        if value is known:
+            state[slot] = kept
+            return kept
         if value.__class__ in NO_VALUE:
             state[slot] = value
             return value
@@ -144,69 +152,9 @@ def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
         elif field.__class__ not in FROZEN:
             field = freeze(field)  # a property may make its array anew
         state[slot] = field
-        return field
-
-    return operation
-
-
-def _guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:
-    """Run the body where the guard holds; ``reads`` give what it is about."""
-    if len(reads) == 1:
-        return _guarded_by_one(item, guard, reads[0], body)
-    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
-
-    def operation(state: State) -> None:
-        values = tuple([read(state) for read in reads])
-        for value in values:
-            if value.__class__ in NO_VALUE:
-                state[slot] = value
-                return
-        try:
-            holds_now = holds(*values)
-        except Exception as error:
-            state[slot] = failure(name, error, values, f"when {guard.text}")
-            return
-        if holds_now:
-            body(state)
-        else:
-            state[slot] = Skipped(name, reason, values)
-
-    return operation
-
-
-def _guarded_by_one(item: Item, guard: Guard, read: Operation, body: Operation) -> Operation:
-    """Run the body where a guard about one value holds.
-
-    Frame after frame nothing lies on the pad: the verdict on the very number of the last frame
-    is kept.
-    """
-    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
-    known: Any = _nothing  # no value is it
-    verdict: Skipped | None = None
-
-    def operation(state: State) -> None:
-        nonlocal known, verdict
-        value = read(state)
-        if value is known:
-            if verdict is None:
-                body(state)
-            else:
-                state[slot] = verdict
-            return
-        if value.__class__ in NO_VALUE:
-            state[slot] = value
-            return
-        try:
-            skipped = None if holds(value) else Skipped(name, reason, (value,))
-        except Exception as error:
-            state[slot] = failure(name, error, (value,), f"when {guard.text}")
-            return
         if value.__class__ in IMMUTABLE:
-            known, verdict = value, skipped
-        if skipped is None:
-            body(state)
-        else:
-            state[slot] = skipped
+            known, kept = value, field
+        return field
 
     return operation
 

@@ -155,7 +155,7 @@ def test_5_9_is_the_same_with_the_whole_energy_as_with_the_cliques_at_the_cell()
 def test_a_difference_counts_once_and_not_where_the_line_is_on() -> None:
     problem = prepare(Model(n_levels=10, lambda_d=3.0, lambda_l=0.0), Image(np.array([[0.0, 9.0]])))
     labels = np.array([[0, 9]])
-    across, down = (np.zeros(sites.shape, np.bool_) for sites in problem.sites())
+    across, down = (np.zeros(sites.shape, np.bool_) for sites in problem.sites)
     assert energy(problem, labels, across, down) == pytest.approx(3.0 * 81.0)
     assert energy(problem, labels, across | True, down | True) == pytest.approx(0.0)
 

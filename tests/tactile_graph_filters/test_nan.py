@@ -8,15 +8,16 @@ from tactile_graph.errors import DataError
 from tactile_graph_filters.nan import all_finite, refuse_nan
 
 
-@pytest.mark.parametrize("twin", ["reference", "compiled"])
+@pytest.mark.parametrize("form", ["loops", "compiled"])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, None])
-def test_both_twins_find_what_is_no_number(twin, bad):
-    if twin == "compiled":
+def test_plain_and_compiled_find_what_is_no_number(form, bad):
+    if form == "compiled":
         pytest.importorskip("numba")
     values = np.array([[1e308, -1e308, 0.0], [5e-324, 1.0, 2.0]])
     if bad is not None:
         values[1, 2] = bad
-    assert getattr(all_finite, twin)(values) == (bad is None)
+    with np.errstate(invalid="ignore"):
+        assert getattr(all_finite, form)(values) == (bad is None)
 
 
 def test_the_first_bad_cell_is_named_and_the_others_counted():

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Le
-from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
 
 
-def _expand_plain(values: NDArray[Any], factor: int, out: NDArray[Any]) -> None:
-    """Write each cell of ``values`` into factor x factor cells of ``out``."""
-    rows, columns = values.shape
-    out.reshape(rows, factor, columns, factor)[...] = values[:, None, :, None]
-
-
-@compiled_twin_of(_expand_plain)
+@compiled_later
 def expand(values, factor, out):  # type: ignore[no-untyped-def]
     """Write each cell of ``values`` into factor x factor cells of ``out``."""
     rows, columns = values.shape

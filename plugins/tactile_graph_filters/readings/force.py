@@ -11,7 +11,7 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 from pydantic import AfterValidator
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_nan
@@ -36,14 +36,7 @@ def _rising(curve: list[tuple[float, float]] | None) -> list[tuple[float, float]
 Curve = Annotated[list[tuple[float, float]] | None, AfterValidator(_rising)]
 
 
-def _floored_plain(grams: Values, floor_g: float) -> bool:
-    """Put loads below ``floor_g`` to 0, in place; return whether no load is NaN or infinite."""
-    finite = bool(np.isfinite(grams).all())
-    grams[grams < floor_g] = 0.0
-    return finite
-
-
-@compiled_twin_of(_floored_plain)
+@compiled_later
 def floored(grams, floor_g):  # type: ignore[no-untyped-def]
     """Put loads below ``floor_g`` to 0, in place; return whether no load is NaN or infinite."""
     bad = 0

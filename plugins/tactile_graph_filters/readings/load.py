@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_unbounded
 
@@ -33,22 +33,9 @@ class Load(NamedTuple):
     y_cm: float | None
 
 
-def _measure_plain(
-    values: NDArray[np.float64], usable: NDArray[np.bool_], above: float
-) -> tuple[float, float, float, float, float]:
-    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
-    on = usable & ~(values <= above)  # NaN stays in, to be found out by its sum
-    load = values[on]
-    y, x = np.nonzero(on)
-    peak = float(load.max()) if load.size else 0.0
-    # Infinity, and sums too large, to be found out too.
-    with np.errstate(invalid="ignore", over="ignore"):
-        return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
-
-
-@compiled_twin_of(_measure_plain)
+@compiled_later
 def measure(values, usable, above):  # type: ignore[no-untyped-def]
-    """Return number, sum, maximum and moments of the usable cells above."""
+    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
     n = total = peak = moment_x = moment_y = 0.0
     for i in range(values.shape[0]):
         for j in range(values.shape[1]):

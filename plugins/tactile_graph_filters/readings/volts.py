@@ -7,29 +7,14 @@ import sys
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_nan
 
 
-def _to_volts_plain(
-    counts: NDArray[Any],
-    zero: float,
-    step: float,
-    first: float,
-    last: float,
-    out: NDArray[np.float64],
-) -> int:
-    """Write ``(counts - zero) * step`` into ``out``; return how many are within first and last."""
-    np.subtract(counts, zero, out=out)
-    np.multiply(out, step, out=out)
-    return int(np.count_nonzero((counts >= first) & (counts <= last)))
-
-
-@compiled_twin_of(_to_volts_plain)
+@compiled_later
 def to_volts(counts, zero, step, first, last, out):  # type: ignore[no-untyped-def]
     """Write ``(counts - zero) * step`` into ``out``; return how many are within first and last."""
     possible = 0

@@ -9,20 +9,14 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_nan
 
 
-def _at_least_plain(values: NDArray[Any], level: float, out: NDArray[np.bool_]) -> int:
-    """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
-    np.greater_equal(values, level, out=out)
-    return -1 if np.isnan(values).any() else int(np.count_nonzero(out))
-
-
-@compiled_twin_of(_at_least_plain)
+@compiled_later
 def at_least(values, level, out):  # type: ignore[no-untyped-def]
     """Write into ``out`` where ``values`` reach ``level``; return how many, or -1 if any is NaN."""
     count = numbers = 0
@@ -33,6 +27,17 @@ def at_least(values, level, out):  # type: ignore[no-untyped-def]
             count += row[j] >= level
             numbers += row[j] == row[j]
     return count if numbers == values.size else -1
+
+
+@compiled_later
+def any_at_least(values: NDArray[Any], level: float) -> bool:
+    """Return whether any of ``values`` reaches ``level``, or is NaN."""
+    for i in range(values.shape[0]):
+        row = values[i]
+        for j in range(values.shape[1]):
+            if not row[j] < level:
+                return True
+    return False
 
 
 def footprint(image: Image, level: float) -> Mask:
@@ -106,7 +111,26 @@ class Threshold:
             raise ValueError(f"the level must be a finite number, got {at}")
         # To exceed a float is to reach the next one.
         self._level = math.nextafter(at, math.inf) if above else at
+        self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
 
     def __call__(self, image: Image) -> Annotated[Mask, Grid.like("image")]:
         """Return the mask of the cells that are on."""
-        return footprint(image, self._level)
+        empty = self._empty
+        if (
+            empty is not None
+            and image.valid is None
+            and _on_one_grid(image, empty)
+            and not any_at_least.call(image.values, self._level)
+        ):
+            return empty  # a pad is empty for long: a look suffices, and nothing is made anew
+        mask = footprint(image, self._level)
+        self._empty = None if mask.count or image.valid is not None else mask
+        return mask
+
+
+def _on_one_grid(image: Image, mask: Mask) -> bool:
+    return (
+        image.values.shape == mask.values.shape
+        and image.pitch_cm == mask.pitch_cm
+        and image.origin_cm == mask.origin_cm
+    )

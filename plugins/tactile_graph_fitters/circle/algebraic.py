@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 
 KASA, TAUBIN, HYPER = range(3)
@@ -15,23 +15,9 @@ KASA, TAUBIN, HYPER = range(3)
 Moments = tuple[float, float, float, float, float]
 
 
-def _moments(uv: NDArray[np.float64]) -> Moments:
-    """Return the means of u u, v v, u w, v w and w w, where w is u u + v v less its mean."""
-    u, v = uv
-    z = u * u + v * v
-    w = z - z.mean()
-    return (
-        float((u * u).mean()),
-        float((v * v).mean()),
-        float((u * w).mean()),
-        float((v * w).mean()),
-        float((w * w).mean()),
-    )
-
-
-@compiled_twin_of(_moments)
+@compiled_later
 def moments(uv: NDArray[np.float64]) -> Moments:
-    """Do the same in loops."""
+    """Return the means of u u, v v, u w, v w and w w, where w is u u + v v less its mean."""
     n = uv.shape[1]
     uu = vv = 0.0
     for i in range(n):

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.algebraic import back, distance_from_circle
 from tactile_graph_fitters.circle.circle_outcome import circle_from
@@ -58,32 +58,11 @@ def fit_circle_thesis(
     return circle_from(points.xy_cm, thesis_fit, max_iterations, tolerance)
 
 
-def _iterated(
-    uv: NDArray[np.float64], max_iterations: int, tolerance: float
-) -> tuple[bool, float, float, float, int]:
-    """Return whether it settled, centre (u, v), radius and rounds made."""
-    u, v = uv
-    x = y = 0.0  # the points are centred: their centroid
-    radius = float(np.hypot(u, v).mean())
-    for rounds in range(1, max_iterations + 1):
-        du, dv = x - u, y - v
-        d = np.hypot(du, dv)
-        inverse = np.divide(1.0, d, out=np.zeros_like(d), where=d > 0.0)
-        new_x = radius * float((du * inverse).mean())  # B.8
-        new_y = radius * float((dv * inverse).mean())  # B.9
-        new_radius = float(d.mean())  # B.10
-        change = max(abs(new_x - x), abs(new_y - y), abs(new_radius - radius))
-        x, y, radius = new_x, new_y, new_radius
-        if change <= tolerance * radius:
-            return True, x, y, radius, rounds
-    return False, x, y, radius, max_iterations
-
-
-@compiled_twin_of(_iterated)
+@compiled_later
 def iterated(
     uv: NDArray[np.float64], max_iterations: int, tolerance: float
 ) -> tuple[bool, float, float, float, int]:
-    """Do the same in loops."""
+    """Return whether it settled, centre (u, v), radius and rounds made."""
     n = uv.shape[1]
     x = y = radius = 0.0
     for i in range(n):

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_circle, back
 from tactile_graph_fitters.circle.principal_axes import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
 
@@ -19,7 +19,8 @@ ROUNDS = 200
 Slopes = tuple[float, float, float, float, float, float, float, float, float, float]
 
 
-def _slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
+@compiled_later
+def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
     """Return what the sum of squares F does around the centre (a, b), per point.
 
     With the distances d of the points from the centre, the best radius is their mean, and
@@ -31,44 +32,10 @@ def _slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
         Mean of d, the best radius; F; half the gradient (u, v); half the Gauss-Newton matrix
         (uu, uv, vv); what the distances' second derivatives add to it (uu, uv, vv).
     """
-    u, v = uv
-    du, dv = u - a, v - b
-    d = np.hypot(du, dv)
-    centre = math.hypot(a, b)
-    inverse = np.divide(1.0, d, out=np.zeros_like(d), where=d > 0.0)
-    beyond = u * u + v * v - 2.0 * (a * u + b * v)  # = d**2 - centre**2
-    size = d + centre
-    off = np.divide(beyond, size, out=np.zeros_like(d), where=size > 0.0)
-    # Gradient of d, and what it differs by from that at the points' middle: so few digits of the
-    # sine itself say how a slight arc is bent.
-    cos, sin = -du * inverse, -dv * inverse
-    to_a, to_b = (a / centre, b / centre) if centre > 0.0 else (0.0, 0.0)
-    cos_off, sin_off = -(u + to_a * off) * inverse, -(v + to_b * off) * inverse
-    cos_off -= cos_off.mean()
-    sin_off -= sin_off.mean()
-    mean = off.mean()
-    off -= mean
-    bend = off * inverse
-    return (
-        float(centre + mean),
-        float((off * off).mean()),
-        float((off * cos_off).mean()),
-        float((off * sin_off).mean()),
-        float((cos_off * cos_off).mean()),
-        float((cos_off * sin_off).mean()),
-        float((sin_off * sin_off).mean()),
-        float((bend * sin * sin).mean()),
-        float((-bend * cos * sin).mean()),
-        float((bend * cos * cos).mean()),
-    )
-
-
-@compiled_twin_of(_slopes)
-def slopes(uv: NDArray[np.float64], a: float, b: float) -> Slopes:
-    """Do the same in loops; each mean is taken around a first value, which keeps its digits."""
     n = uv.shape[1]
     centre = math.sqrt(a * a + b * b)
     to_a, to_b = (a / centre, b / centre) if centre > 0.0 else (0.0, 0.0)
+    # Each mean is taken around a first value, which keeps its digits.
     s_e = s_c = s_s = s_ee = s_ec = s_es = s_cc = s_cs = s_ss = 0.0
     w_ss = w_cs = w_cc = w_all_ss = w_all_cs = w_all_cc = 0.0
     e_0 = c_0 = s_0 = 0.0

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 
 OK, TOO_FEW, NOT_FINITE, OUT_OF_RANGE, ALL_EQUAL, ONE_LINE, NOT_SETTLED = range(7)
 """What can come of a fit; words for each are in `why`."""
@@ -23,24 +23,9 @@ Frame = tuple[float, float, float, float, float]
 """Centre x, y, scale, cosine and sine: (x, y) = centre + scale * (u cos - v sin, u sin + v cos)."""
 
 
-def _bounds(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float]:
-    """Return a status, the middle (x, y) of the points, half their extent, their largest size."""
-    if len(xy) < 3:
-        return TOO_FEW, 0.0, 0.0, 0.0, 0.0
-    largest = float(np.abs(xy).max())
-    if not math.isfinite(largest):
-        return NOT_FINITE, 0.0, 0.0, 0.0, 0.0
-    if largest > LARGEST or 0.0 < largest < SMALLEST:
-        return OUT_OF_RANGE, 0.0, 0.0, 0.0, 0.0
-    low, high = xy.min(axis=0), xy.max(axis=0)
-    half = float((high - low).max()) / 2.0
-    status = OK if half > 0.0 else ALL_EQUAL
-    return status, float(low[0] + high[0]) / 2.0, float(low[1] + high[1]) / 2.0, half, largest
-
-
-@compiled_twin_of(_bounds)
+@compiled_later
 def bounds(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float]:
-    """Do the same in loops."""
+    """Return a status, the middle (x, y) of the points, half their extent, their largest size."""
     n = xy.shape[0]
     if n < 3:
         return TOO_FEW, 0.0, 0.0, 0.0, 0.0
@@ -62,25 +47,11 @@ def bounds(xy: NDArray[np.float64]) -> tuple[int, float, float, float, float]:
     return status, (x_low + x_high) / 2.0, (y_low + y_high) / 2.0, half, largest
 
 
-def _turned(
-    xy: NDArray[np.float64], x: float, y: float, half: float
-) -> tuple[NDArray[np.float64], float, float, float, float]:
-    """Return the points along (u) and across (v) their main axis; their mean; cosine and sine."""
-    p = (xy - (x, y)) / half
-    mean = p.mean(axis=0)
-    p -= mean
-    (xx, xy_), (_, yy) = p.T @ p
-    angle = 0.5 * math.atan2(2.0 * xy_, xx - yy)
-    cos, sin = math.cos(angle), math.sin(angle)
-    uv = np.vstack([p[:, 0] * cos + p[:, 1] * sin, p[:, 1] * cos - p[:, 0] * sin])
-    return uv, float(mean[0]), float(mean[1]), cos, sin
-
-
-@compiled_twin_of(_turned)
+@compiled_later
 def turned(
     xy: NDArray[np.float64], x: float, y: float, half: float
 ) -> tuple[NDArray[np.float64], float, float, float, float]:
-    """Do the same in loops."""
+    """Return the points along (u) and across (v) their main axis; their mean; cosine and sine."""
     n = xy.shape[0]
     uv = np.empty((2, n))
     mean_x = mean_y = 0.0

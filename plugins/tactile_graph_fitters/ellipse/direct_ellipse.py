@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph_fitters.circle.principal_axes import OK, Frame, into_frame
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 
@@ -35,7 +35,8 @@ def above(square: float, least: float) -> float:
     return square if square > least else 0.0
 
 
-def _quadratics(uv: Values) -> Quadratics:
+@compiled_later
+def quadratics(uv: Values) -> Quadratics:
     """Return what the direct fit needs to know of framed points.
 
     The points are scaled to a mean square of 1 along u and along v. Their z = (u u + v v) / 2,
@@ -53,33 +54,6 @@ def _quadratics(uv: Values) -> Quadratics:
     fit : tuple of float
         Mean square of z; its regression on w and r, and the mean square that this leaves.
     """
-    scales = np.sqrt((uv * uv).mean(axis=1))
-    u, v = uv / scales[:, None]
-    linear = [float((a * b).mean()) for a, b in ((u * u, u), (u * u, v), (u * v, v), (v * v, v))]
-
-    def left(q: Values) -> Values:
-        return np.asarray(q - q.mean() - (q * u).mean() * u - (q * v).mean() * v)
-
-    z, w, r = left(0.5 * (u * u + v * v)), left(0.5 * (u * u - v * v)), left(u * v)
-    turn = 0.5 * math.atan2(2.0 * float((w * r).mean()), float((w * w - r * r).mean()))
-    cos, sin = math.cos(turn), math.sin(turn)
-    w, r = w * cos + r * sin, r * cos - w * sin
-    least = NOTHING * float(((u * u + v * v) ** 2).mean())
-    ww, rr = (above(float((q * q).mean()), least) for q in (w, r))
-    on_w = float((z * w).mean()) / ww if ww > 0.0 else 0.0
-    on_r = float((z * r).mean()) / rr if rr > 0.0 else 0.0
-    off = z - on_w * w - on_r * r
-    return (
-        (float(scales[0]), float(scales[1])),
-        (linear[0], linear[1], linear[2], linear[3], float((u * v).mean())),
-        (cos, sin, ww, rr),
-        (float((z * z).mean()), on_w, on_r, above(float((off * off).mean()), least)),
-    )
-
-
-@compiled_twin_of(_quadratics)
-def quadratics(uv: Values) -> Quadratics:
-    """Do the same in loops."""
     n = uv.shape[1]
     uu = vv = 0.0
     for i in range(n):

@@ -14,12 +14,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 
 Values: TypeAlias = NDArray[np.float64]
 
 
-def _reduced(
+@compiled_later
+def reduced(
     uv: Values, ellipse: Values, cs: Values, rows: Values, normal: Values, slope: Values
 ) -> float:
     """Write Newton's equations for the ellipse alone; return the sum of squares.
@@ -45,33 +46,6 @@ def _reduced(
     float
         Infinite if some point has no distance from the ellipse that is least near its angle.
     """
-    (c, s), m = cs, ellipse[[2, 3, 3, 4]].reshape(2, 2)
-    one, none = np.ones_like(c), np.zeros_like(c)
-    on, along = m @ cs, m @ np.array([-s, c])
-    off = uv - ellipse[:2, None] - on
-    speed, inward = (along * along).sum(axis=0), (off * on).sum(axis=0)
-    if not (speed + inward > 0.0).all():
-        return math.inf
-    by_ellipse = np.array([[one, none, c, s, none], [none, one, none, c, s]])
-    by_both = np.array([[none, none, -s, c, none], [none, none, none, -s, c]])
-    shifts = np.einsum("akn,an->kn", by_ellipse, along)
-    turns = np.einsum("akn,an->kn", by_both, off)
-    rows[:5], rows[5] = shifts - turns, 1.0 / (speed + inward)
-    rows[6] = -(off * along).sum(axis=0) * rows[5]
-    normal[:] = np.einsum("akn,aln->kl", by_ellipse, by_ellipse) - (rows[:5] * rows[5]) @ rows[:5].T
-    # Along the normal; and the rest, which is all rounding at the end and nearly cancels.
-    outward = np.array([along[1], -along[0]])
-    distance = (off * outward).sum(axis=0) / speed
-    slope[:] = (shifts * inward / speed + turns) @ rows[6]
-    slope -= np.einsum("akn,an->k", by_ellipse, outward * distance)
-    return float((off * off).sum())
-
-
-@compiled_twin_of(_reduced)
-def reduced(
-    uv: Values, ellipse: Values, cs: Values, rows: Values, normal: Values, slope: Values
-) -> float:
-    """Do the same in loops."""
     n = uv.shape[1]
     total, s_c, s_s, s_cc, s_cs = _pulled(uv, ellipse, cs, rows, slope)
     for k in range(5):

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse, ellipse_of
@@ -100,15 +100,9 @@ def _why(x: Values, y: Values, status: int, rounds: int) -> str:
     return f"{points} on one line through the centre: no ellipse fits"
 
 
-def _radial_error(r: Values, cos2: Values, sin2: Values, a: float, b: float, off: Values) -> float:
-    """Return the sum of squared radial distances (D.9) of points r (cos, sin) into ``off``."""
-    off[:] = r - 1.0 / np.sqrt(cos2 / (a * a) + sin2 / (b * b))
-    return float(off @ off)
-
-
-@compiled_twin_of(_radial_error)
+@compiled_later
 def radial_error(r: Values, cos2: Values, sin2: Values, a: float, b: float, off: Values) -> float:
-    """Do the same in loops: one that becomes vector code, and one that adds up."""
+    """Return the sum of squared radial distances (D.9) of points r (cos, sin) into ``off``."""
     ia, ib = 1.0 / (a * a), 1.0 / (b * b)
     for i in range(r.shape[0]):
         off[i] = r[i] - 1.0 / math.sqrt(cos2[i] * ia + sin2[i] * ib)

@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask, Points
 from tactile_graph.wires.shapes import printed_angle_deg
@@ -170,15 +170,9 @@ def angle_std_rad(length_cm: float, breadth_cm: float, pitch_cm: float) -> float
     return min(spread / difference, ANY_ANGLE_STD_RAD) if difference > 0.0 else ANY_ANGLE_STD_RAD
 
 
-def _mask_scatter(values: NDArray[np.bool_]) -> Sums:
-    """Return number, mean (column, row) and scatter of the cells that are on."""
-    rows, columns = np.nonzero(values)
-    return _points_scatter(np.column_stack([columns, rows]).astype(np.float64))
-
-
-@compiled_twin_of(_mask_scatter)
+@compiled_later
 def mask_scatter(values: NDArray[np.bool_]) -> Sums:
-    """Do the same in loops; sums of whole numbers, so exact."""
+    """Return number, mean (column, row) and scatter of the cells that are on."""
     n = sx = sy = sxx = sxy = syy = 0
     for i in range(values.shape[0]):
         row = values[i]
@@ -206,21 +200,9 @@ def mask_scatter(values: NDArray[np.bool_]) -> Sums:
     )
 
 
-def _points_scatter(xy: NDArray[np.float64]) -> Sums:
-    """Return number, mean (x, y) and scatter (xx, xy, yy) of points of shape (N, 2)."""
-    n = len(xy)
-    if n == 0:
-        return 0, 0.0, 0.0, 0.0, 0.0, 0.0
-    with np.errstate(invalid="ignore", over="ignore"):  # found out by what comes out
-        middle = xy[0] + (xy - xy[0]).mean(axis=0)
-        dx, dy = (xy - middle).T
-        xx, xy_, yy = float((dx * dx).sum()), float((dx * dy).sum()), float((dy * dy).sum())
-    return n, float(middle[0]), float(middle[1]), xx, xy_, yy
-
-
-@compiled_twin_of(_points_scatter)
+@compiled_later
 def points_scatter(xy: NDArray[np.float64]) -> Sums:
-    """Do the same in loops."""
+    """Return number, mean (x, y) and scatter (xx, xy, yy) of points of shape (N, 2)."""
     n = xy.shape[0]
     if n == 0:
         return 0, 0.0, 0.0, 0.0, 0.0, 0.0

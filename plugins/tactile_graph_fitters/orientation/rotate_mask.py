@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask
 from tactile_graph_fitters.orientation.orientation import Orientation
@@ -60,30 +60,14 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
 Rotated = tuple[NDArray[np.bool_], int, int]
 
 
-def _rotated(
+@compiled_later
+def rotated(
     values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
 ) -> Rotated:
     """Return the turned cells and the place of the first, in cells right and down of the centre.
 
     ``column`` and ``row`` are those of the centre, ``aspect`` the pitch along x over that along y.
     """
-    rows, columns = np.nonzero(values)
-    if len(rows) == 0:
-        return np.zeros((0, 0), np.bool_), 0, 0
-    dx, dy = columns - column, rows - row
-    u = np.floor((dx * cos - dy * sin / aspect) + 0.5).astype(np.int64)
-    v = np.floor((dx * sin * aspect + dy * cos) + 0.5).astype(np.int64)
-    left, top = u.min(), v.min()
-    out = np.zeros((v.max() - top + 1, u.max() - left + 1), np.bool_)
-    out[v - top, u - left] = True
-    return out, int(left), int(top)
-
-
-@compiled_twin_of(_rotated)
-def rotated(
-    values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
-) -> Rotated:
-    """Do the same in loops."""
     rows, columns = values.shape
     first, last = rows, -1
     left, right, top, bottom = 1 << 60, -(1 << 60), 1 << 60, -(1 << 60)

@@ -13,7 +13,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 
 OFF, ON, UNKNOWN = range(3)
 """State of a cell: not touched, touched, not known (broken)."""
@@ -48,7 +48,8 @@ SQRT_HALF = math.sqrt(0.5)
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
 
 
-def _cost(
+@compiled_later
+def cost(
     p: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, slope: Values
 ) -> float:
     """Return the cost of a rectangle; write its gradient into ``slope``.
@@ -74,49 +75,6 @@ def _cost(
     -------
     float
     """
-    sigma, voids, full, stray, width, use = law.tolist()
-    x, y, half, other, angle = p.tolist()
-    cos, sin = math.cos(angle), math.sin(angle)
-    dx, dy = xs[None, :] - x, y - ys[:, None]
-    u, v = dx * cos + dy * sin, dy * cos - dx * sin
-    along = np.clip(0.5 + (half - np.abs(u)) / width, 0.0, 1.0)
-    across = np.clip(0.5 + (other - np.abs(v)) / width, 0.0, 1.0)
-    covered = along * across
-    known = np.log(covered, out=np.full(covered.shape, -np.inf), where=covered > 0.0)
-    safe = np.where(covered > 0.0, covered, 1.0)
-    z = (known + full) / sigma
-    tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in row] for row in z.tolist()])
-    density = DENSITY * np.exp(-0.5 * z * z)
-    if use > 0.0:
-        d = (logs - known) / sigma
-        likely = np.exp(-0.5 * d * d)
-        d_likely = likely * np.where(covered > 0.0, d, 0.0) / (sigma * safe)
-    else:
-        likely, d_likely = (1.0 - voids) * tail, (1.0 - voids) * density / (sigma * safe)
-    bare = 1.0 - (1.0 - voids) * tail
-    on, off = states == ON, states == OFF
-    total = -np.log(np.where(on, likely + stray, np.where(off, bare, 1.0))).sum()
-    d_cost = np.where(
-        on,
-        -d_likely / (likely + stray),
-        np.where(off, (1.0 - voids) * density / (sigma * safe) / bare, 0.0),
-    )
-    d_cost[covered <= 0.0] = 0.0
-    g_along = d_cost * across / width * (along < 1.0)
-    g_across = d_cost * along / width * (across < 1.0)
-    g_u, g_v = -g_along * np.sign(u), -g_across * np.sign(v)
-    slope[0] = (g_v * sin - g_u * cos).sum()
-    slope[1] = (g_u * sin + g_v * cos).sum()
-    slope[2], slope[3] = g_along.sum(), g_across.sum()
-    slope[4] = (g_u * v - g_v * u).sum()
-    return float(total)
-
-
-@compiled_twin_of(_cost)
-def cost(
-    p: Values, logs: Values, states: States, xs: Values, ys: Values, law: Values, slope: Values
-) -> float:
-    """Do the same in loops; most cells are fully covered or bare, and cheap."""
     sigma, voids, full, stray, width = law[0], law[1], law[2], law[3], law[4]
     use = law[5] > 0.0
     x, y, half, other = p[0], p[1], p[2], p[3]

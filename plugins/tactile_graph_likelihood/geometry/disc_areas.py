@@ -6,35 +6,8 @@ import math
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_pads.coverage.ellipse import ellipse_areas
-
-
-def _as_ellipse(
-    x_cm: float,
-    y_cm: float,
-    radius_cm: float,
-    pitch_cm: float,
-    element_cm: float,
-    rows: int,
-    columns: int,
-) -> Values:
-    """Return the area of the disc on each element, in cm^2, shape (rows, columns).
-
-    Parameters
-    ----------
-    x_cm, y_cm : float
-        Centre; element (0, 0) has its top left corner in the origin.
-    radius_cm : float
-    pitch_cm, element_cm : float
-        Distance of the elements and their side.
-    rows, columns : int
-        Size of the grid.
-    """
-    return ellipse_areas.reference(
-        x_cm, y_cm, radius_cm, radius_cm, 0.0, pitch_cm, element_cm, rows, columns
-    )
 
 
 @compiled_as_is
@@ -68,7 +41,7 @@ def _below(h: float, e: float, at_end: float, r: float, a: float, b: float, P: f
     return below
 
 
-@compiled_twin_of(_as_ellipse)
+@compiled_later
 def disc_areas(
     x_cm: float,
     y_cm: float,
@@ -78,7 +51,22 @@ def disc_areas(
     rows: int,
     columns: int,
 ) -> Values:
-    """Do the same in loops: one arc sine a line, and none of it for elements inside the disc."""
+    """Return the area of the disc on each element, in cm^2, shape (rows, columns).
+
+    Parameters
+    ----------
+    x_cm, y_cm : float
+        Centre; element (0, 0) has its top left corner in the origin.
+    radius_cm : float
+    pitch_cm, element_cm : float
+        Distance of the elements and their side.
+    rows, columns : int
+        Size of the grid.
+
+    Notes
+    -----
+    One arc sine a line, and none of it for elements inside the disc.
+    """
     areas = np.zeros((rows, columns))
     r, full = radius_cm, element_cm * element_cm
     if r <= 0.0:

@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is, compiled_twin_of
+from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
 
 OFF, ON, UNKNOWN = range(3)
@@ -40,7 +40,8 @@ def on_level(noise: Values) -> float:
     return math.log(peak) - math.log(noise[STRAYS] / SPAN)
 
 
-def _terms(
+@compiled_later
+def terms(
     expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
 ) -> float:
     """Return the log likelihood of a window's readings over that of a bare pad.
@@ -64,25 +65,7 @@ def _terms(
     ``ln(1 + (1 - e) (1 - v) N(u) / sigma / (e / SPAN))`` where it reads l and
     ``ln(1 - (1 - v) Phi(z))`` where it reads nothing.
     """
-    rows, columns = expected.shape
-    here = np.s_[row : row + rows, column : column + columns]
-    touched = expected > 0.0
-    mu = np.log(np.where(touched, expected, 1.0))
-    sigma, voids, least = noise[SIGMA], noise[VOIDS], noise[LEAST]
-    u = (logs[here] - mu) / sigma
-    on = np.logaddexp(0.0, on_level.call(noise) - 0.5 * u * u)
-    z = (mu - least) / sigma
-    tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in line] for line in z.tolist()])
-    off = np.log(1.0 - (1.0 - voids) * tail.reshape(z.shape))
-    found = np.where(states[here] == ON, on, np.where(states[here] == OFF, off, 0.0))
-    return float(found[touched].sum())
-
-
-@compiled_twin_of(_terms)
-def terms(
-    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
-) -> float:
-    """Do the same in loops; factors are multiplied up and their logarithm taken now and then."""
+    # Factors are multiplied up, and their logarithm taken now and then.
     sigma, present, least = noise[SIGMA], 1.0 - noise[VOIDS], noise[LEAST]
     level = on_level(noise)
     total, product = 0.0, 1.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
@@ -44,19 +44,9 @@ class Readings(NamedTuple):
         return columns * self.grid[2] - gap, rows * self.grid[2] - gap
 
 
-def _split(values: Values, least: float, logs: Values, states: States) -> int:
-    """Write logarithms and states of readings; return how many show, -1 if one is NaN."""
-    if not np.isfinite(values).all():
-        return -1
-    shows = (values > 0.0) & (values >= least)
-    logs[...] = np.log(np.where(shows, values, 1.0))
-    states[...] = np.where(shows, ON, OFF)
-    return int(shows.sum())
-
-
-@compiled_twin_of(_split)
+@compiled_later
 def split(values: Values, least: float, logs: Values, states: States) -> int:
-    """Do the same in loops."""
+    """Write logarithms and states of readings; return how many show, -1 if one is NaN."""
     count = 0
     for i in range(values.shape[0]):
         for j in range(values.shape[1]):
@@ -73,15 +63,10 @@ def split(values: Values, least: float, logs: Values, states: States) -> int:
     return count
 
 
-def _ranked(values: Values, rank: int) -> float:
-    """Return the value that so many, less one, are at least as large as."""
-    return float(np.partition(values, -rank, axis=None)[-rank])
-
-
-@compiled_twin_of(_ranked)
+@compiled_later
 def ranked(values: Values, rank: int) -> float:
-    """Do the same in loops; that most values are equal costs no time."""
-    largest = np.full(rank, -np.inf)
+    """Return the value that so many, less one, are at least as large as."""
+    largest = np.full(rank, -np.inf)  # ascending
     for i in range(values.shape[0]):
         for j in range(values.shape[1]):
             value = values[i, j]

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_mrf.descent.swap_moves import Bonds, swap_cycle
-from tactile_graph_mrf.energy.layout import by_cell
+from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.potentials import Unary
 from tactile_graph_mrf.energy.problem import Problem
-from tactile_graph_mrf.kernels import fit_for
 
 Labels = NDArray[np.int64]
 Costs = NDArray[np.float64]
@@ -84,10 +83,9 @@ class Cuts:
     def _swap(self, flat: Labels) -> None:
         """Trade labels that are there for one another, and for those beside them."""
         p = self.problem
-        kernel = fit_for(swap_cycle, flat.size * p.n_levels)
         in_field, curvature, centre, table, row = p.unary
         unary = Unary(in_field.ravel(), curvature.ravel(), centre.ravel(), table, row.ravel())
-        kernel(unary, Bonds(self.rho, p.pairwise.weights), by_cell(p), flat)
+        swap_cycle.call(unary, Bonds(self.rho, p.pairwise.weights), layout(p), flat)
 
     def _jumps(self, flat: Labels) -> Iterator[Labels]:
         size = 1 << (self.problem.n_levels - 1).bit_length()

@@ -7,12 +7,17 @@ from typing import Annotated
 from annotated_types import Ge, Gt, Le
 
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.descent.graduate import Relaxation, graduated, influence, rounded
+from tactile_graph_mrf.descent.graduate import (
+    Relaxation,
+    graduated,
+    influence,
+    rounded,
+    rounded_energies,
+)
 from tactile_graph_mrf.energy.line_field import Restored
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 from tactile_graph_mrf.energy.state import State, minimised
-from tactile_graph_mrf.energy.total import energy
 
 
 def gnc(
@@ -74,8 +79,7 @@ def gnc(
     def followed(problem: Problem) -> tuple[State, list[float]]:
         path = influence(model, n_steps, growth)
         stages = graduated(problem, path, Relaxation(n_sweeps, over))
-        states = [rounded(problem, levels) for levels in stages]
-        trace = [energy(problem, *state) for state in states]
-        return states[trace.index(min(trace))], trace
+        trace = rounded_energies(problem, stages)
+        return rounded(problem, stages[trace.index(min(trace))]), trace
 
     return minimised(prepare(model, image, region, expected), followed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.potentials import Potentials, smoothness_costs
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import State, with_lines
-from tactile_graph_mrf.kernels import fit_for
+from tactile_graph_mrf.energy.total import total
 
 CONVEX = 0.25
 """Concavity that unit data terms and four neighbours just outweigh (Blake and Zisserman 1987)."""
@@ -81,9 +82,7 @@ def graduated(
     if not problem.has_data.all():
         levels[~problem.has_data] = levels[problem.has_data].mean()
     out = np.empty((len(influences), *problem.shape))
-    kernel = fit_for(relax, out.size * relaxation.sweeps // 20)
-    visits = _visits(problem.shape, problem.model.order)
-    kernel(problem.potentials, problem.observed, influences, relaxation, visits, levels, out)
+    relax.call(problem.potentials, problem.observed, influences, relaxation, levels, out)
     return out
 
 
@@ -94,85 +93,104 @@ def rounded(problem: Problem, levels: NDArray[np.float64]) -> State:
     return with_lines(problem, labels)
 
 
-@lru_cache(maxsize=8)
-def _visits(shape: tuple[int, int], order: int) -> NDArray[np.int64]:
-    """Return the (row, column) of each cell, by colours of which no two cells are neighbours."""
-    i, j = (x.ravel() for x in np.indices(shape))
-    colour = (i + j) % 2 if order == 1 else i % 3 * 3 + j % 3
-    visits = np.column_stack([i, j])[np.argsort(colour, kind="stable")]
-    visits.setflags(write=False)
-    return visits
+def rounded_energies(problem: Problem, stages: NDArray[np.float64]) -> list[float]:
+    """Return the energy of what `rounded` makes of each of several levels."""
+    explicit = problem.model.lines == "explicit"
+    price = problem.model.line_price if explicit else math.inf
+    found: list[float] = round_all.call(problem.potentials, float(price), stages).tolist()
+    return found
+
+
+@compiled_as_is
+def round_all(potentials: Potentials, price: float, stages: Any) -> NDArray[np.float64]:
+    """Return the energy of each of ``stages``, rounded, with lines on where a step is dearer."""
+    in_field, bare = potentials.unary.in_field, potentials.pairwise.bare
+    n_stages, rows, columns = stages.shape
+    labels = np.zeros((rows, columns), np.int64)
+    across = np.zeros((max(rows - 1, 0), columns), np.bool_)
+    down = np.zeros((rows, max(columns - 1, 0)), np.bool_)
+    energies = np.empty(n_stages)
+    for k in range(n_stages):
+        for i in range(rows):
+            for j in range(columns):
+                if not in_field[i, j]:
+                    continue
+                labels[i, j] = int(np.rint(stages[k, i, j]))
+                if i > 0 and in_field[i - 1, j]:
+                    across[i - 1, j] = bare[abs(labels[i, j] - labels[i - 1, j])] > price
+                if j > 0 and in_field[i, j - 1]:
+                    down[i, j - 1] = bare[abs(labels[i, j] - labels[i, j - 1])] > price
+        energies[k] = total(potentials, labels, across, down)
+    return energies
 
 
 @compiled_as_is
 def relax(
-    potentials: Potentials, observed: Any, influences: Any, relaxation: Relaxation, visits: Any,
-    levels: Any, out: Any,
+    potentials: Potentials, observed: Any, influences: Any, relaxation: Relaxation, levels: Any,
+    out: Any,
 ) -> None:  # fmt: skip
     """Write into ``out`` the levels after the sweeps with each row of ``influences``."""
-    in_field = potentials.unary.in_field
     awake = np.empty(levels.shape, np.bool_)
     for k in range(len(influences)):
-        bends = influences[k]
-        for s in range(len(visits)):
-            i, j = visits[s, 0], visits[s, 1]
-            awake[i, j] = in_field[i, j]
+        awake[:] = potentials.unary.in_field
         for _ in range(relaxation.sweeps):
-            if not relax_once(potentials, observed, bends, relaxation, visits, levels, awake):
+            if not relax_once(potentials, observed, influences[k], relaxation, levels, awake):
                 break
-        for s in range(len(visits)):
-            i, j = visits[s, 0], visits[s, 1]
-            out[k, i, j] = levels[i, j]
+        out[k] = levels
 
 
 @compiled_as_is
 def relax_once(
-    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, visits: Any,
-    levels: Any, awake: Any,
+    potentials: Potentials, observed: Any, bends: Any, relaxation: Relaxation, levels: Any,
+    awake: Any,
 ) -> bool:  # fmt: skip
     """Move each cell that is awake; return whether any went so far as to wake those beside it.
 
     It goes ``over`` times the way to the minimum of the parabola that touches its conditional
-    energy from above (half-quadratic majorisation).
+    energy from above (half-quadratic majorisation). Cells are visited by colours, of which no two
+    are neighbours.
     """
     in_field, curvature, centre, table, row = potentials.unary
     offsets, weights = potentials.pairwise.offsets, potentials.pairwise.weights
     rows, columns = levels.shape
     top = table.shape[1] - 1
     over, still = relaxation.over, relaxation.still * top
+    nearest_only = len(weights) == 2
+    n_colours, rise, run = (2, 1, 2) if nearest_only else (9, 3, 3)
     stirred = False
-    for s in range(len(visits)):
-        i, j = visits[s, 0], visits[s, 1]
-        if not awake[i, j]:
-            continue
-        awake[i, j] = False
-        x = levels[i, j]
-        mass, goal = curvature[i, j], observed[i, j]
-        if mass > 0:
-            goal = centre[i, j]
-        if row[i, j] > 0:
-            away = abs(x - observed[i, j])
-            at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
-            slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
-            mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
-        pull = mass * (goal - x)
-        for q in range(len(weights)):
-            for sign in (1, -1):
-                m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
-                if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
-                    step = levels[m, n] - x
-                    d = min(abs(step), top)
-                    whole = int(d)
-                    low, high = bends[whole], bends[whole + 1]
-                    w = weights[q] * (low + (d - whole) * (high - low))
-                    pull += w * step
-                    mass += w
-        if mass > 0:
-            after = min(max(x + over * pull / mass, 0.0), top)
-            levels[i, j] = after
-            if abs(after - x) >= still:
-                stirred = awake[i, j] = True
-                wake_beside(in_field, offsets, i, j, awake)
+    for c in range(n_colours):
+        for i in range(0 if nearest_only else c // 3, rows, rise):
+            for j in range((i + c) % 2 if nearest_only else c % 3, columns, run):
+                if not awake[i, j]:
+                    continue
+                awake[i, j] = False
+                x = levels[i, j]
+                mass, goal = curvature[i, j], observed[i, j]
+                if mass > 0:
+                    goal = centre[i, j]
+                if row[i, j] > 0:
+                    away = abs(x - observed[i, j])
+                    at = min(max(int(np.rint(x)), 1), top - 1) if top > 1 else 0
+                    slope = table[row[i, j], min(at + 1, top)] - table[row[i, j], max(at - 1, 0)]
+                    mass += abs(0.5 * slope) / (2.0 * (1.0 if away < 1.0 else away))
+                pull = mass * (goal - x)
+                for q in range(len(weights)):
+                    for sign in (1, -1):
+                        m, n = i + sign * offsets[q, 0], j + sign * offsets[q, 1]
+                        if 0 <= m < rows and 0 <= n < columns and in_field[m, n]:
+                            step = levels[m, n] - x
+                            d = min(abs(step), top)
+                            whole = int(d)
+                            low, high = bends[whole], bends[whole + 1]
+                            w = weights[q] * (low + (d - whole) * (high - low))
+                            pull += w * step
+                            mass += w
+                if mass > 0:
+                    after = min(max(x + over * pull / mass, 0.0), top)
+                    levels[i, j] = after
+                    if abs(after - x) >= still:
+                        stirred = awake[i, j] = True
+                        wake_beside(in_field, offsets, i, j, awake)
     return stirred
 
 

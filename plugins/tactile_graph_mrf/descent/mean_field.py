@@ -17,7 +17,6 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 from tactile_graph_mrf.energy.state import State, minimised
 from tactile_graph_mrf.energy.total import energy
-from tactile_graph_mrf.kernels import fit_for
 
 MOST = 40_000_000
 """Numbers a table of distributions may hold: cells times levels."""
@@ -135,14 +134,12 @@ class MeanField:
         self.chances = Chances(np.full(shape, 1.0 / problem.n_levels), felt, across, down)
         self._visits = np.argwhere(problem.in_field), _sites(problem)
         self._reach = int(np.flatnonzero(smooth != smooth[-1]).max(initial=-1)) + 1
-        self._kernel = fit_for(mean_sweep, shape[0] * shape[1] * 100)
 
     def sweep(self, temperature: float) -> float:
         """Visit every cell and line once; return the largest change of a distribution."""
         potentials = self.problem.potentials
-        return float(
-            self._kernel(potentials, self._reach, *self._visits, temperature, self.chances)
-        )
+        fixed = potentials, self._reach, *self._visits
+        return float(mean_sweep.call(*fixed, temperature, self.chances))
 
     def likeliest(self) -> State:
         """Return the likeliest label of each cell, and the lines that are likelier on."""
@@ -194,7 +191,7 @@ def _sites(problem: Problem) -> NDArray[np.int64]:
     """Return (1 if vertical, row, column) of each line site; none unless lines are explicit."""
     if problem.model.lines != "explicit":
         return np.zeros((0, 3), np.int64)
-    across, down = (np.argwhere(sites) for sites in problem.sites())
+    across, down = (np.argwhere(sites) for sites in problem.sites)
     kinds = np.repeat([0, 1], [len(across), len(down)])
     return np.ascontiguousarray(np.column_stack([kinds, np.concatenate([across, down])]))
 

@@ -21,7 +21,6 @@ from tactile_graph_mrf.energy.potentials import Potentials
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import Sites, State, sites_of
 from tactile_graph_mrf.energy.total import total
-from tactile_graph_mrf.kernels import fit_for
 
 
 @compiled_as_is
@@ -120,10 +119,8 @@ def line_modes(potentials: Potentials, costs: Any, sites: Any, state: Sites) -> 
 def settle(problem: Problem, state: State, n_sweeps: int) -> list[float]:
     """Sweep until nothing changes; write into ``state``, return the energy after each sweep."""
     tables = layout(problem)
-    visits = len(tables.cells) + len(tables.sites)
-    kernel = fit_for(take_modes, visits * n_sweeps * problem.levels_per_draw)
     sites, trace = sites_of(state), np.empty(n_sweeps)
-    done = kernel(problem.potentials, problem.gaussian, tables, sites, trace)
+    done = take_modes.call(problem.potentials, problem.gaussian, tables, sites, trace)
     state.across[...], state.down[...] = sites.across, sites.down
     found: list[float] = trace[:done].tolist()
     return found

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
-from tactile_graph_mrf.energy.layout import Neighbours, by_cell
+from tactile_graph_mrf.energy.layout import Layout, Neighbours, by_cell, layout
 from tactile_graph_mrf.energy.potentials import Potentials
 from tactile_graph_mrf.energy.problem import Problem
-from tactile_graph_mrf.energy.state import State, sites_of
-from tactile_graph_mrf.kernels import fit_for
+from tactile_graph_mrf.energy.state import Sites, State, sites_of
 
 FORBIDDING = 1e30
+SHIFTS = 20
+"""Times at most that cells are raised and lowered."""
 
 
 @compiled_as_is
@@ -62,25 +63,44 @@ def move_graph(
 
 
 @compiled_as_is
-def shift_all(
-    potentials: Potentials, around: Neighbours, lines: Any, rounds: int, labels: Any, target: Any
+def take_best(
+    potentials: Potentials, around: Neighbours, lines: Any, labels: Any, target: Any, graph: Graph
 ) -> int:
+    """Give those cells their label of ``target`` that together lower the energy most; count them.
+
+    ``graph`` is overwritten.
+    """
+    move_graph(potentials, around, lines, labels, target, graph)
+    goes = np.zeros(len(labels), np.bool_)
+    changed = cut_grid(graph, goes)
+    for i in range(len(labels) if changed else 0):
+        if goes[i]:
+            labels[i] = target[i]
+    return changed
+
+
+@compiled_as_is
+def graph_of(around: Neighbours) -> Graph:
+    """Return a graph of all cells, to be filled in."""
+    near = around.near
+    return Graph(near, np.zeros(near.shape), np.zeros(len(near)), np.zeros(len(near)))
+
+
+@compiled_as_is
+def shift_regions(potentials: Potentials, layout: Layout, state: Sites) -> int:
     """Raise, then lower the best set of cells by one level until neither pays; count changes.
 
-    Without ``rounds`` the best set goes to ``target`` instead, once.
+    Every move is the best of all sets of cells, found by a minimum cut (a jump move, Kolmogorov
+    and Shioura 2009, DOI 10.1016/j.disopt.2009.04.006).
     """
-    size = len(labels)
-    graph = Graph(around.near, np.zeros(around.near.shape), np.zeros(size), np.zeros(size))
-    goes = np.zeros(size, np.bool_)
+    labels = state.labels.reshape(-1)
+    around = by_cell(layout, len(labels))
+    graph = graph_of(around)
     changed, idle = 0, 0
-    for turn in range(max(2 * rounds, 1)):
-        for i in range(size if rounds else 0):
-            target[i] = labels[i] + 1 - 2 * (turn % 2)
-        move_graph(potentials, around, lines, labels, target, graph)
-        count = cut_grid(graph, goes)
-        for i in range(size if count else 0):
-            if goes[i]:
-                labels[i] = target[i]
+    for turn in range(2 * SHIFTS):
+        count = take_best(
+            potentials, around, state.lines, labels, labels + 1 - 2 * (turn % 2), graph
+        )
         changed += count
         idle = 0 if count else idle + 1
         if idle == 2:
@@ -88,14 +108,20 @@ def shift_all(
     return changed
 
 
-def shift_regions(problem: Problem, state: State, rounds: int = 20) -> int:
-    """Raise or lower regions by one level where that lowers the energy; return cells changed.
+@compiled_as_is
+def fuse_all(potentials: Potentials, layout: Layout, state: Sites, target: Any) -> int:
+    """Take the best set of the labels of ``target``, a flat array; count changes."""
+    labels = state.labels.reshape(-1)
+    around = by_cell(layout, len(labels))
+    return take_best(potentials, around, state.lines, labels, target, graph_of(around))
 
-    Every move is the best of all sets of cells, found by a minimum cut (a jump move, Kolmogorov
-    and Shioura 2009, DOI 10.1016/j.disopt.2009.04.006). With explicit lines of order 2 or 3 it
-    does nothing: which pairs they cut depends on several of them.
+
+def pairs_stand_alone(problem: Problem) -> bool:
+    """Return whether regions can be moved: with explicit lines of order 2 or 3 they cannot.
+
+    Which pairs are parted then depends on several lines.
     """
-    return _moved(problem, state, state.labels.copy(), rounds)
+    return problem.model.order == 1 or problem.model.lines != "explicit"
 
 
 def fuse(problem: Problem, state: State, other: NDArray[np.int64]) -> int:
@@ -103,15 +129,7 @@ def fuse(problem: Problem, state: State, other: NDArray[np.int64]) -> int:
 
     Lines stay. A fusion move (V. Lempitsky et al. 2010, DOI 10.1109/TPAMI.2009.143).
     """
-    return _moved(problem, state, other.copy(), 0)
-
-
-def _moved(problem: Problem, state: State, target: NDArray[np.int64], rounds: int) -> int:
-    if problem.model.order > 1 and problem.model.lines == "explicit":
+    if not pairs_stand_alone(problem):
         return 0
-    labels = np.ascontiguousarray(state.labels.reshape(-1))
-    kernel = fit_for(shift_all, labels.size * 20)
-    around, lines = by_cell(problem), sites_of(state).lines
-    changed = kernel(problem.potentials, around, lines, rounds, labels, target.reshape(-1))
-    state.labels[...] = labels.reshape(state.labels.shape)
-    return int(changed)
+    sites, target = sites_of(state), other.reshape(-1)
+    return int(fuse_all.call(problem.potentials, layout(problem), sites, target))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
-from tactile_graph_mrf.energy.layout import Neighbours
+from tactile_graph_mrf.energy.layout import Layout, by_cell
 from tactile_graph_mrf.energy.potentials import Unary
 
 
@@ -48,13 +48,13 @@ def swap_graph(
 
 
 @compiled_as_is
-def swap_cycle(unary: Unary, bonds: Bonds, around: Neighbours, labels: Any) -> None:
+def swap_cycle(unary: Unary, bonds: Bonds, layout: Layout, labels: Any) -> None:
     """Trade every two labels that are there, and each for the next one; all cells in a row.
 
     Where one label only is there, it is offered all others.
     """
-    cells, near = around.cells, around.near
     n_levels, size = len(bonds.rho), len(labels)
+    cells, near, _ = by_cell(layout, size)
     counts = np.zeros(n_levels, np.int64)
     for s in range(len(cells)):
         counts[labels[cells[s]]] += 1

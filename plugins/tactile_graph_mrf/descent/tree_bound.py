@@ -13,7 +13,6 @@ from tactile_graph_mrf.energy.line_field import no_lines
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import State, nothing
 from tactile_graph_mrf.energy.total import energy
-from tactile_graph_mrf.kernels import fit_for
 
 MOST = 10_000_000
 """Numbers a table of messages of one direction may hold: cells times levels."""
@@ -50,16 +49,24 @@ class Grid(NamedTuple):
 
 
 @compiled_as_is
+def offer(costs: Any, price: float, out: Any) -> None:
+    """Lower each of ``out`` to ``costs`` and the price, if that is less; all begin at 0.
+
+    So the compiler sees that it may do several at once.
+    """
+    for y in range(len(out)):
+        out[y] = min(out[y], costs[y] + price)
+
+
+@compiled_as_is
 def passed(costs: Any, smooth: Any, weight: float, reach: int, out: Any) -> None:
     """Write the least over x of costs[x] + weight smooth[|x - y|] for each y; see `Grid`."""
     n = len(costs)
     out[:] = costs.min() + weight * smooth[min(reach, n - 1)]
     for d in range(min(reach, n)):
         price = weight * smooth[d]
-        for y in range(n - d):
-            out[y] = min(out[y], costs[y + d] + price)
-        for y in range(d, n):
-            out[y] = min(out[y], costs[y - d] + price)
+        offer(costs[d:], price, out[: n - d])
+        offer(costs[: n - d], price, out[d:])
 
 
 @compiled_as_is
@@ -181,13 +188,12 @@ def lower_bound(problem: Problem, n_sweeps: int = 50) -> Bounded:
     grid = Grid(problem.in_field, unary, smooth, weights, reach)
     messages: NDArray[np.float64] = np.zeros((4, *unary.shape))
     labels = np.zeros(problem.shape, np.int64)
-    sweep = fit_for(trw_sweep, unary.size)
     bound, least, best = -np.inf, np.inf, labels
     for _ in range(n_sweeps):
-        sweep(grid, True, messages, labels)
+        trw_sweep.call(grid, True, messages, labels)
         reached = energy(problem, labels)
         if reached < least:
             least, best = reached, labels.copy()
-        sweep(grid, False, messages, labels)
-    bound = float(fit_for(chain_bound, unary.size)(grid, messages))
+        trw_sweep.call(grid, False, messages, labels)
+    bound = float(chain_bound.call(grid, messages))
     return Bounded(bound, State(best, *no_lines(problem.shape)), least)

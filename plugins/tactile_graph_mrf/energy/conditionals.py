@@ -124,3 +124,13 @@ def turn(site: Any, on: bool, lines: Any, codes: Any) -> None:
         if site[end] >= 0:
             codes[site[end]] = (codes[site[end]] | bit) if on else (codes[site[end]] & ~bit)
         bit *= 2
+
+
+@compiled_as_is
+def write_codes(across: Any, down: Any, codes: Any) -> None:
+    """Write the pattern of lines on at each corner."""
+    rows, columns = down.shape[0], across.shape[1]
+    for i in range(rows - 1):
+        for j in range(columns - 1):
+            code = 1 * down[i, j] + 2 * down[i + 1, j] + 4 * across[i, j] + 8 * across[i, j + 1]
+            codes[i * (columns - 1) + j] = code

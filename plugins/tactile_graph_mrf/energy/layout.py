@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph_mrf.energy.potentials import OFFSETS
 from tactile_graph_mrf.energy.problem import Problem
 
@@ -59,13 +60,14 @@ class Neighbours(NamedTuple):
     cut: Indices
 
 
-def by_cell(problem: Problem) -> Neighbours:
-    """Return the cells of the field and who is beside each cell; -1 off the field."""
-    tables, size = layout(problem), problem.in_field.size
-    near = np.full((size, tables.near.shape[1]), -1)
-    cut = np.full((size, 4), -1)
-    near[tables.cells], cut[tables.cells] = tables.near, tables.cut
-    return Neighbours(tables.cells, near, cut)
+@compiled_as_is
+def by_cell(layout: Layout, size: int) -> Neighbours:
+    """Return the cells of the field and who is beside each of ``size`` cells; -1 off the field."""
+    cells = layout.cells
+    near, cut = np.full((size, layout.near.shape[1]), -1), np.full((size, 4), -1)
+    for s in range(len(cells)):
+        near[cells[s]], cut[cells[s]] = layout.near[s], layout.cut[s]
+    return Neighbours(cells, near, cut)
 
 
 @lru_cache(maxsize=8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,7 @@ class Problem:
     pairwise: Pairwise
     line_cliques: LineCliques
 
-    @property
+    @cached_property
     def potentials(self) -> Potentials:
         """All of its potentials, as the kernels take them."""
         return Potentials(self.unary, self.pairwise, self.line_cliques)
@@ -87,11 +88,6 @@ class Problem:
         free = model.lines != "marginal" and model.smoothness == "quadratic"
         return model.noise == "gaussian" and (free or model.lambda_d == 0.0)
 
-    @property
-    def levels_per_draw(self) -> int:
-        """How many levels a sampler looks at for one draw, about."""
-        return 1 if self.gaussian else self.n_levels
-
     def own_costs(self) -> NDArray[np.float64]:
         """Return each cell's own cost of each label, shape (rows, columns, L); 0 off the field."""
         own = self.unary
@@ -106,14 +102,15 @@ class Problem:
             labels = np.where(self.has_data, labels, self.observed[self.has_data].mean())
         return np.clip(np.rint(labels), 0, self.n_levels - 1).astype(np.int64)
 
+    @cached_property
     def sites(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Return where there are horizontal and vertical line sites: between cells in the field."""
+        """Where there are horizontal and vertical line sites: between cells in the field."""
         on = self.in_field
         return on[:-1] & on[1:], on[:, :-1] & on[:, 1:]
 
     def lines_of(self, labels: NDArray[np.int64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Return the lines that pay by themselves: a step costs more than a straight line."""
-        across, down = self.sites()
+        across, down = self.sites
         dearer = self.pairwise.bare > self.model.line_price
         return (
             across & dearer[np.abs(np.diff(labels, axis=0))],

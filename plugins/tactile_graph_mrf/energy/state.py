@@ -65,7 +65,7 @@ def random_state(problem: Problem, rng: np.random.Generator) -> State:
     labels = rng.integers(0, problem.n_levels, problem.shape)
     state = State(np.where(problem.in_field, labels, 0), *no_lines(problem.shape))
     if problem.model.lines == "explicit":
-        for lines, sites in zip(state[1:], problem.sites(), strict=True):
+        for lines, sites in zip(state[1:], problem.sites, strict=True):
             lines[...] = sites & (rng.random(lines.shape) < 0.5)
     return state
 

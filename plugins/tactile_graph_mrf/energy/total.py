@@ -11,7 +11,6 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_mrf.energy.line_field import no_lines
 from tactile_graph_mrf.energy.potentials import LineCliques, Potentials
 from tactile_graph_mrf.energy.problem import Problem
-from tactile_graph_mrf.kernels import fit_for
 
 
 def energy(
@@ -37,11 +36,11 @@ def energy(
     """
     across, down = no_lines(problem.shape)
     if problem.model.lines != "marginal":
-        sites_h, sites_v = problem.sites()
+        sites_h, sites_v = problem.sites
         across = across if lines_h is None else np.ascontiguousarray(lines_h & sites_h)
         down = down if lines_v is None else np.ascontiguousarray(lines_v & sites_v)
-    kernel = fit_for(total, 8 * labels.size)
-    return float(kernel(problem.potentials, np.ascontiguousarray(labels, np.int64), across, down))
+    labels = np.ascontiguousarray(labels, np.int64)
+    return float(total.call(problem.potentials, labels, across, down))
 
 
 @compiled_as_is

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.problem import Problem
 from tactile_graph_mrf.energy.state import State, sites_of
-from tactile_graph_mrf.kernels import fit_for
 from tactile_graph_mrf.samplers.sweep import anneal
 
 Schedule = Literal["geometric", "logarithmic", "linear"]
@@ -58,7 +57,6 @@ def annealed(
     """
     tables = layout(problem)
     visits = len(tables.cells) + len(tables.sites)
-    kernel = fit_for(anneal, visits * len(betas) * problem.levels_per_draw)
     per_block = max(1, BLOCK // max(visits, 1))
     sites = sites_of(state)
     trace: list[float] = []
@@ -67,7 +65,7 @@ def annealed(
         uniforms = rng.random((len(block), visits))
         energies = np.empty(len(block))
         fixed = problem.potentials, problem.gaussian, tables
-        done, frozen = kernel(*fixed, block, uniforms, sites, energies)
+        done, frozen = anneal.call(*fixed, block, uniforms, sites, energies)
         trace += energies[:done].tolist()
         if frozen:
             break

@@ -14,7 +14,6 @@ from tactile_graph_mrf.energy.line_field import LineField, no_lines
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 from tactile_graph_mrf.energy.state import State, observed_state, sites_of
-from tactile_graph_mrf.kernels import fit_for
 from tactile_graph_mrf.samplers.annealing import BLOCK, annealed
 from tactile_graph_mrf.samplers.effective_size import effective_size
 from tactile_graph_mrf.samplers.sample import Sums, sample
@@ -127,7 +126,6 @@ def _sampled(
 ) -> Posterior:
     tables = layout(problem)
     visits = len(tables.cells) + len(tables.sites)
-    kernel = fit_for(sample, visits * n_samples * n_between * problem.levels_per_draw)
     sites = sites_of(state)
     sums = Sums(
         problem.start(),
@@ -142,7 +140,7 @@ def _sampled(
         part = seen[start : start + per_block]
         uniforms = rng.random((len(part), n_between, visits))
         fixed = problem.potentials, problem.gaussian, tables
-        kernel(*fixed, beta, uniforms, sites, sums, part)
+        sample.call(*fixed, beta, uniforms, sites, sums, part)
     return _summed(problem, sums, seen)
 
 

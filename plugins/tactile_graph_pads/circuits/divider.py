@@ -14,20 +14,16 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later
 from tactile_graph_pads.circuits.driven import driven_inverse, driven_ratio
 from tactile_graph_pads.circuits.inverse import Inverse
 
 Array = NDArray[np.float64]
 
 
-def _ratio(siemens: Array, reference_s: float, gain: float) -> Array:
+@compiled_later
+def ratio_kernel(siemens: Array, reference_s: float, gain: float) -> Array:
     """Return the measured share of the supply, ``gain g_ij / (G_ref + sum_k g_kj)``."""
-    return np.asarray(gain * siemens / (reference_s + siemens.sum(axis=0)))
-
-
-@compiled_twin_of(_ratio)
-def ratio_kernel(siemens: Array, reference_s: float, gain: float) -> Array:  # noqa: D103
     rows, columns = siemens.shape
     sums = np.full(columns, reference_s)
     for r in range(rows):
@@ -40,21 +36,11 @@ def ratio_kernel(siemens: Array, reference_s: float, gain: float) -> Array:  # n
     return out
 
 
-def _siemens(ratio: Array, reference_s: float, gain: float) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the conductances and which columns are possible, the exact inverse of `_ratio`."""
-    with np.errstate(over="ignore"):  # no supply gives such sums: not possible
-        true = ratio / gain
-        left = 1.0 - true.sum(axis=0)
-    possible = (left > 0.0) & (left < np.inf)
-    valid = np.broadcast_to(possible, ratio.shape).copy()
-    siemens = np.where(valid, true * (reference_s / np.where(possible, left, 1.0)), 0.0)
-    return siemens, valid
-
-
-@compiled_twin_of(_siemens)
-def siemens_kernel(  # noqa: D103
+@compiled_later
+def siemens_kernel(
     ratio: Array, reference_s: float, gain: float
 ) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the conductances and which columns are possible: `ratio_kernel` inverted."""
     rows, columns = ratio.shape
     scale = np.zeros(columns)
     for r in range(rows):

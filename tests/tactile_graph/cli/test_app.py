@@ -79,6 +79,7 @@ def test_a_plugins_command_runs_takes_the_shared_options_and_returns_no_exit_cod
         (["gone"], "tg_test_commands has no 'gone'"),
         (["number"], "command 'number' of plugin 'hand' (package hand-made) is no click command"),
         (["helo"], "no command named 'helo'; did you mean 'hello'?"),
+        (["drawing"], "no command named 'drawing'; 'graph' is about 'draw'"),
         (["xyzzy"], "no command named 'xyzzy'; there are: check, explain, gone,"),
         (["--plugins", "hnad", "run"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),
         (["run", "--plugins", "hnad"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),

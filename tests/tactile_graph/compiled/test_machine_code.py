@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +74,29 @@ def test_the_next_run_loads_what_was_kept_and_can_raise(fresh: Any) -> None:
     assert (sum(again.stats.cache_hits.values()), len(again.stats.cache_misses)) == (1, 0)
     with pytest.raises(ValueError, match="too many values"):
         again(np.ones(helpers_kernels.MOST + 2))
+
+
+def test_what_was_kept_runs_without_the_compiler(tmp_path: Path) -> None:
+    """A process of its own: this one has loaded the compiler long since."""
+    code = """
+import sys
+import numpy as np
+from helpers_kernels import doubled, hashed
+print(hashed.compiled("pad") == hash("pad"), doubled.compiled(np.arange(5.0), 3))
+print("numba.np.arraymath" in sys.modules)
+"""
+    environment = {
+        **os.environ, "NUMBA_CACHE_DIR": str(tmp_path),
+        "PYTHONPATH": str(Path(helpers_kernels.__file__).parent),
+    }  # fmt: skip
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", code], env=environment, capture_output=True, text=True,
+            check=True,
+        ).stdout.split()
+        for _ in range(2)
+    ]  # fmt: skip
+    assert said == [["True", "6.0", "True"], ["True", "6.0", "False"]]
 
 
 def test_a_change_beneath_outdates_what_was_kept(

@@ -5,7 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_graph_classifiers.distances.nearest import nearest, nearest_normalised, two_smallest
+import references_classifiers as references
+from references_classifiers import two_smallest
+from tactile_graph_classifiers.distances.nearest import nearest, nearest_normalised
 
 
 def test_the_two_smallest_are_found_with_ties_to_the_first():
@@ -43,7 +45,7 @@ def test_a_feature_in_which_all_objects_agree_has_no_share():
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 6), st.integers(1, 4))
-def test_the_twins_agree(seed, n_objects, n_features):
+def test_loops_find_what_the_references_do(seed, n_objects, n_features):
     pytest.importorskip("numba")
     rng = np.random.default_rng(seed)
     # whole numbers make ties likely
@@ -53,9 +55,11 @@ def test_the_twins_agree(seed, n_objects, n_features):
     precisions = np.ascontiguousarray(roots @ roots.transpose(0, 2, 1)) + np.eye(n_features)
     scales = rng.integers(1, 3, means.shape).astype(float)
     weights = rng.integers(1, 3, n_features).astype(float)
-    for kernel, more in ((nearest, (precisions,)), (nearest_normalised, (scales, weights))):
-        plain = kernel.reference(reading, means, *more)
-        fast = kernel.compiled(reading, means, *more)
-        assert fast[2:] == pytest.approx(plain[2:])
-        if kernel is nearest:  # sums of whole numbers are exact, so ties are too
-            assert fast[:2] == plain[:2]
+    wanted = references.nearest(reading, means, precisions)
+    for which in (nearest.loops, nearest.compiled):
+        got = which(reading, means, precisions)
+        assert got == (*wanted[:2], *map(pytest.approx, wanted[2:]))
+        # Sums of whole numbers are exact, so ties are too.
+    wanted = references.nearest_normalised(reading, means, scales, weights)
+    for which in (nearest_normalised.loops, nearest_normalised.compiled):
+        assert which(reading, means, scales, weights)[2:] == pytest.approx(wanted[2:])

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+import references_filters as references
 from helpers_filters import ORIGIN, image_of, random_mask
 from tactile_graph_filters.images.subdivide_image import subdivide_image
 from tactile_graph_filters.morphology.subdivide import expand, subdivide
@@ -34,10 +35,11 @@ def test_an_image_without_invalid_cells_has_none_afterwards():
 
 
 @pytest.mark.parametrize("factor", [1, 2, 5])
-def test_the_twins_agree(factor):
+def test_it_cuts_as_the_reference_does(factor):
     pytest.importorskip("numba")
     values = random_mask(1, (4, 7)).values
-    outs = np.empty((2, 4 * factor, 7 * factor), bool)
-    expand.reference(values, factor, outs[0])
-    expand.compiled(values, factor, outs[1])
+    outs = np.empty((3, 4 * factor, 7 * factor), bool)
+    for which, out in zip((references.expand, expand.loops, expand.compiled), outs, strict=True):
+        which(values, factor, out)
     assert np.array_equal(outs[0], outs[1])
+    assert np.array_equal(outs[0], outs[2])

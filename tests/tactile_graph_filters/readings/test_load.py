@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
 from tactile_graph.errors import DataError
 from tactile_graph_filters.readings.load import LoadOf, measure
@@ -54,10 +55,10 @@ def test_what_is_no_number_is_refused(bad):
 
 
 @pytest.mark.parametrize("above", [0.0, -5.0, 0.7, 9.0])
-def test_the_twins_agree(above):
+def test_it_measures_as_the_reference_does(above):
     pytest.importorskip("numba")
     values = np.random.default_rng(0).normal(size=(16, 12))
     usable = random_mask(0, (16, 12)).values
-    assert measure.reference(values, usable, above) == pytest.approx(
-        measure.compiled(values, usable, above)
-    )
+    expected = pytest.approx(references.measure(values, usable, above))
+    assert measure.loops(values, usable, above) == expected
+    assert measure.compiled(values, usable, above) == expected

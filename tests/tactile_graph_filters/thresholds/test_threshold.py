@@ -6,10 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+import references_filters as references
 from helpers_filters import image_of, same_grid
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
-from tactile_graph_filters.thresholds.threshold import Threshold, at_least
+from tactile_graph_filters.thresholds.threshold import Threshold, any_at_least, at_least
 
 VALUES = [[0.0, 0.01, 0.02], [-1.0, 5.0, 0.009]]
 
@@ -68,6 +69,46 @@ def test_infinity_is_above_every_level():
     ]
 
 
+def test_a_pad_that_stays_empty_gives_the_same_mask_until_something_lies_there_again():
+    step = Threshold(level=1.0)
+    empty = [step(image_of(np.full((3, 4), 0.1 * i))) for i in range(3)]
+    assert empty[0] is empty[1] is empty[2]
+    assert empty[0].count == 0
+    assert step(image_of(np.eye(3, 4))).values.tolist() == np.eye(3, 4, dtype=bool).tolist()
+    assert step(image_of(np.zeros((3, 4)))).count == 0
+
+
+def test_an_empty_mask_lies_on_the_grid_of_its_own_image():
+    step = Threshold(level=1.0)
+    for image in (
+        Image(np.zeros((3, 4))),
+        Image(np.zeros((4, 3))),
+        Image(np.zeros((4, 3)), (0.5, 1.0)),
+        Image(np.zeros((4, 3)), (0.5, 1.0), (2.0, 0.0)),
+    ):
+        assert same_grid(step(image), image)
+
+
+def test_what_comes_after_an_empty_pad_is_looked_at_in_full():
+    step = Threshold(level=1.0)
+    step(Image(np.zeros((2, 2))))
+    valid = np.array([[True, True], [True, False]])
+    assert step(Image(np.array([[0.0, 2.0], [0.0, 2.0]]), valid=valid)).count == 1
+    step(Image(np.zeros((2, 2))))
+    with pytest.raises(DataError, match="row 0, column 1: must be a number, got nan"):
+        step(Image(np.array([[0.0, math.nan], [0.0, 0.0]])))
+    step(Image(np.zeros((2, 2))))
+    with pytest.raises(Degenerate):
+        step(Image(np.zeros((2, 2)), valid=np.zeros((2, 2), bool)))
+
+
+@pytest.mark.parametrize("number", [0.5, 1.0, math.inf, math.nan, -math.inf])
+def test_any_at_least_plain_and_compiled(number):
+    values = np.array([[0.0, 0.5], [number, 0.0]])
+    expected = not number < 1.0
+    assert any_at_least.loops(values, 1.0) == any_at_least.compiled(values, 1.0) == expected
+
+
 @pytest.mark.parametrize(
     ("given_levels", "got"), [({}, "neither"), ({"level_v": 1.0, "level": 1.0}, "both")]
 )
@@ -82,9 +123,11 @@ def test_the_level_must_be_finite():
 
 
 @given(arrays(np.float64, (5, 7)), st.floats(allow_nan=False))
-def test_the_twins_agree(values, level):
+def test_it_compares_as_the_reference_does(values, level):
     pytest.importorskip("numba")
-    outs = np.empty((2, 5, 7), bool)
-    counts = [at_least.reference(values, level, outs[0]), at_least.compiled(values, level, outs[1])]
-    assert counts[0] == counts[1] == (-1 if np.isnan(values).any() else np.sum(values >= level))
+    outs = np.empty((3, 5, 7), bool)
+    kernels = (references.at_least, at_least.loops, at_least.compiled)
+    counts = {which(values, level, out) for which, out in zip(kernels, outs, strict=True)}
+    assert counts == {-1 if np.isnan(values).any() else int(np.sum(values >= level))}
     assert np.array_equal(outs[0], outs[1])
+    assert np.array_equal(outs[0], outs[2])

@@ -1,4 +1,4 @@
-"""The direct ellipse in one unknown: beside the eigenproblem it solves, and plain beside twin."""
+"""The direct ellipse in one unknown: beside the eigenproblem it solves, and plain by compiled."""
 
 import math
 
@@ -15,11 +15,11 @@ from tactile_graph_fitters.ellipse.direct_ellipse import (
     FLAT,
     FLATTEST,
     OTHER_CONIC,
-    _quadratics,
     direct_fit,
     direct_shape,
     ellipse_frame,
     least_bend,
+    quadratics,
 )
 from tactile_graph_fitters.ellipse.fit_ellipse import geometric_fit
 from tactile_graph_fitters.ellipse.fit_ellipse_direct import fit_ellipse_direct
@@ -81,10 +81,11 @@ def test_the_nearest_ellipse_plain_and_compiled(kind, n):
             assert one[1:5] == pytest.approx(two[1:5], rel=1e-9, abs=1e-9 * one[3])
 
 
-def test_what_it_asks_of_the_points_is_what_a_regression_says():
+@pytest.mark.parametrize("form", ["loops", "compiled"])
+def test_what_it_asks_of_the_points_is_what_a_regression_says(form):
     rng = np.random.default_rng(3)
     uv = into_frame.reference(oval(rng, 30, noise=0.3))[1]
-    scales, _, (cos, sin, ww, rr), (zz, on_w, on_r, off) = _quadratics(uv)
+    scales, _, (cos, sin, ww, rr), (zz, on_w, on_r, off) = getattr(quadratics, form)(uv)
     u, v = uv / np.array(scales)[:, None]
     linear = np.stack([np.ones_like(u), u, v], axis=1)
     z, w, r = (

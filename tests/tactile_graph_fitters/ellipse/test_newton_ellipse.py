@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
+import references_fitters as references
 from helpers_ellipses import drawn, oval
 from tactile_graph_fitters.ellipse import fit_ellipse
 from tactile_graph_fitters.ellipse.direct_ellipse import direct_shape, ellipse_frame
-from tactile_graph_fitters.ellipse.ellipse_equations import _reduced, reduced
+from tactile_graph_fitters.ellipse.ellipse_equations import reduced
 from tactile_graph_fitters.ellipse.fit_ellipse import _lengthened, refined
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 from tactile_graph_fitters.ellipse.newton_ellipse import _as_axes, as_matrix, newton, solved
@@ -40,7 +41,7 @@ def at_nearest(uv, ellipse):
     return np.ascontiguousarray(np.array(found).T)
 
 
-def equations(uv, ellipse, cs, of=_reduced):
+def equations(uv, ellipse, cs, of=references.reduced):
     rows, normal, slope = np.empty((7, uv.shape[1])), np.empty((5, 5)), np.empty(5)
     total = of(uv, np.asarray(ellipse), cs, rows, normal, slope)
     return total, rows, np.tril(normal), slope
@@ -92,11 +93,13 @@ def test_equations_and_their_twin_agree_on_thousands_of_point_sets(kind):
         )
         cs = uv + 0.01
         cs /= np.hypot(*cs)
-        one, two = (equations(uv, ellipse, cs, of) for of in (reduced.reference, reduced.compiled))
-        assert one[0] == pytest.approx(two[0], rel=1e-12)
-        if one[0] < np.inf:
-            for left, right in zip(one[1:], two[1:], strict=True):
-                assert left == pytest.approx(right, rel=1e-9, abs=1e-11 * np.abs(right).max())
+        one = equations(uv, ellipse, cs, references.reduced)
+        for of in (reduced.loops, reduced.compiled):
+            two = equations(uv, ellipse, cs, of)
+            assert one[0] == pytest.approx(two[0], rel=1e-12)
+            if one[0] < np.inf:
+                for left, right in zip(one[1:], two[1:], strict=True):
+                    assert left == pytest.approx(right, rel=1e-9, abs=1e-11 * np.abs(right).max())
 
 
 def test_symmetric_equations_are_solved_or_declined():

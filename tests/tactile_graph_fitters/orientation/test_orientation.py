@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import references_fitters as references
 from helpers_rectangles import covered, off_rad, points, rectangle_xy, seeds, some_rectangle, turned
 from tactile_graph.engine.rows import scalars
 from tactile_graph.errors import Degenerate
@@ -122,9 +123,11 @@ def test_an_empty_mask_has_no_direction():
 
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds)
-def test_twins_agree(seed):
+def test_scatters_are_those_of_the_references(seed):
     rng = np.random.default_rng(seed)
     values = Mask(rng.random((7, 9)) < 0.5).values
     xy = Points(rng.normal(5, 2, (20, 2))).xy_cm
-    assert mask_scatter.compiled(values) == pytest.approx(mask_scatter.reference(values))
-    assert points_scatter.compiled(xy) == pytest.approx(points_scatter.reference(xy))
+    for which in (mask_scatter.loops, mask_scatter.compiled):
+        assert which(values) == pytest.approx(references.mask_scatter(values))
+    for which in (points_scatter.loops, points_scatter.compiled):
+        assert which(xy) == pytest.approx(references.points_scatter(xy))

@@ -1,14 +1,21 @@
 import numpy as np
 import pytest
 
-from helpers_modes import plainly
+from helpers_modes import answered_by
 from helpers_restorers import square
-from tactile_graph.wires import Image
-from tactile_graph_mrf.descent import graduate
+from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.gnc import gnc
-from tactile_graph_mrf.descent.graduate import Relaxation, graduated, influence, relax
+from tactile_graph_mrf.descent.graduate import (
+    Relaxation,
+    graduated,
+    influence,
+    round_all,
+    rounded,
+    rounded_energies,
+)
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
+from tactile_graph_mrf.energy.total import energy
 
 
 def test_the_graduated_cost_of_a_truncated_parabola_is_blake_and_zissermans():
@@ -34,6 +41,20 @@ def test_each_graduation_is_an_energy_of_the_trace():
     restored = gnc(square(), model=Model(lines="marginal"), n_steps=7)
     assert len(restored.trace) == 7
     assert restored.energy == pytest.approx(min(restored.trace))
+
+
+@pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
+def test_the_energies_of_graduations_are_those_of_their_roundings(lines, monkeypatch):
+    valid = np.ones((6, 7), bool)
+    valid[2, 3] = False
+    values = np.random.default_rng(0).integers(0, 200, (6, 7)).astype(float)
+    region = Mask(np.arange(42).reshape(6, 7) > 8)
+    problem = prepare(Model(lines=lines), Image(values, valid=valid), region)
+    stages = graduated(problem, influence(problem.model, 6, 2.0), Relaxation(6, 1.5))
+    wanted = [energy(problem, *rounded(problem, levels)) for levels in stages]
+    for code in (round_all.reference, round_all.compiled):
+        monkeypatch.setattr(round_all, "call", code)
+        assert rounded_energies(problem, stages) == wanted
 
 
 def test_steps_stay_sharp_and_noise_goes():
@@ -109,7 +130,7 @@ def own_weight(levels, observed, table, row):
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("noise", ["gaussian", "student_t"])
-def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise, monkeypatch):
+def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise):
     pytest.importorskip("numba")
     model = Model(noise=noise, order=order, lines="marginal")
     valid = np.ones((6, 7), bool)
@@ -118,9 +139,9 @@ def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise, monkeypa
     p = prepare(model, Image(values, valid=valid))
     bends, relaxation = influence(model, 4, 2.0), Relaxation(6, 1.5, 0.1 / 199)
     wanted = relaxed_all_at_once(p, bends, relaxation)
-    for kernel in (plainly(relax), relax.compiled):
-        monkeypatch.setattr(graduate, "fit_for", lambda *_, kernel=kernel: kernel)
-        found = graduated(p, bends, relaxation)
+    for mode in ("plain", "compiled"):
+        with answered_by(mode):
+            found = graduated(p, bends, relaxation)
         np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9)
 
 

@@ -10,7 +10,7 @@ from tactile_graph.errors import DataError
 from tactile_graph_mrf.descent.graph_cuts import graph_cuts
 from tactile_graph_mrf.descent.swap_moves import Bonds, swap_cycle
 from tactile_graph_mrf.descent.trw import trw
-from tactile_graph_mrf.energy.layout import by_cell
+from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.potentials import Unary
 from tactile_graph_mrf.energy.problem import prepare
@@ -98,7 +98,7 @@ def test_a_cycle_of_swaps_is_the_same_compiled():
     ends = []
     for kernel in (plainly(swap_cycle), swap_cycle.compiled):
         labels = problem.start().ravel().copy()
-        kernel(unary, bonds, by_cell(problem), labels)
+        kernel(unary, bonds, layout(problem), labels)
         ends.append(labels)
     assert np.array_equal(*ends)
     assert energy(problem, ends[0].reshape(8, 8)) < energy(problem, problem.start())

@@ -3,19 +3,20 @@ import itertools
 import numpy as np
 import pytest
 
-from helpers_modes import plainly
+from helpers_modes import answered_by, plainly
 from helpers_restorers import square, tiny, tiny_model
 from tactile_graph.wires import Image
-from tactile_graph_mrf.descent import region_moves
 from tactile_graph_mrf.descent.box_moves import move_boxes
 from tactile_graph_mrf.descent.chain_moves import PROPOSALS, Chain, move_chains, propose
 from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
-from tactile_graph_mrf.descent.region_moves import fuse, shift_all, shift_regions
+from tactile_graph_mrf.descent.polish import polish, polish_all
+from tactile_graph_mrf.descent.region_moves import fuse, shift_regions
 from tactile_graph_mrf.descent.restore import restore
+from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.line_field import no_lines
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
-from tactile_graph_mrf.energy.state import State
+from tactile_graph_mrf.energy.state import State, sites_of
 from tactile_graph_mrf.energy.total import energy
 
 
@@ -94,7 +95,7 @@ def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(see
     )
     labels = rng.integers(0, 9, (3, 3))
     state = State(labels.copy(), *no_lines((3, 3)))
-    shift_regions(problem, state)
+    shift_regions.call(problem.potentials, layout(problem), sites_of(state))
     now = energy(problem, *state)
     for step in (1, -1):
         assert best_shift(problem, state.labels, state.labels + step) >= now - 1e-9
@@ -105,26 +106,48 @@ def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(see
 
 
 @pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
-def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, monkeypatch):
+def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines):
     pytest.importorskip("numba")
     rng = np.random.default_rng(8)
     model = Model(n_levels=30, lines=lines, lambda_l=60.0, smoothness="truncated_quadratic",
                   truncation=6.0)  # fmt: skip
     problem = prepare(model, square(20.0, 8))
-    sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites())
+    sites = (x & (rng.random(x.shape) < 0.3) for x in problem.sites)
     drawn = no_lines((8, 8)) if lines != "explicit" else sites
     start = State(rng.integers(0, 30, (8, 8)), *drawn)
     other = rng.integers(0, 30, (8, 8))
     ends = []
-    for kernel in (plainly(shift_all), shift_all.compiled):
-        monkeypatch.setattr(region_moves, "fit_for", lambda *_, kernel=kernel: kernel)
-        state = State(*(x.copy() for x in start))
-        reached = [energy(problem, *state)]
-        for move in (lambda s: fuse(problem, s, other), lambda s: shift_regions(problem, s)):
-            assert move(state) > 0
+    for mode in ("plain", "compiled"):
+        with answered_by(mode):
+            state = State(*(x.copy() for x in start))
+            reached = [energy(problem, *state)]
+            assert fuse(problem, state, other) > 0
             reached.append(energy(problem, *state))
-        assert reached[2] < reached[1] < reached[0]
-        ends.append(state)
+            assert shift_regions(problem.potentials, layout(problem), sites_of(state)) > 0
+            reached.append(energy(problem, *state))
+            assert reached[2] < reached[1] < reached[0]
+            ends.append(state)
+    assert all(np.array_equal(a, b) for a, b in zip(*ends, strict=True))
+
+
+@pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_polishing_tells_the_energy_it_ends_with_and_agrees_compiled(lines, order, monkeypatch):
+    rng = np.random.default_rng(9)
+    model = Model(n_levels=30, lines=lines, order=order, lambda_l=60.0)
+    problem = prepare(model, square(20.0, 8))
+    drawn = no_lines((8, 8))
+    if lines == "explicit":
+        drawn = tuple(x & (rng.random(x.shape) < 0.3) for x in problem.sites)
+    start = State(rng.integers(0, 30, (8, 8)), *drawn)
+    ends, traces = [], []
+    for code in (polish_all.reference, polish_all.compiled):
+        monkeypatch.setattr(polish_all, "call", code)
+        ends.append(State(*(x.copy() for x in start)))
+        traces.append(polish(problem, ends[-1], 3))
+        assert traces[-1][-1] == energy(problem, *ends[-1]) < energy(problem, *start)
+        assert all(b <= a for a, b in itertools.pairwise(traces[-1]))
+    assert traces[0] == traces[1]
     assert all(np.array_equal(a, b) for a, b in zip(*ends, strict=True))
 
 

@@ -43,7 +43,7 @@ def test_neighbours_are_mutual_and_within_the_field(order):
         for other in set(others) - {-1}:
             assert other in inside
             assert cell in of[other]
-    sites_h, sites_v = problem.sites()
+    sites_h, sites_v = problem.sites
     assert len(tables.sites) == sites_h.sum() + sites_v.sum()
 
 

@@ -17,7 +17,7 @@ NOISES = ("gaussian", "laplace", "student_t", "poisson", "outliers")
 
 
 def random_lines(problem, rng):
-    return [sites & (rng.random(sites.shape) < 0.5) for sites in problem.sites()]
+    return [sites & (rng.random(sites.shape) < 0.5) for sites in problem.sites]
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -54,7 +54,7 @@ def test_every_noise_is_counted_and_the_same_compiled(noise):
 def test_narrow_images_have_an_energy(shape):
     problem = prepare(Model(order=3), Image(np.arange(49.0)[: shape[0] * shape[1]].reshape(shape)))
     labels = np.zeros(shape, np.int64)
-    lines = [np.zeros(part.shape, np.bool_) for part in problem.sites()]
+    lines = [np.zeros(part.shape, np.bool_) for part in problem.sites]
     assert energy(problem, labels) == pytest.approx(counted(problem, labels, *lines))
 
 

@@ -1,0 +1,68 @@
+"""What kernels of tactile_graph_likelihood are held against: the same answers, vectorised."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import (
+    LEAST,
+    OFF,
+    ON,
+    SIGMA,
+    SQRT_HALF,
+    VOIDS,
+    States,
+    on_level,
+)
+from tactile_graph_pads.coverage.ellipse import ellipse_areas
+
+
+def disc_areas(
+    x_cm: float,
+    y_cm: float,
+    radius_cm: float,
+    pitch_cm: float,
+    element_cm: float,
+    rows: int,
+    columns: int,
+) -> Values:
+    """Return the area of the disc on each element, in cm^2, shape (rows, columns)."""
+    return ellipse_areas.reference(
+        x_cm, y_cm, radius_cm, radius_cm, 0.0, pitch_cm, element_cm, rows, columns
+    )
+
+
+def split(values: Values, least: float, logs: Values, states: States) -> int:
+    """Write logarithms and states of readings; return how many show, -1 if one is NaN."""
+    if not np.isfinite(values).all():
+        return -1
+    shows = (values > 0.0) & (values >= least)
+    logs[...] = np.log(np.where(shows, values, 1.0))
+    states[...] = np.where(shows, ON, OFF)
+    return int(shows.sum())
+
+
+def ranked(values: Values, rank: int) -> float:
+    """Return the value that so many, less one, are at least as large as."""
+    return float(np.partition(values, -rank, axis=None)[-rank])
+
+
+def terms(
+    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
+) -> float:
+    """Return the log likelihood of a window's readings over that of a bare pad."""
+    rows, columns = expected.shape
+    here = np.s_[row : row + rows, column : column + columns]
+    touched = expected > 0.0
+    mu = np.log(np.where(touched, expected, 1.0))
+    sigma, voids, least = noise[SIGMA], noise[VOIDS], noise[LEAST]
+    u = (logs[here] - mu) / sigma
+    on = np.logaddexp(0.0, on_level.call(noise) - 0.5 * u * u)
+    z = (mu - least) / sigma
+    tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in line] for line in z.tolist()])
+    off = np.log(1.0 - (1.0 - voids) * tail.reshape(z.shape))
+    found = np.where(states[here] == ON, on, np.where(states[here] == OFF, off, 0.0))
+    return float(found[touched].sum())
