@@ -7,11 +7,13 @@ The profile ``fast`` draws the same examples every time, ``full`` new ones;
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+from helpers_modes import answered_by
 from helpers_processes import compile_once_among_processes
 
 settings.register_profile("fast", derandomize=True, deadline=None)
@@ -22,6 +24,16 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))
 def pytest_configure() -> None:
     if "PYTEST_XDIST_WORKER" in os.environ:
         compile_once_among_processes()
+
+
+@pytest.fixture
+def plain_kernels() -> Iterator[None]:
+    """Loops and references only, but for what a test asks to be ``compiled``.
+
+    Loops would otherwise have the kernels they call compiled one by one.
+    """
+    with answered_by("plain"):
+        yield
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from helpers_modes import plainly
 from tactile_graph.steps.signature import read_signature
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.covered import covered
@@ -19,7 +20,7 @@ NOISE = Noise(0.48, 0.16, 1e-3, 5.0)
 def drawn(shape, load_g, rng, sigma=0.48, voids=0.16, least_g=5.0, side=16):
     """Return an image in grams drawn from the model: voids, lognormal gains, a threshold."""
     kind, corners, p = packed(shape)
-    share = covered.reference(kind, corners, p, GRID, (0, 0, side, side))
+    share = plainly(covered)(kind, corners, p, GRID, (0, 0, side, side))
     gains = np.exp(sigma * rng.standard_normal(share.shape)) * (rng.random(share.shape) >= voids)
     load = load_g * share * gains
     load[load < least_g] = 0.0

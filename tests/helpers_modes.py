@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Literal
+from typing import Any, Literal
 from unittest.mock import patch
 
 from tactile_graph.compiled import kernel
@@ -17,6 +17,19 @@ def answered_by(mode: Literal["auto", "plain", "compiled"]) -> Iterator[None]:
         _restart()
         yield
     _restart()
+
+
+def plainly(one: kernel.Kernel[..., Any]) -> Callable[..., Any]:
+    """Return a kernel's loops, with all kernels below them plain as well.
+
+    Those below would be compiled otherwise, each with all below it: seconds.
+    """
+
+    def run(*args: Any) -> Any:
+        with answered_by("plain"):
+            return one.loops(*args)
+
+    return run
 
 
 def _restart() -> None:

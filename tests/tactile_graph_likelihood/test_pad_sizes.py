@@ -26,7 +26,11 @@ MAT = Geometry(64, 27, 2.7, 0.3)
 FINGERTIP = Geometry(16, 16, 0.17, 0.03)
 """A pad of 0.2 cm pitch, 3.2 cm wide."""
 
-CASES = [(MAT, Circle(40.0, 90.0, 22.0)), (FINGERTIP, Circle(1.5, 1.7, 0.32))]
+CASES = [
+    # what searches a large pad is compiled for it
+    pytest.param(MAT, Circle(40.0, 90.0, 22.0), id="mat", marks=pytest.mark.slow),
+    pytest.param(FINGERTIP, Circle(1.5, 1.7, 0.32), id="fingertip"),
+]
 
 
 def pad_of(geometry):
@@ -51,7 +55,7 @@ def near(found, true, pitch):
     assert found.radius_cm == pytest.approx(true.radius_cm, abs=0.3 * pitch)
 
 
-@pytest.mark.parametrize(("geometry", "disc"), CASES, ids=["mat", "fingertip"])
+@pytest.mark.parametrize(("geometry", "disc"), CASES)
 def test_an_outline_by_order_and_one_over_time_need_no_sizes(geometry, disc):
     pad = pad_of(geometry)
     near(made(FootprintByOrder, pad=pad)(image_of(disc, geometry, 1)), disc, geometry.pitch_cm)
@@ -62,7 +66,7 @@ def test_an_outline_by_order_and_one_over_time_need_no_sizes(geometry, disc):
     assert found.placements == 3  # sizes were carried, so their range is known
 
 
-@pytest.mark.parametrize(("geometry", "disc"), CASES, ids=["mat", "fingertip"])
+@pytest.mark.parametrize(("geometry", "disc"), CASES)
 def test_an_object_is_identified_and_a_stranger_is_unknown_without_sizes(geometry, disc):
     images = [image_of(disc, geometry, seed) for seed in range(4)]
     weights = [float(image.values.sum()) for image in images]

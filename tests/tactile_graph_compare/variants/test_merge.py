@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,6 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, STEPS, cases, documents, frame, registry, shown
-from helpers_modes import answered_by
 from tactile_graph import Pipeline, load, loads
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.engine.rows import as_data
@@ -242,15 +241,8 @@ def test_a_step_that_draws_is_shared_only_by_those_who_draw_the_same(
     assert merged.members[2].names["one"] == "one"
 
 
-@pytest.fixture
-def plain_kernels() -> Iterator[None]:
-    """References only: a twin that is compiled half way through differs in the last digit."""
-    with answered_by("plain"):
-        yield
-
-
 @pytest.mark.slow
-@pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.usefixtures("plain_kernels")  # twins compiled half way differ in the last digit
 def test_every_shipped_pipeline_comes_to_the_same_in_one_graph_of_all() -> None:
     """What two pipelines share does not depend on the others, so this is every pair of them.
 

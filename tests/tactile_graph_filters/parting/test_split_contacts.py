@@ -203,6 +203,7 @@ def test_single_objects_of_the_thesis_mostly_stay_whole():
     assert np.mean(right) >= 0.85
 
 
+@pytest.mark.usefixtures("plain_kernels")
 def test_both_twins_agree_on_uneven_scenes():
     pytest.importorskip("numba")
     rng = np.random.default_rng(0)
@@ -226,6 +227,7 @@ def test_both_twins_agree_on_uneven_scenes():
         assert np.array_equal(owners[0][2], owners[1][2])
 
 
+@pytest.mark.usefixtures("plain_kernels")
 @pytest.mark.parametrize("twin", ["reference", "compiled"])
 def test_misfit_counts_what_a_hull_lacks(twin):
     """By hand: a 5 x 5 square without its middle and one cell of its rim, one foreign cell."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_filters import drawn, image_of
+from helpers_modes import plainly
 from helpers_objects import footprint, frames
 from tactile_graph_filters.parting.hull_terms import (
     AREA,
@@ -166,9 +167,9 @@ def test_compiled_and_plain_agree(scene):
         known = np.ones(mask.shape, bool)
         first = SplitContacts(recut=False)(frame.image, mask).contacts[0]._labels
         owners = [first.copy(), first.copy()]
-        for owner, twin in zip(owners, ("loops", "compiled"), strict=True):
-            cells = Partition(owner, values * mask.values, known)
-            getattr(joined_and_cut, twin)(cells, 0.5, 0.3, -0.5, -1.0)
+        twins = (plainly(joined_and_cut), joined_and_cut.compiled)
+        for owner, twin in zip(owners, twins, strict=True):
+            twin(Partition(owner, values * mask.values, known), 0.5, 0.3, -0.5, -1.0)
         assert np.array_equal(*owners)
 
 

@@ -69,6 +69,7 @@ def test_slope_and_second_derivatives_are_those_of_the_squared_distances(ellipse
         assert normal[k:, k] == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.usefixtures("plain_kernels")
 def test_away_from_the_nearest_points_a_step_brings_both_nearer():
     rng = np.random.default_rng(7)
     xy = oval(rng, 40, noise=0.02)
@@ -111,6 +112,7 @@ def test_symmetric_equations_are_solved_or_declined():
     assert not solved.loops(normal, slope, 1e-12, step)
 
 
+@pytest.mark.usefixtures("plain_kernels")
 @pytest.mark.parametrize(
     ("kind", "seeds"),
     [*((k, range(8)) for k in ("outline", "exact", "flat", "cells")), ("broken", (3702, 5801))],
@@ -133,6 +135,7 @@ def test_it_ends_where_the_longer_search_does(kind, seeds, monkeypatch):
         assert found["both", seed] == pytest.approx(found["damped", seed], abs=1e-7)
 
 
+@pytest.mark.usefixtures("plain_kernels")
 def test_it_leaves_the_start_where_it_leads_nowhere():
     t = np.linspace(-1.0, 1.0, 21)
     uv = np.stack([t, t * t - 0.4])
@@ -142,6 +145,7 @@ def test_it_leaves_the_start_where_it_leads_nowhere():
     assert (p == before).all()
 
 
+@pytest.mark.usefixtures("plain_kernels")
 def test_a_circle_has_a_direction_to_be_flattened_in():
     """As axes and angle it would not: at a circle the angle has no slope."""
     t = np.linspace(0, 2 * np.pi, 24, endpoint=False)

@@ -22,6 +22,7 @@ from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon
 from tactile_graph_hull.hull import hull
 
 KERNELS = ("reference", "compiled")
+pytestmark = pytest.mark.usefixtures("plain_kernels")
 
 
 def outlines():

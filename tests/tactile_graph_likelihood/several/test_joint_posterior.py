@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE
+from helpers_modes import plainly
 from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
@@ -90,7 +91,7 @@ def test_two_outlines_add_what_one_and_then_the_other_beside_it_do():
 
 def test_the_plain_kernel_gives_the_same():
     logs, states = image(3)
-    got = gain.reference(problem_of_joint(logs, states), table(POINTS))
+    got = plainly(gain)(problem_of_joint(logs, states), table(POINTS))
     assert both(POINTS, logs, states) == pytest.approx(got, abs=1e-8)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, made
+from helpers_modes import plainly
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
@@ -111,7 +112,7 @@ def test_plain_and_compiled_agree(shape):
     noise = NOISE.vector(1.3)
     noise[FALL], noise[LEAN_X] = 0.6, -0.3
     one, other = np.ones((2, 16, 16))
-    press.reference(kind, corners, p, GRID, noise, (0, 0, 16, 16), one)
+    plainly(press)(kind, corners, p, GRID, noise, (0, 0, 16, 16), one)
     press.compiled(kind, corners, p, GRID, noise, (0, 0, 16, 16), other)
     np.testing.assert_allclose(one, other, rtol=1e-12)
 

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from helpers_modes import answered_by
 from helpers_restorers import square
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.gnc import gnc
@@ -8,7 +9,6 @@ from tactile_graph_mrf.descent.graduate import (
     Relaxation,
     graduated,
     influence,
-    relax,
     round_all,
     rounded,
     rounded_energies,
@@ -130,7 +130,7 @@ def own_weight(levels, observed, table, row):
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("noise", ["gaussian", "student_t"])
-def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise, monkeypatch):
+def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise):
     pytest.importorskip("numba")
     model = Model(noise=noise, order=order, lines="marginal")
     valid = np.ones((6, 7), bool)
@@ -139,9 +139,9 @@ def test_cell_by_cell_is_as_all_cells_of_a_colour_at_once(order, noise, monkeypa
     p = prepare(model, Image(values, valid=valid))
     bends, relaxation = influence(model, 4, 2.0), Relaxation(6, 1.5, 0.1 / 199)
     wanted = relaxed_all_at_once(p, bends, relaxation)
-    for kernel in (relax.loops, relax.compiled):
-        monkeypatch.setattr(relax, "call", kernel)
-        found = graduated(p, bends, relaxation)
+    for mode in ("plain", "compiled"):
+        with answered_by(mode):
+            found = graduated(p, bends, relaxation)
         np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-9)
 
 

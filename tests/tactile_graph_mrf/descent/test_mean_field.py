@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from helpers_restorers import square, tiny, tiny_model
 from tactile_graph.errors import Degenerate
 from tactile_graph_mrf.descent.mean_field import MeanField, mean_field
@@ -57,7 +58,7 @@ def test_a_sweep_is_the_same_compiled_and_plain():
     pytest.importorskip("numba")
     problem = prepare(tiny_model(smoothness="quadratic", lines="explicit", lambda_l=0.8), tiny(4))
     kept = []
-    for kernel in (mean_sweep.reference, mean_sweep.compiled):
+    for kernel in (plainly(mean_sweep), mean_sweep.compiled):
         mean = MeanField(problem)
         mean._kernel = kernel
         for _ in range(3):

@@ -3,13 +3,14 @@ import itertools
 import numpy as np
 import pytest
 
+from helpers_modes import answered_by, plainly
 from helpers_restorers import square, tiny, tiny_model
 from tactile_graph.wires import Image
 from tactile_graph_mrf.descent.box_moves import move_boxes
 from tactile_graph_mrf.descent.chain_moves import PROPOSALS, Chain, move_chains, propose
 from tactile_graph_mrf.descent.grid_cut import Graph, cut_grid
 from tactile_graph_mrf.descent.polish import polish, polish_all
-from tactile_graph_mrf.descent.region_moves import fuse, fuse_all, shift_regions
+from tactile_graph_mrf.descent.region_moves import fuse, shift_regions
 from tactile_graph_mrf.descent.restore import restore
 from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.line_field import no_lines
@@ -31,7 +32,7 @@ def test_a_row_gets_the_best_combination_of_its_proposals():
     labels = np.array([[0, 3, 1], [2, 2, 0], [3, 1, 3]])
     offered, kinds = np.empty((3, PROPOSALS), np.int64), np.empty(3, np.int64)
     chain = Chain(0, True, offered, kinds, np.empty(offered.shape), np.zeros(offered.shape, int))
-    propose.reference(problem.potentials, problem.observed, labels, chain)
+    plainly(propose)(problem.potentials, problem.observed, labels, chain)
     each = [offered[j, : kinds[j]].tolist() for j in range(3)]
     assert all(len(set(x)) == len(x) > 1 and x[0] == labels[0, j] for j, x in enumerate(each))
     least = np.inf
@@ -40,7 +41,7 @@ def test_a_row_gets_the_best_combination_of_its_proposals():
         tried[0] = row
         least = min(least, energy(problem, tried))
     after = labels.copy()
-    after[0] = moved(problem, labels, no_lines((3, 3)), True, move_chains.reference)[0]
+    after[0] = moved(problem, labels, no_lines((3, 3)), True, plainly(move_chains))[0]
     assert energy(problem, after) == pytest.approx(least)
 
 
@@ -53,7 +54,7 @@ def test_chain_moves_never_raise_the_energy_and_agree_compiled(along_rows):
     for _ in range(5):
         labels = rng.integers(0, 30, (8, 8))
         lines = tuple(rng.random(x.shape) < 0.3 for x in no_lines((8, 8)))
-        one = moved(problem, labels, lines, along_rows, move_chains.reference)
+        one = moved(problem, labels, lines, along_rows, plainly(move_chains))
         two = moved(problem, labels, lines, along_rows, move_chains.compiled)
         assert np.array_equal(one, two)
         assert energy(problem, one, *lines) <= energy(problem, labels, *lines) + 1e-9
@@ -68,7 +69,7 @@ def test_boxes_of_lines_only_open_and_close_where_that_pays():
         state = State(rng.integers(0, 30, (8, 8)), *lines)
         same = State(*(x.copy() for x in state))
         before = energy(problem, *state)
-        assert move_boxes.reference(problem.potentials, problem.observed, state) > 0
+        assert plainly(move_boxes)(problem.potentials, problem.observed, state) > 0
         move_boxes.compiled(problem.potentials, problem.observed, same)
         assert energy(problem, *state) < before
         assert all(np.array_equal(a, b) for a, b in zip(state, same, strict=True))
@@ -105,7 +106,7 @@ def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(see
 
 
 @pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
-def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, monkeypatch):
+def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines):
     pytest.importorskip("numba")
     rng = np.random.default_rng(8)
     model = Model(n_levels=30, lines=lines, lambda_l=60.0, smoothness="truncated_quadratic",
@@ -116,17 +117,16 @@ def test_shifting_and_fusing_only_lower_the_energy_and_agree_compiled(lines, mon
     start = State(rng.integers(0, 30, (8, 8)), *drawn)
     other = rng.integers(0, 30, (8, 8))
     ends = []
-    for code in ("reference", "compiled"):
-        monkeypatch.setattr(fuse_all, "call", getattr(fuse_all, code))
-        state = State(*(x.copy() for x in start))
-        reached = [energy(problem, *state)]
-        assert fuse(problem, state, other) > 0
-        reached.append(energy(problem, *state))
-        shift = getattr(shift_regions, code)
-        assert shift(problem.potentials, layout(problem), sites_of(state)) > 0
-        reached.append(energy(problem, *state))
-        assert reached[2] < reached[1] < reached[0]
-        ends.append(state)
+    for mode in ("plain", "compiled"):
+        with answered_by(mode):
+            state = State(*(x.copy() for x in start))
+            reached = [energy(problem, *state)]
+            assert fuse(problem, state, other) > 0
+            reached.append(energy(problem, *state))
+            assert shift_regions(problem.potentials, layout(problem), sites_of(state)) > 0
+            reached.append(energy(problem, *state))
+            assert reached[2] < reached[1] < reached[0]
+            ends.append(state)
     assert all(np.array_equal(a, b) for a, b in zip(*ends, strict=True))
 
 
@@ -176,7 +176,7 @@ def test_a_cut_of_a_grid_is_the_least_of_all_cuts(seed):
     least = min(cost(np.array(g)) for g in itertools.product((False, True), repeat=12))
     goes = np.zeros(12, np.bool_)
     full = cap.copy()
-    count = cut_grid.reference(
+    count = plainly(cut_grid)(
         Graph(near, full, np.maximum(gain, 0.0), np.maximum(-gain, 0.0)), goes
     )
     assert count == goes.sum()

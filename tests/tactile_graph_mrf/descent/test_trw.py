@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from helpers_restorers import least_energy, square, tiny, tiny_model
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
@@ -48,7 +49,7 @@ def test_messages_are_the_same_compiled_and_plain():
     pairwise = problem.pairwise
     grid = Grid(problem.in_field, problem.own_costs(), pairwise.smooth, pairwise.weights, 4)
     kept = []
-    for kernels in (lambda k: k.reference, lambda k: k.compiled):
+    for kernels in (plainly, lambda k: k.compiled):
         messages, labels = np.zeros((4, 3, 3, 4)), np.zeros((3, 3), np.int64)
         for forth in (True, False, True):
             kernels(trw_sweep)(grid, forth, messages, labels)
