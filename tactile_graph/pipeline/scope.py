@@ -46,12 +46,14 @@ class Scope:
     registry: Registry
     load: Loader
     overrides: Overrides
-    types: dict[str, Any] = field(default_factory=lambda: {FRAME: Frame})
-    facts: dict[str, Facts] = field(default_factory=dict)
-    nodes: dict[str, Node] = field(default_factory=dict)
-    keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME})
-    rules: list[FrameRule] = field(default_factory=list)
-    condition_errors: list[tuple[NodeDeclaration, ConditionError]] = field(default_factory=list)
+    types: dict[str, Any] = field(default_factory=lambda: {FRAME: Frame}, init=False)
+    facts: dict[str, Facts] = field(default_factory=dict, init=False)
+    nodes: dict[str, Node] = field(default_factory=dict, init=False)
+    keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME}, init=False)
+    rules: list[FrameRule] = field(default_factory=list, init=False)
+    condition_errors: list[tuple[NodeDeclaration, ConditionError]] = field(
+        default_factory=list, init=False
+    )
 
     @property
     def document(self) -> Document:
