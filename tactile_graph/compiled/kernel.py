@@ -16,8 +16,6 @@ import threading
 from collections.abc import Callable
 from typing import Any, Generic, ParamSpec, TypeVar, cast
 
-import numpy as np
-
 from tactile_graph.errors import UsageError, did_you_mean
 
 ENVIRONMENT = "TACTILE_GRAPH_KERNELS"
@@ -120,6 +118,8 @@ class Kernel(Generic[P, R]):
             return self.reference(*args)  # type: ignore[call-arg]
         if _running.plain_loops:  # within others': a number's kind decides what dividing by 0 does
             return self.loops(*args)
+        import numpy as np  # only now: a command's help must not pay for it
+
         _running.plain_loops = True
         try:
             with np.errstate(all="ignore"):
@@ -152,6 +152,8 @@ class Kernel(Generic[P, R]):
 
 def _unboxed(answer: object) -> object:
     """Return an answer of plain loops with Python's own numbers, as machine code gives them."""
+    import numpy as np
+
     if isinstance(answer, np.generic):
         return answer.item()
     if type(answer) is tuple:

@@ -8,6 +8,8 @@ from tactile_graph.compiled import warm_up
 from tactile_graph.engine.outcome import Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
+pytestmark = pytest.mark.slow  # the kernels alone compile for half a minute
+
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled() -> None:

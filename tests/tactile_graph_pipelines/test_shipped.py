@@ -17,7 +17,12 @@ NAMES = installed().names("pipelines")
 LONGEST_LINE = 2048
 
 
-@pytest.mark.parametrize("name", NAMES)
+SLOW = {"objects-likelihood"}  # its kernels alone compile for half a minute
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in NAMES]
+)
 def test_runs_on_its_own_source_without_an_error(name: str) -> None:
     pipeline = load(name)
     results = list(islice(pipeline.stream(), 6))

@@ -19,6 +19,8 @@ FIT = made(FitFootprints)
 PAIR = [Circle(6.0, 7.0, 3.0), Circle(12.1, 7.4, 3.1)]
 THREE = [Rectangle(5.0, 5.0, 7.0, 4.0, 0.3), Circle(14.5, 5.5, 2.8), Circle(9.0, 15.0, 3.4)]
 
+pytestmark = pytest.mark.slow  # the kernels alone compile for half a minute
+
 
 @pytest.fixture(autouse=True, scope="module")
 def compiled():

@@ -35,6 +35,7 @@ def test_moves_that_no_cut_can_find_are_refused_with_those_that_fit():
         graph_cuts(square(), model=model("quadratic"), moves="expansion")
 
 
+@pytest.mark.slow
 def test_jumps_end_at_the_least_energy_of_a_convex_model():
     pytest.importorskip("maxflow")
     for kind in ("quadratic", "absolute", "huber"):
