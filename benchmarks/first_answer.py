@@ -1,10 +1,10 @@
 """How long one waits for a shipped pipeline: with no machine code on disk, and with all of it.
 
 Run ``python benchmarks/first_answer.py [PIPELINE ...]``. The whole command
-``tactile-graph run PIPELINE`` on the pipeline's own frames is timed, first on an empty cache, then
-``--rounds`` times on what that left; Python may keep its byte code, as it does unless told
-otherwise. Besides the time that passed, processor time is given, which neighbours on the machine
-change little.
+``tactile-graph run PIPELINE --frames 1`` on the pipeline's own source is timed, first on an empty
+cache, then ``--rounds`` times on what that left; Python may keep its byte code, as it does unless
+told otherwise. Besides the time that passed, processor time is given, which neighbours on the
+machine change little.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def main() -> None:
     print("| | empty cache, s | processor | warm, s | processor |")
     print("|---|---|---|---|---|")
     for name in names:
-        row(name, ["run", name], asked.rounds)
+        row(name, ["run", name, "--frames", "1"], asked.rounds)
     if not asked.pipelines:
         both = ["compare", "circle-likelihood", "circle-3", "--frames", "2"]
         row("`compare circle-likelihood circle-3`", both, asked.rounds)

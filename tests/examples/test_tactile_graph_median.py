@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.slow  # it makes environments and installs both wheels
 EXAMPLE = ROOT / "examples" / "tactile-graph-median"
 PIPELINE = """\
 pipeline: mine

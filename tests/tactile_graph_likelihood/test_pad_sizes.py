@@ -55,6 +55,7 @@ def near(found, true, pitch):
     assert found.radius_cm == pytest.approx(true.radius_cm, abs=0.3 * pitch)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("geometry", "disc"), CASES)
 def test_an_outline_by_order_and_one_over_time_need_no_sizes(geometry, disc):
     pad = pad_of(geometry)

@@ -86,6 +86,7 @@ def test_bayes_rectangle_finds_angle_and_sides() -> None:
     assert breadth < 0.3
 
 
+@pytest.mark.slow
 def test_bayes_objects_counts_and_places_several() -> None:
     run = load("bayes-objects").runner()
     right = 0

@@ -30,6 +30,7 @@ def test_a_followed_disc_shows_its_radius_ever_better():
     assert last["disc.shape"].radius_cm == pytest.approx(true, abs=0.05)
 
 
+@pytest.mark.slow
 def test_the_order_of_volts_locates_a_disc():
     pipeline = load("circle-by-order")
     off = []

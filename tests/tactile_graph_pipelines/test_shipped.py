@@ -17,7 +17,8 @@ NAMES = installed().names("pipelines")
 LONGEST_LINE = 2048
 
 
-SLOW = {"objects-likelihood"}  # its kernels alone compile for half a minute
+SLOW = {"bayes-objects", "circle-by-order", "objects-likelihood"}
+"""Their kernels alone compile for up to half a minute."""
 
 
 @pytest.mark.parametrize(

@@ -124,6 +124,7 @@ def test_touched_elements_are_ranked():
     assert ends.tolist() == [2, 2, 3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("shape", "true"),
     [("disc", Circle(10.0, 9.5, 5.5)), ("rectangle", Rectangle(10.0, 9.5, 13.0, 6.0, 0.4))],
@@ -141,6 +142,7 @@ def test_no_monotone_law_changes_the_answer_and_it_is_near(shape, true):
     assert np.mean(off) < 0.2
 
 
+@pytest.mark.slow
 def test_touch_alone_still_locates_and_order_adds():
     step, sharp, blunt = made(FootprintByOrder, on_pad="whole"), [], []
     for seed in range(8):
@@ -152,6 +154,7 @@ def test_touch_alone_still_locates_and_order_adds():
     assert np.mean(sharp, axis=0)[1] < np.mean(blunt, axis=0)[1]
 
 
+@pytest.mark.slow
 def test_a_mask_says_what_is_touched_even_of_readings_below_zero():
     image = drawn(Circle(10.0, 9.5, 5.5), 60.0, np.random.default_rng(3))
     mask = Mask(image.values > 0.0, image.pitch_cm, image.origin_cm)
@@ -177,6 +180,7 @@ def seen(step, frame):
     return step(frame.image, touched)
 
 
+@pytest.mark.slow
 def test_its_region_holds_the_truth_and_designed_frames_fit():
     step = made(FootprintByOrder, on_pad="whole")
     rows = []
@@ -189,6 +193,7 @@ def test_its_region_holds_the_truth_and_designed_frames_fit():
     assert abs(off) < 0.03
 
 
+@pytest.mark.slow
 def test_volts_are_freed_of_the_circuit_that_shadows_elements():
     step, decouple = made(FootprintByOrder, on_pad="whole"), load("circle-likelihood")
     run = decouple.runner(only=["siemens"])
@@ -200,6 +205,7 @@ def test_volts_are_freed_of_the_circuit_that_shadows_elements():
     assert as_they_are.radius_cm != pytest.approx(by_siemens.radius_cm, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_impossible_volts_say_nothing():
     (frame,) = frames(1, 3)
     step, volts = made(FootprintByOrder, on_pad="whole"), frame.image.values.copy()
@@ -224,6 +230,7 @@ def disturbed(kind, rng):
     return image.with_values(loads)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["leans", "strays", "bumps"])
 def test_what_neither_touch_nor_order_explains_is_flagged(kind):
     step = made(FootprintByOrder, on_pad="whole")
