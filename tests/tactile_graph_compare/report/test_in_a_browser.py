@@ -18,6 +18,7 @@ BROWSER = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
 pytestmark = [
+    pytest.mark.slow,  # a browser starts for each
     pytest.mark.usefixtures("hand_made"),
     pytest.mark.skipif(BROWSER is None, reason="no Chromium on the PATH"),
 ]
