@@ -754,3 +754,25 @@ def test_the_modules_of_steps_are_named_in_failures_even_for_classes() -> None:
     failed = p.run(frame(1)).outcome("x")
     assert failed.step == f"step broken of {Broken.__module__}"
     assert isinstance(failed.error, RuntimeError)
+
+
+def highest(image: Image) -> float:
+    return image.peak
+
+
+def as_it_is(image: Image) -> Image:
+    return image
+
+
+def test_a_field_of_an_image_that_its_source_fills_anew_is_looked_at_anew() -> None:
+    buffer = np.zeros((2, 2))
+    refilled = Frame(Image(buffer.view()))
+    pipeline = loads(
+        "pipeline: p\nnodes:\n  same: {step: as_it_is, in: frame}\n"
+        "  seen: {step: highest, in: same, when: same.peak > 0}\noutputs: [seen]\n",
+        registry=registry({"highest": highest, "as_it_is": as_it_is}),
+    )
+    runner = pipeline.runner()
+    assert isinstance(runner(refilled).outcome("seen"), Skipped)
+    buffer[0, 0] = 1.0
+    assert runner(refilled)["seen"] == 1.0
