@@ -23,6 +23,7 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, rim_count, rim_shares, runs_of
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
+    OFF,
     ON,
     ROOT_TWO_PI,
     SIGMA,
@@ -129,8 +130,8 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
                     continue
                 for k in range(first):
                     along[k] = rise[k, at - 1] / max(its, SLIVER)
-                mu, log = math.log(its) + p[first], problem.logs[row, column]
-                score = score_of(state == ON, log, mu, noise, level)
+                log = noise[LEAST] if state == OFF else problem.logs[row, column]
+                score = score_of(state == ON, log, math.log(its) + p[first], noise, level)
                 add_noise_slopes(state == ON, score, problem, noise, out)
                 add_outer(score, along, out)
     _add_whole(problem, whole, p, noise, box, runs, out)
@@ -177,7 +178,8 @@ def _add_whole(
                 if problem.states[row, column] == UNKNOWN:
                     continue
                 on = problem.states[row, column] == ON
-                score = score_of(on, problem.logs[row, column], load, noise, level)
+                log = problem.logs[row, column] if on else noise[LEAST]
+                score = score_of(on, log, load, noise, level)
                 add_noise_slopes(on, score, problem, noise, out)
                 out.slope[first] += score[0]
                 out.matrix[first, first] += score[1]
@@ -187,7 +189,7 @@ def _add_whole(
     for k in range(nodes + 1):
         on = k < nodes
         weight = whole.weights[k] if on else whole.numbers[OFFS]
-        score = score_of(on, whole.readings[k] if on else 0.0, load, noise, level)
+        score = score_of(on, whole.readings[k] if on else noise[LEAST], load, noise, level)
         its.slope[:] = 0.0
         its.matrix[:] = 0.0
         add_noise_slopes(on, score, problem, noise, its)

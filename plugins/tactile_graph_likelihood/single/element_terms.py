@@ -17,14 +17,16 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
 
-OFF, ON, UNKNOWN = range(3)
-"""What is known of an element: reads nothing, reads a load, broken or saturated."""
+OFF, ON, UNKNOWN, UNDER = range(4)
+"""What is known of an element: reads nothing, reads a load, broken or saturated, reads nothing that
+its own least load would not explain."""
 
 States: TypeAlias = NDArray[np.uint8]
 
-SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y = range(8)
+SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y, CONTRAST = range(9)
 """Places in a noise vector: width of ln gain, share of voids, probability of a stray, logarithm
-of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean."""
+of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean; the power
+of coverage that readings go with, 1 where they are loads."""
 
 SPAN = math.log(1e4)
 """Width of the logarithm of a stray's load, and of the prior of a covered element's load."""
@@ -53,11 +55,11 @@ def terms(
     row, column : int
         Where the window begins.
     logs : ndarray, shape (all rows, all columns)
-        Logarithm of each reading that shows.
+        Logarithm of each reading that shows; of an element's own least load where it is `UNDER`.
     states : ndarray of uint8, the same shape
-        `OFF`, `ON` or `UNKNOWN`.
-    noise : ndarray, shape (8,)
-        As named by `SIGMA`, `VOIDS`, `STRAYS`, `LEAST`.
+        `OFF`, `ON`, `UNKNOWN` or `UNDER`.
+    noise : ndarray, shape (9,)
+        As named by `SIGMA`, `VOIDS` and so on.
 
     Notes
     -----
@@ -66,10 +68,10 @@ def terms(
     ``ln(1 - (1 - v) Phi(z))`` where it reads nothing.
     """
     # Factors are multiplied up, and their logarithm taken now and then.
-    sigma, present, least = noise[SIGMA], 1.0 - noise[VOIDS], noise[LEAST]
+    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
     level = on_level(noise)
     total, product = 0.0, 1.0
-    load, mu, off, off_known = -1.0, 0.0, 0.0, False
+    load, mu, off, known = -1.0, 0.0, 0.0, math.nan
     for i in range(expected.shape[0]):
         for j in range(expected.shape[1]):
             m = expected[i, j]
@@ -79,7 +81,7 @@ def terms(
             if state == UNKNOWN:
                 continue
             if m != load:
-                load, mu, off_known = m, math.log(m), False
+                load, mu, known = m, math.log(m), math.nan
             if state == ON:
                 u = (logs[row + i, column + j] - mu) / sigma
                 a = level - 0.5 * u * u
@@ -88,10 +90,11 @@ def terms(
                 elif a > -30.0:
                     product *= 1.0 + math.exp(a)
             else:
-                if not off_known:
+                least = logs[row + i, column + j] if state == UNDER else noise[LEAST]
+                if least != known:
                     z = (mu - least) / sigma
                     off = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-                    off_known = True
+                    known = least
                 product *= off
             if not 1e-200 < product < 1e200:
                 total += math.log(product)
@@ -109,6 +112,6 @@ def bare(states: States, noise: Values) -> float:
         for j in range(states.shape[1]):
             if states[i, j] == ON:
                 total += stray
-            elif states[i, j] == OFF:
+            elif states[i, j] != UNKNOWN:
                 total += none
     return total

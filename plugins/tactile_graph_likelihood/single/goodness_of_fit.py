@@ -19,6 +19,7 @@ from tactile_graph_likelihood.single.element_terms import (
     SPAN,
     SQRT_HALF,
     STRAYS,
+    UNDER,
     UNKNOWN,
     VOIDS,
 )
@@ -241,7 +242,8 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
                 variance += var_bare
                 continue
             mu = math.log(share[r, c]) + p[first]
-            z = min(max((mu - here[LEAST]) / sigma, -40.0), 40.0)
+            least = logs[i, j] if states[i, j] == UNDER else here[LEAST]
+            z = min(max((mu - least) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
             off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
             if on:

@@ -13,6 +13,7 @@ from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, un
 from tactile_graph_likelihood.single.element_terms import (
     FOAM,
     LEAST,
+    OFF,
     ON,
     SIGMA,
     SQRT_HALF,
@@ -81,6 +82,8 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
 def score_of(on: bool, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
     """Return what an element's reading says of the logarithm mu of its expected load.
 
+    ``log`` is that of its reading, of the least load that shows where it reads nothing.
+
     Returns
     -------
     tuple of float
@@ -93,7 +96,7 @@ def score_of(on: bool, log: float, mu: float, noise: Values, level: float) -> tu
         a = min(max(level - 0.5 * u * u, -700.0), 700.0)
         chance = 1.0 / (1.0 + math.exp(-a))
         return chance * u / sigma, chance / (sigma * sigma), chance, u, 0.0
-    z = (mu - noise[LEAST]) / sigma
+    z = (mu - log) / sigma
     tail = 0.5 * math.erfc(-SQRT_HALF * z)
     score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * (1.0 - present * tail))
     return score, score * score, 1.0, z, tail
@@ -156,8 +159,8 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             if its <= 0.0 or state == UNKNOWN:
                 continue
             mu = p[first] if its == 1.0 else math.log(its) + p[first]
-            on = state == ON
-            score = score_of(on, problem.logs[box[0] + i, box[1] + j], mu, noise, level)
+            on, log = state == ON, problem.logs[box[0] + i, box[1] + j]
+            score = score_of(on, noise[LEAST] if state == OFF else log, mu, noise, level)
             add_noise_slopes(on, score, problem, noise, out)
             edge = its < 1.0 or not plain
             for k in range(first):

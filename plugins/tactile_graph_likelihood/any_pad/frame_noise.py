@@ -1,0 +1,73 @@
+"""What a frame's own readings say of the noise in them, from the part that nothing touches."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_pads.pad import Pad
+
+UNTOUCHED = 0.25
+"""Share of a frame that is taken to be untouched at the least: its closest readings are the zero."""
+
+WIDTH = 0.637
+"""Of that stretch, in standard deviations of normal noise, were all of the frame untouched: where
+much is touched the noise comes out up to twice too large, never too small."""
+
+FEWEST = 4
+"""Readings below zero, for there to be any noise."""
+
+
+class FrameNoise(NamedTuple):
+    """Zero and noise of a frame's readings, in the readings' unit.
+
+    Parameters
+    ----------
+    zero : float
+        What untouched elements read.
+    sigma : float or ndarray, shape (rows, columns)
+        Standard deviation of a reading around it.
+    step : float
+        Least difference of two readings: a converter's step, next to nothing without one.
+    """
+
+    zero: float
+    sigma: float | Values
+    step: float
+
+
+def told_noise_v(pad: Pad) -> float | Values | None:
+    """Return the noise of a reading in volts as a pad states it, if it does."""
+    told = getattr(pad, "noise_v", None)
+    return None if told is None else np.asarray(told, np.float64)
+
+
+def frame_noise(readings: Values) -> FrameNoise:
+    """Return zero and noise of the readings of a frame.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (N,)
+        Of all elements that work, raw.
+
+    Notes
+    -----
+    The zero is the middle of the shortest stretch that holds a quarter of the readings; the noise
+    is what lies below it, and the stretch's own width.
+    """
+    values = np.sort(readings)
+    n = len(values)
+    steps = np.diff(values)
+    steps = steps[steps > 0.0]
+    step = float(steps.min()) if len(steps) else 0.0
+    many = max(int(UNTOUCHED * n), 1)
+    widths = values[many - 1 :] - values[: n - many + 1]
+    at = int(widths.argmin())
+    zero = 0.5 * float(values[at] + values[at + many - 1])
+    below = zero - values[: int(np.searchsorted(values, zero))]
+    if len(below) < FEWEST:
+        return FrameNoise(zero, 0.0, step)
+    return FrameNoise(zero, max(math.sqrt(below @ below / len(below)), widths[at] / WIDTH), step)

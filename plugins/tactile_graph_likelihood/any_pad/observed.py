@@ -1,0 +1,136 @@
+"""From an image of any quantity to readings with their noise: what shows, and what could have."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise_v
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.readings import LARGEST, Readings
+from tactile_graph_pads.pad import Pad
+
+SHOWS = 4.0
+"""Standard deviations of noise above zero from which on a reading is one."""
+
+SPACED = 4
+"""Least readings by whose spacing the least load that shows is extrapolated."""
+
+GAPS = 2.0
+"""Mean spacings of the least readings by which what shows may lie below all of them."""
+
+
+def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
+    """Return what an image shows, whatever its quantity.
+
+    Parameters
+    ----------
+    image : Image
+        Volts are freed of the pad's circuit, and conductances turned into loads by its law, as far
+        as these are possible; any other quantity is taken to rise with load from the frame's own
+        zero. Invalid cells say nothing.
+    pad : Pad
+    gap_cm : float
+        Distance of neighbouring elements' edges; less than the pitch.
+
+    Returns
+    -------
+    Readings
+        Elements whose reading is no more than noise are `UNDER` the load that would have shown in
+        their column.
+
+    Raises
+    ------
+    ValueError
+        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
+        beyond 1e100.
+    Degenerate
+        If nothing shows.
+    """
+    across, down = image.pitch_cm
+    if abs(across - down) > 1e-9 * across:
+        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if not gap_cm < across:
+        raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
+    if not np.abs(values).max(initial=0.0) <= LARGEST:
+        raise ValueError(f"readings must be finite and at most {LARGEST:g}")
+    known = image.valid
+    noise = _noise(image, values if known is None else values[known], pad)
+    least = np.maximum(SHOWS * noise.sigma, 0.5 * noise.step)
+    above = values - noise.zero
+    shows = above > least
+    above = np.where(shows, above, 0.0)
+    loads, least_loads, possible = _loads(image.quantity, above, least, pad)
+    known = possible if known is None else known & possible
+    shows &= known
+    touched = int(np.count_nonzero(shows))
+    if touched == 0:
+        raise Degenerate("no reading rises above the noise: no outline fits")
+    logs = np.log(np.where(shows, loads, 1.0))
+    law = image.quantity in ("volt", "siemens", "gram")
+    edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if law else -math.inf)
+    logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, 1e-300)), edge))
+    states = np.where(shows, ON, UNDER).astype(np.uint8)
+    states[~known] = UNKNOWN
+    x, y = image.origin_cm
+    half = 0.5 * gap_cm
+    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
+    return Readings(grid, logs, states, touched)
+
+
+def _noise(image: Image, readings: Values, pad: Pad) -> FrameNoise:
+    """Return zero and noise: the pad's, where it states them, else the frame's."""
+    if readings.size == 0:
+        return FrameNoise(0.0, 0.0, 0.0)
+    found = frame_noise(readings.ravel())
+    told = told_noise_v(pad) if image.quantity == "volt" else None
+    return found if told is None else found._replace(sigma=told)
+
+
+def _loads(
+    quantity: str, above: Values, least: Values, pad: Pad
+) -> tuple[Values, Values, np.ndarray]:
+    """Return loads, the load that each element would have shown as ``least``, and what is possible.
+
+    What has no law is its own load.
+    """
+    if quantity not in ("volt", "siemens"):
+        return above, np.broadcast_to(least, above.shape), np.ones(above.shape, np.bool_)
+    siemens, valid, from_s = above, np.ones(above.shape, np.bool_), least
+    if quantity == "volt":
+        found = pad.circuit.inverse(above / pad.circuit.supply_v)
+        siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
+        # of elements that show nothing, as far as the rest of the column leaves them any
+        left = np.maximum(1.0 - above.sum(axis=0) / pad.circuit.supply_v, 1e-3)
+        from_s = least / pad.circuit.supply_v * pad.circuit.reference_s / left
+    least_loads = pad.law.load_of(np.array(np.broadcast_to(from_s, above.shape)))
+    loads = pad.law.load_of(siemens)
+    return loads, least_loads, valid & np.isfinite(loads)
+
+
+def least_that_shows(logs: Values, told: float) -> float:
+    """Return the logarithm of the least load that shows, by the least readings and what is told.
+
+    Parameters
+    ----------
+    logs : ndarray, shape (N,)
+        Logarithms of the readings.
+    told : float
+        Logarithm of the turn-on load, -inf where nothing is known of one.
+
+    Notes
+    -----
+    A threshold lies below the least reading by about the mean spacing of the least few (D. S.
+    Robson and J. H. Whitlock 1964, 10.1093/biomet/51.1-2.33). What is told is taken as far as it
+    lies within twice that.
+    """
+    m = min(SPACED, len(logs) - 1)
+    lowest = np.sort(np.partition(logs, m)[: m + 1]) if m > 0 else logs
+    spacing = float(lowest[-1] - lowest[0]) / m if m > 0 else 1.0
+    bottom = float(lowest[0])
+    return min(max(told, bottom - GAPS * spacing), bottom) if told > -math.inf else bottom - spacing
