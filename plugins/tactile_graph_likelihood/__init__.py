@@ -14,6 +14,9 @@ _STEPS = {
     "footprint_ellipse": "single.footprint_of:FootprintEllipse",
     "footprint_rectangle": "single.footprint_of:FootprintRectangle",
     "identify_footprint": "known.identify_footprint:IdentifyFootprint",
+    "locate_disc": "any_pad.locate:LocateDisc",
+    "locate_ellipse": "any_pad.locate:LocateEllipse",
+    "locate_rectangle": "any_pad.locate:LocateRectangle",
 }
 
 

@@ -3,130 +3,198 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.geometry.outlines import Values, bounds, unknowns
+from tactile_graph_likelihood.any_pad.from_frame import learned, strays_beyond, variance_inflation
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad
+from tactile_graph_likelihood.geometry.outlines import sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
-    EVEN, FIRST, WIDER, asked_by, chances, log_of, mixed,
+    EVEN,
+    FIRST,
+    WIDER,
+    chances,
+    log_of,
+    mixed,
 )
-from tactile_graph_likelihood.geometry.outlines import sizes
-from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.importance import FREEDOM
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import Likeliest, Model, Start
+from tactile_graph_likelihood.single.model import BLOCK, Likeliest, Model, Start
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
-LAW = 0.35
-"""Of ln sigma that is not as told, the share that is the law's, not the gains'."""
-FITTED = 3.0
-STRAYS_SEEN = 50.0
-HOPELESS = 2.0
+LEANS, FALLS, ALIKE = 1.0, 0.75, 2.5
+"""Patterns that an even face leaves over, in standard deviations, from which on another pressure is
+worth its time."""
+
 NEGLIGIBLE = 0.03
+"""Probability over the likeliest pressure's below which one is left out."""
+
+FEW, LOOSE = 20, 0.3
+"""Touched elements of an outline so small that a void looks like its rim, and the deviation in
+pitches that is added to where its posterior is first looked for."""
+
+PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
+"""What each pressure estimates beside an even face's numbers, where its fit begins."""
 
 
 @dataclass(frozen=True)
 class AnyPad:
-    model: Model
+    """Fits of an outline that take law, gains, voids, strays and pressure from the frame itself.
+
+    Parameters
+    ----------
+    told : Model
+        An outline on the pad as told: the middle of every guess.
+
+    Notes
+    -----
+    The outline is fitted with sigma and voids; on a pad of up to 1024 elements also under each
+    pressure that an even face leaves a pattern of. The likeliest of these fits is sampled with the
+    noise that it has found, an even face with the law's exponent; the others stand for themselves
+    as normal distributions, by their evidence over what neighbouring elements share.
+    """
+
+    told: Model
 
     @cached_property
-    def unlearned(self) -> dict[str, Model]:
-        """By pressure, the models that estimate the pad's noise with the outline."""
-        noise = self.model.noise
-        parts = {EVEN: (), **{part: (part,) for part in FIRST}}
+    def _fits(self) -> dict[str, Model]:
+        """By pressure, the models that estimate sigma and voids with the outline."""
         return {
-            name: replace(self.model, noise=replace(noise, estimated=(*part, "sigma", "voids")))
-            for name, part in parts.items()
+            name: self._with(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
+            for name in PRESSURES
         }
 
-    @property
-    def n(self) -> int:
-        return unknowns.call(self.model.kind, self.model.corners) + 1
+    @cached_property
+    def _count(self) -> int:
+        return unknowns.call(self.told.kind, self.told.corners) + 1
+
+    def _with(self, noise: Noise, *estimated: str) -> Model:
+        return replace(self.told, noise=replace(noise, estimated=estimated))
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
-        top = self.unlearned[EVEN].likeliest(readings, start=start)
-        if top.unsure:
-            top = self.unlearned[EVEN].likeliest(readings, before=top)
-        strays = strays_of(self.model, readings, top.mode.p)
-        noise = learned(self.model.noise, top.mode.p, readings.touched, strays)
-        noise = replace(noise, estimated=("contrast",))
-        model = replace(self.model, noise=noise)
-        begin = np.append(top.mode.p[: self.n], noise.contrast)
-        fine = model.likeliest(readings, start=begin)
-        even = model.posterior_around(readings, fine.mode)
-        found = self.completed(readings, top, even, strays)
-        return widened(found, readings)
+        """Return the posterior of the outline.
 
-    def completed(self, readings: Readings, top: Likeliest, even: Posterior, strays: float) -> Posterior:
-        asked = asked_by([even], FIRST)
-        if not asked:
-            return even
-        tops = {part: self._other(part, readings, top) for part in asked}
-        logs = {EVEN: top.evidence, **{p: t.evidence for p, t in tops.items()}}
-        best = max(logs.values())
+        Parameters
+        ----------
+        readings : Readings
+            As `observed` gives them.
+        start : Shape or ndarray, optional
+            Where to begin: an outline of this kind.
+
+        Raises
+        ------
+        ValueError
+            If ``start`` is of another kind.
+        Degenerate
+            If no outline of this kind is possible.
+        """
+        return self.around(readings, self.tops(readings, start))
+
+    def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, the even face's first."""
+        model = self._fits[EVEN]
+        even = model.likeliest(readings, start=start)
+        if even.unsure:
+            even = model.likeliest(readings, before=even)
+        if even.mode.height == -math.inf:
+            raise Degenerate(
+                f"{readings.touched} touched elements: no such outline on the pad explains them"
+            )
         found = {EVEN: even}
-        for part, its in tops.items():
-            if its.evidence < max(best - 3.5, top.evidence - HOPELESS) or its.mode.height == -math.inf:
-                continue
-            got = self._sampled(part, readings, its, strays)
-            if got is not None:
-                found[part] = got
-        before = chances({part: found.get(part) for part in asked})
-        kappa = max(min(kappa_of(p, readings) for p in found.values()),1.)
-        found = {part: replace(one, log_evidence=logs[part]/kappa) for part, one in found.items()}
-        return mixed(found, before)
+        asked = asked_by(even.fit) if readings.states.size <= LARGE_PAD else []
+        for part in asked:
+            top = self._pressed(part, readings, even)
+            if top.mode.height > -math.inf:
+                found[part] = top
+        return found
 
-    def _other(self, part: str, readings: Readings, top: Likeliest) -> Likeliest:
-        model, n = self.unlearned[part], self.n
-        begin = np.concatenate([top.mode.p[:n], FIRST[part], top.mode.p[n:]])
+    def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
+        n, p = self._count, even.mode.p
+        begin = np.concatenate([p[:n], PRESSURES[part], p[n:]])
         if part == "fall":
-            begin[2 : 2 + sizes.call(self.model.kind)] *= 1.0 + WIDER
-        return model.likeliest(readings, start=begin)
+            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
+        return self._fits[part].likeliest_near(readings, begin)
 
-    def _sampled(self, part: str, readings: Readings, top: Likeliest, strays: float) -> Posterior | None:
-        k = self.n + len(FIRST[part])
-        noise = learned(self.model.noise, top.mode.p, readings.touched, strays)
-        model = replace(self.model, noise=replace(noise, contrast=1.0, estimated=(part,)))
-        mode = Mode(top.mode.p[:k].copy(), top.mode.root[:k, :k].copy(), top.mode.height)
-        try:
-            return model.posterior_around(readings, mode)
-        except Degenerate:
-            return None
+    def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
+        """Return the posterior around the most likely outlines, over all pressures."""
+        logs = log_chances(tops, readings.touched)
+        best = max(logs, key=logs.__getitem__)
+        shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
+        found = {best: self._sampled(best, readings, tops[best].mode)}
+        for part, share in shares.items():
+            if part != best and share > NEGLIGIBLE:
+                found[part] = self._normal(part, tops[part])
+        its = found[best]
+        if len(found) > 1:
+            weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
+            its = mixed(weighed, dict.fromkeys(weighed, 1.0))
+        its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
+        inflation = variance_inflation(its.neighbours, readings.touched)
+        return on_any_pad(its, inflation, self.told.noise.sigma, float(readings.grid[2]))
+
+    def _sampled(self, part: str, readings: Readings, top: Mode) -> Posterior:
+        """Return the posterior under a pressure, with the noise that its fit has found."""
+        strays = strays_beyond(self.told, readings, top.p)
+        noise = learned(self.told.noise, top.p, readings.touched, strays)
+        if readings.states.size > LARGE_PAD:
+            noise = replace(noise, contrast=1.0)
+        if part != EVEN or readings.states.size > LARGE_PAD:
+            k = self._count + len(PRESSURES[part])
+            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+            mode = Mode(top.p[:k].copy(), top.root[:k, :k].copy(), top.height)
+        else:
+            model = self._with(noise, "contrast")
+            begin = np.append(top.p[: self._count], noise.contrast)
+            mode = model.likeliest_near(readings, begin).mode
+        return model.posterior_around(readings, loosened(mode, readings))
+
+    def _normal(self, part: str, top: Likeliest) -> Posterior:
+        """Return the normal distribution around a top, its noise as found."""
+        k = self._count + len(PRESSURES[part])
+        p, spread = top.mode.p[:k], np.linalg.inv(top.mode.root[:k, :k])
+        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.told.table_of(k)[:BLOCK]
+        return Posterior(
+            self.told.kind, self.told.corners, p, spread.T @ spread, p + steps @ spread,
+            np.full(BLOCK, 1.0 / BLOCK), p, top.evidence, float(BLOCK), *top.fit,
+        )  # fmt: skip
 
 
-def learned(noise: Noise, p: Values, touched: int, strays: float) -> Noise:
-    sigma = math.exp(p[-2]) * math.sqrt(1.0 + FITTED / max(touched, 6))
-    voids = 1.0 / (1.0 + math.exp(-p[-1]))
-    contrast = 1.0 + LAW * math.log(sigma / noise.sigma)
-    return replace(noise, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+def asked_by(fit: GoodnessOfFit) -> list[str]:
+    """Return which pressures may explain what an even face leaves over."""
+    fall, alike = fit.fall >= FALLS, fit.neighbours >= ALIKE
+    asked = {"lean": fit.lean >= LEANS, "fall": fall, "foam": fall or alike}
+    return [part for part in FIRST if asked[part]]
 
 
-def strays_of(model: Model, readings: Readings, p: Values) -> float:
-    """Return the share of strays, by what reads beyond an outline's bounding box."""
-    left, top, right, bottom = bounds.call(model.kind, model.corners, p)
-    x0, y0, pitch, side = readings.grid[:4]
-    rows, columns = readings.states.shape
-    c0, c1 = math.ceil((left - side - x0) / pitch), math.floor((right - x0) / pitch) + 1
-    r0, r1 = math.ceil((top - side - y0) / pitch), math.floor((bottom - y0) / pitch) + 1
-    inside = readings.states[max(r0, 0) : max(r1, 0), max(c0, 0) : max(c1, 0)]
-    known = readings.states.size - inside.size
-    beyond = readings.touched - int(np.count_nonzero(inside == ON))
-    told = model.noise.strays
-    return min((beyond + STRAYS_SEEN * told) / (known + STRAYS_SEEN), 0.3)
+def log_chances(tops: Mapping[str, Likeliest], touched: int) -> dict[str, float]:
+    """Return the log probability of each pressure, up to a constant.
+
+    Evidence takes elements for independent. Where neighbours hang together whatever the pressure,
+    it is worth as many times less.
+    """
+    if len(tops) == 1:
+        return dict.fromkeys(tops, 0.0)
+    before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
+    shared = min(variance_inflation(top.fit.neighbours, touched) for top in tops.values())
+    return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
 
 
-def kappa_of(one: Posterior, readings: Readings) -> float:
-    rho = (one.neighbours - 1.0) / math.sqrt(1.6 * max(readings.touched, 1))
-    if rho <= 0.03: return 1.0
-    return max(1.0, math.sqrt(math.pi / -math.log(min(rho, 0.95))))
-
-
-def widened(found: Posterior, readings: Readings) -> Posterior:
-    kappa = kappa_of(found, readings)
-    if kappa <= 1.0: return found
-    return replace(found, covariance=kappa * found.covariance,
-        points=found.mean + math.sqrt(kappa) * (found.points - found.mean))
+def loosened(mode: Mode, readings: Readings) -> Mode:
+    """Return a mode whose outline is less certain where few elements are touched."""
+    few = 1.0 - readings.touched / FEW
+    if few <= 0.0:
+        return mode
+    spread = np.linalg.inv(mode.root)
+    covariance = spread.T @ spread
+    for k in range(3):
+        covariance[k, k] += few * (LOOSE * readings.grid[2]) ** 2
+    root = np.asarray(np.linalg.cholesky(np.linalg.inv(covariance)), np.float64)
+    return mode._replace(root=root)

@@ -10,8 +10,9 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise_v
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import LARGEST, Readings
+from tactile_graph_pads.law import ForceLaw
 from tactile_graph_pads.pad import Pad
 
 SHOWS = 4.0
@@ -105,12 +106,32 @@ def _loads(
     if quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
         siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
-        # of elements that show nothing, as far as the rest of the column leaves them any
-        left = np.maximum(1.0 - above.sum(axis=0) / pad.circuit.supply_v, 1e-3)
-        from_s = least / pad.circuit.supply_v * pad.circuit.reference_s / left
-    least_loads = pad.law.load_of(np.array(np.broadcast_to(from_s, above.shape)))
-    loads = pad.law.load_of(siemens)
+        from_s = least * _siemens_per_volt(siemens, above)
+    loads = _by_law(siemens, pad.law)
+    least_loads = _by_law(np.array(np.broadcast_to(from_s, above.shape)), pad.law)
     return loads, least_loads, valid & np.isfinite(loads)
+
+
+def _siemens_per_volt(siemens: Values, above: Values) -> Values:
+    """Return what a volt stands for in each column, by what shows there, shape (columns,)."""
+    ratio = np.divide(siemens, above, out=np.zeros(above.shape), where=above > 0.0)
+    found = ratio.max(axis=0)
+    bare = found <= 0.0
+    if not bare.all():
+        found[bare] = found[~bare].min()
+    return np.asarray(found)
+
+
+def _by_law(siemens: Values, law: ForceLaw) -> Values:
+    """Return loads by a law whose power goes on below the turn-on.
+
+    Where a pad turns on is its own: by a turn-on that is told too high, all that it does read
+    below would come out nearly alike.
+    """
+    loads = law.load_of(siemens)
+    low = (loads < law.turn_on_g) & (siemens > 0.0)
+    loads[low] = law.load_g * (siemens[low] * law.resistance_ohm) ** (1.0 / law.power)
+    return loads
 
 
 def least_that_shows(logs: Values, told: float) -> float:
@@ -134,3 +155,10 @@ def least_that_shows(logs: Values, told: float) -> float:
     spacing = float(lowest[-1] - lowest[0]) / m if m > 0 else 1.0
     bottom = float(lowest[0])
     return min(max(told, bottom - GAPS * spacing), bottom) if told > -math.inf else bottom - spacing
+
+
+def uniform(readings: Readings) -> tuple[Readings, float]:
+    """Return readings whose elements all show from the same load, and that load."""
+    under = readings.states == UNDER
+    least = float(np.median(readings.logs[under])) if under.any() else -math.inf
+    return readings._replace(states=np.where(under, OFF, readings.states)), math.exp(least)

@@ -26,6 +26,7 @@ from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import weighted_moments
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
@@ -33,7 +34,7 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
-from tactile_graph_likelihood.single.search import ATTEMPTS, find_mode, moments
+from tactile_graph_likelihood.single.search import ATTEMPTS, NEAR, find_mode, moments
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
@@ -49,12 +50,13 @@ class Likeliest(NamedTuple):
     """A most likely outline whose posterior is not yet sampled.
 
     ``evidence`` is the log evidence if the posterior were normal around it; ``unsure`` says whether
-    another attempt may do better.
+    another attempt may do better, ``fit`` how well the image fits it.
     """
 
     mode: Mode
     evidence: float
     unsure: bool
+    fit: GoodnessOfFit
 
 
 @dataclass(frozen=True)
@@ -128,21 +130,31 @@ class Model:
         """Return the same from readings."""
         problem = self._problem(readings, belief)
         table = self._table(problem)
-        mode, _ = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)
+        mode = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)[0]
         return self._sampled(readings, problem, table, mode)
 
     def likeliest(
         self, readings: Readings, before: Likeliest | None = None, start: Start = None
     ) -> Likeliest:
         """Return the most likely outline, by one attempt, or two more after an earlier one."""
-        problem = self._problem(readings, None)
         attempts, known = ((0, 1), None) if before is None else ((1, ATTEMPTS), before.mode)
+        return self._likeliest(readings, start, attempts, known)
+
+    def likeliest_near(self, readings: Readings, point: Values) -> Likeliest:
+        """Return the most likely outline near a point, shape (K,), that is nearly as likely."""
+        large = readings.states.size > LARGE_PAD
+        return self._likeliest(readings, point, (0, 1) if large else (NEAR, 0), None)
+
+    def _likeliest(
+        self, readings: Readings, start: Start, attempts: tuple[int, int], known: Mode | None
+    ) -> Likeliest:
+        problem = self._problem(readings, None)
         begin = self._begin(start, problem)
-        mode, unsure = self._find(problem, self._table(problem), begin, attempts, known)
+        mode, unsure, fit = self._find(problem, self._table(problem), begin, attempts, known)
         evidence = mode.height
         if evidence > -math.inf:
             evidence += log_volume.call(problem.kind, mode.p, mode.root)
-        return Likeliest(mode, evidence, unsure)
+        return Likeliest(mode, evidence, unsure, fit)
 
     def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
         """Return the posterior around a mode."""
@@ -152,14 +164,14 @@ class Model:
     def _find(
         self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
         known: Mode | None,
-    ) -> tuple[Mode, bool]:  # fmt: skip
+    ) -> tuple[Mode, bool, GoodnessOfFit]:  # fmt: skip
         n = table.shape[1]
         p, root, height = np.zeros(n), np.zeros((n, n)), -math.inf
         if known is not None:
             p, root, height = known.p.copy(), known.root.copy(), known.height
         find = find_mode if problem.states.size <= LARGE_PAD else find_mode_on_large_pad
-        height, unsure = find.call(problem, table, begin, *attempts, p, root, height)
-        return Mode(p, root, height), unsure
+        height, unsure, fit = find.call(problem, table, begin, *attempts, p, root, height)
+        return Mode(p, root, height), unsure, GoodnessOfFit(*fit)
 
     def _sampled(
         self, readings: Readings, problem: Problem, table: Values, mode: Mode
@@ -235,7 +247,10 @@ class Model:
         return {}
 
     def _table(self, problem: Problem) -> Values:
-        n = unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated)
+        return self.table_of(unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated))
+
+    def table_of(self, n: int) -> Values:
+        """Return evenly spread points of Student's t, shape (N, n), in whole blocks."""
         return _table(max(1, math.ceil(self.most_points / BLOCK)) * BLOCK, n, self.seed)
 
     def _begin(self, start: Start, problem: Problem) -> Values:

@@ -35,8 +35,8 @@ LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS = 0.05, 1e-3, 0.9
 
 DEVIATIONS = 5.0  # of the converter's noise that hardly any element of a frame exceeds
 SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7, CONTRAST: 0.2}
-"""Standard deviations of ln sigma, the voids' log odds, ln foam, of the pressure's fall and lean (see
-`load_shares`) and of the contrast, before a frame is read."""
+"""Standard deviations of ln sigma, the voids' log odds, ln foam, of the pressure's fall and lean
+(see `load_shares`) and of the contrast, before a frame is read."""
 
 FALL_GUESSED = 0.5
 """The middle of the guess: a ball's (Hertz)."""
@@ -64,8 +64,9 @@ class Noise:
     contrast : float
         Power of an element's coverage that its reading goes with: 1 where readings are loads.
     estimated : tuple of str
-        Which of sigma, voids, foam, fall, lean and contrast are estimated with the object; the values here
-        are then the middle of the guess. A pressure whose fall or lean is not estimated has none.
+        Which of sigma, voids, foam, fall, lean and contrast are estimated with the object; the
+        values here are then the middle of the guess. A pressure whose fall or lean is not estimated
+        has none.
     """
 
     sigma: float = 0.5

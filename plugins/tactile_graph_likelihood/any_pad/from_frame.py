@@ -1,0 +1,96 @@
+"""What the fit of an outline says of the pad: how uneven it is, what strays, what hangs together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values, bounds
+from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.readings import Readings
+
+LAW = 0.35
+"""Of ln sigma that is not as told, the share that is the law's exponent, not the gains'."""
+
+FITTED = 3.0
+"""Numbers of an outline, by which fewer residuals than readings are free."""
+
+FEWEST = 6
+"""Readings, for sigma to be taken from them."""
+
+TOLD_STRAYS = 50.0
+"""Bare elements that what is told of strays is worth."""
+
+MOST_STRAYS = 0.3
+
+PAIRS = 1.6
+"""Pairs of neighbours for each touched element."""
+
+CHANCE = 1.0
+"""Standard deviations of neighbours' likeness that are put down to chance."""
+
+LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
+"""Correlation of neighbours below which it is none, and to which it is held."""
+
+
+def learned(told: Noise, p: Values, touched: int, strays: float) -> Noise:
+    """Return the noise that a fit has found.
+
+    Parameters
+    ----------
+    told : Noise
+    p : ndarray, shape (K,)
+        A most likely point, whose last two numbers are ln sigma and the voids' log odds.
+    touched : int
+        Readings that show.
+    strays : float
+
+    Notes
+    -----
+    Readings that scatter more or less than told may do so since gains do, or since the law's
+    exponent is another: that share of it is the contrast's.
+    """
+    sigma = math.exp(p[-2]) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
+    voids = 1.0 / (1.0 + math.exp(-p[-1]))
+    contrast = 1.0 + LAW * math.log(sigma / told.sigma)
+    return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+
+
+def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
+    """Return the share of strays, by what reads beyond the box around an outline."""
+    left, top, right, bottom = bounds.call(model.kind, model.corners, p)
+    x0, y0, pitch, side = readings.grid[:4]
+    first_column, last_column = math.ceil((left - side - x0) / pitch), (right - x0) / pitch
+    first_row, last_row = math.ceil((top - side - y0) / pitch), (bottom - y0) / pitch
+    inside = readings.states[
+        max(first_row, 0) : max(math.floor(last_row) + 1, 0),
+        max(first_column, 0) : max(math.floor(last_column) + 1, 0),
+    ]
+    beyond = readings.touched - int(np.count_nonzero(inside == ON))
+    bare = readings.states.size - inside.size
+    found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
+    return min(found, MOST_STRAYS)
+
+
+def variance_inflation(neighbours: float, touched: int) -> float:
+    """Return by how much what hangs together widens an outline's variance, at least 1.
+
+    Parameters
+    ----------
+    neighbours : float
+        How alike neighbours' residuals are, as in `GoodnessOfFit`.
+    touched : int
+
+    Notes
+    -----
+    Where neighbours correlate by rho, and further elements as under a Gaussian, elements along a
+    rim are worth ``sqrt(pi / -ln rho)`` times fewer.
+    """
+    alike = (neighbours - CHANCE) / math.sqrt(PAIRS * max(touched, 1))
+    if alike <= LEAST_ALIKE:
+        return 1.0
+    return max(1.0, math.sqrt(math.pi / -math.log(min(alike, MOST_ALIKE))))

@@ -1,0 +1,59 @@
+"""``AnyPadPosterior``: a posterior whose flag is about how far off it may be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+
+from tactile_graph_likelihood.geometry.outlines import DISC
+from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior
+
+USUAL = 0.36
+"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``: pads of 1.3 cm pitch."""
+
+VAGUE = 2.0
+"""Times the usual deviation from which on an answer counts as vague."""
+
+
+@dataclass(frozen=True, eq=False)
+class AnyPadPosterior(Posterior):
+    """A posterior on a pad that need not be the one that is told.
+
+    Parameters
+    ----------
+    usual_std_cm : float
+        Deviation of the centre that readings as even as told would leave.
+    """
+
+    usual_std_cm: float = math.inf
+
+    @property
+    def fits(self) -> bool:
+        """Whether the readings place the outline about as well as they should.
+
+        They do not where they are less likely than the model's own, whatever is estimated with the
+        outline, or where the centre's deviation is twice the usual one.
+        """
+        return self.surprise > UNLIKELY and self.centre_std_cm < VAGUE * self.usual_std_cm
+
+
+def on_any_pad(found: Posterior, inflation: float, sigma: float, pitch_cm: float) -> Posterior:
+    """Return a posterior with its variance inflated and its usual deviation told.
+
+    Parameters
+    ----------
+    found : Posterior
+    inflation : float
+        Of its variance, at least 1.
+    sigma : float
+        Of ln gain, as told.
+    pitch_cm : float
+    """
+    size = found.mean[2] if found.kind == DISC else math.sqrt(found.mean[2] * found.mean[3])
+    usual = USUAL * sigma * pitch_cm * math.sqrt(pitch_cm / max(size, 0.5 * pitch_cm))
+    values = {field.name: getattr(found, field.name) for field in fields(Posterior)}
+    its = AnyPadPosterior(**values, usual_std_cm=usual)
+    if inflation <= 1.0:
+        return its
+    points = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    return replace(its, covariance=inflation * found.covariance, points=points)
