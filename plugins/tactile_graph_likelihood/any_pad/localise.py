@@ -77,7 +77,8 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        return replace(self.told, noise=replace(noise, estimated=estimated))
+        """Return the model with another noise; its search goes over the pad's edge freely."""
+        return replace(self.told, noise=replace(noise, estimated=estimated), whole=0.0)
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
         """Return the posterior of the outline.
@@ -154,6 +155,7 @@ class AnyPad:
             model = self._with(noise, "contrast")
             begin = np.append(top.p[: self._count], noise.contrast)
             mode = model.likeliest_near(readings, begin).mode
+        model = replace(model, whole=self.told.whole)
         return model.posterior_around(readings, loosened(mode, readings))
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:

@@ -20,7 +20,7 @@ from tactile_graph_likelihood.single.likely import (
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 
-QUICK = FootprintSettings(precision=0.3)
+QUICK = FootprintSettings(precision=0.3, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
 
 

@@ -70,8 +70,8 @@ class Model:
     noise : Noise
     gap_cm : float
         Distance of neighbouring elements' edges.
-    whole : bool
-        The outline lies fully on the pad; otherwise only its centre does.
+    whole : float
+        Probability beforehand that the outline lies fully on the pad; its centre always does.
     smallest_cm, largest_cm : float
         Range of radii, half axes and half sides, over which they are log-uniform; 0 and infinity
         for 0.4 pitches and the pad's diagonal.
@@ -88,7 +88,7 @@ class Model:
     corners: int = 0
     noise: Noise = field(default_factory=Noise)
     gap_cm: float = 0.3
-    whole: bool = False
+    whole: float = 0.0
     smallest_cm: float = 0.5
     largest_cm: float = 15.0
     precision: float = 0.15
@@ -228,7 +228,7 @@ class Model:
                 width,
                 height,
                 *self.range_cm(readings),
-                1.0 if self.whole else 0.0,
+                self.whole,
                 0.0,
                 0.0,
             ]
