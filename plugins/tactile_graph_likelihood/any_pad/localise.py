@@ -12,7 +12,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import learned, strays_beyond, variance_inflation
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad
-from tactile_graph_likelihood.geometry.outlines import sizes, unknowns
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     FIRST,
@@ -129,7 +129,7 @@ class AnyPad:
         logs = log_chances(tops, readings.touched)
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
-        found = {best: self._sampled(best, readings, tops[best].mode)}
+        found = {best: self._looked_at(best, readings, tops[best])}
         for part, share in shares.items():
             if part != best and share > NEGLIGIBLE:
                 found[part] = self._normal(part, tops[part])
@@ -140,6 +140,15 @@ class AnyPad:
         its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
         inflation = variance_inflation(its.neighbours, readings.touched)
         return on_any_pad(its, inflation, self.told.noise.sigma, float(readings.grid[2]))
+
+    def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
+        """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
+
+        That has nine unknowns and more, for which few points are worse than none.
+        """
+        if part != EVEN and self.told.kind != DISC:
+            return self._normal(part, top)
+        return self._sampled(part, readings, top.mode)
 
     def _sampled(self, part: str, readings: Readings, top: Mode) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
