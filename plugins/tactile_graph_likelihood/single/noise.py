@@ -61,12 +61,12 @@ class Noise:
         Least load that shows, in the image's unit; 0 where any does.
     foam_cm : float
         Width (standard deviation) over which foam spreads the load.
-    contrast : float
-        Power of an element's coverage that its reading goes with: 1 where readings are loads.
     estimated : tuple of str
         Which of sigma, voids, foam, fall, lean and contrast are estimated with the object; the
         values here are then the middle of the guess. A pressure whose fall or lean is not estimated
         has none.
+    contrast : float
+        Power of an element's coverage that its reading goes with: 1 where readings are loads.
     """
 
     sigma: float = 0.5
@@ -74,8 +74,8 @@ class Noise:
     strays: float = 1e-3
     least: float = 0.0
     foam_cm: float = 0.0
-    contrast: float = 1.0
     estimated: tuple[str, ...] = ()
+    contrast: float = 1.0
 
     def vector(self, pitch_cm: float) -> Values:
         """Return the numbers as the kernels take them."""
