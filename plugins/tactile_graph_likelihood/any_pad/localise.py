@@ -30,12 +30,15 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
-LEANS, FALLS, ALIKE = 1.0, 0.75, 2.5
+LEANS, FALLS, ALIKE = 1.0, 0.4, 2.5
 """Patterns that an even face leaves over, in standard deviations, from which on another pressure is
 worth its time."""
 
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
+
+MANY = 8.0
+"""Times what is told of strays from which on an outline is searched for anew, knowing of them."""
 
 FEW, LOOSE = 20, 0.3
 """Touched elements of an outline so small that a void looks like its rim, and the deviation in
@@ -105,6 +108,11 @@ class AnyPad:
         even = model.likeliest(readings, start=start)
         if even.unsure:
             even = model.likeliest(readings, before=even)
+        strays = strays_beyond(self.told, readings, even.mode.p)
+        if strays > MANY * self.told.noise.strays:
+            model = self._with(replace(self.told.noise, strays=strays), "sigma", "voids")
+            near = model.likeliest_near(readings, even.mode.p)
+            even = model.likeliest(readings, before=near)
         if even.mode.height == -math.inf:
             raise Degenerate(
                 f"{readings.touched} touched elements: no such outline on the pad explains them"
