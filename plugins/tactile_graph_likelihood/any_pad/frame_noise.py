@@ -11,7 +11,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_pads.pad import Pad
 
 UNTOUCHED = 0.25
-"""Share of a frame that is taken to be untouched at the least: its closest readings are the zero."""
+"""Share of a frame that is taken to be untouched at least: its closest readings are the zero."""
 
 WIDTH = 0.637
 """Of that stretch, in standard deviations of normal noise, were all of the frame untouched: where

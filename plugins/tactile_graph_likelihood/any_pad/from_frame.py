@@ -1,4 +1,4 @@
-"""What the fit of an outline says of the pad: how uneven it is, what strays, what hangs together."""
+"""What the fit of an outline says of the pad: its unevenness, its strays, what hangs together."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values, bounds
-from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -70,7 +70,7 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
         max(first_row, 0) : max(math.floor(last_row) + 1, 0),
         max(first_column, 0) : max(math.floor(last_column) + 1, 0),
     ]
-    beyond = readings.touched - int(np.count_nonzero(inside == ON))
+    beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
     bare = readings.states.size - inside.size
     found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
     return min(found, MOST_STRAYS)

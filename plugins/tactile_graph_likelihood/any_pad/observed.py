@@ -10,7 +10,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise_v
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import LARGEST, Readings
 from tactile_graph_pads.law import ForceLaw
 from tactile_graph_pads.pad import Pad
@@ -23,6 +23,12 @@ SPACED = 4
 
 GAPS = 2.0
 """Mean spacings of the least readings by which what shows may lie below all of them."""
+
+ALIKE, FEWEST_ALIKE, SHARE_ALIKE = 0.04, 5, 0.15
+"""Span of the logarithm, and number, of readings that are so alike that they all read the most."""
+
+BEYOND, SHARE_BEYOND = 3, 0.03
+"""Readings beyond them that may be strays."""
 
 
 def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
@@ -78,6 +84,10 @@ def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
     logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, 1e-300)), edge))
     states = np.where(shows, ON, UNDER).astype(np.uint8)
     states[~known] = UNKNOWN
+    ceiling = ceiling_of(logs[shows])
+    if ceiling < math.inf:
+        states[shows & (logs >= ceiling)] = OVER
+        logs = np.where(states == OVER, ceiling, logs)
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
@@ -157,8 +167,27 @@ def least_that_shows(logs: Values, told: float) -> float:
     return min(max(told, bottom - GAPS * spacing), bottom) if told > -math.inf else bottom - spacing
 
 
+def ceiling_of(logs: Values) -> float:
+    """Return the logarithm of the load at which readings end, infinite where they do not.
+
+    They do where many are alike and hardly any are larger.
+    """
+    values = np.sort(logs)
+    n = len(values)
+    many = max(FEWEST_ALIKE, math.ceil(SHARE_ALIKE * n))
+    if n < many:
+        return math.inf
+    widths = values[many - 1 :] - values[: n - many + 1]
+    at = int(widths.argmin())
+    if widths[at] > ALIKE:
+        return math.inf
+    last = int(np.searchsorted(values, values[at] + 2.0 * ALIKE, side="right"))
+    return float(values[at]) if n - last <= BEYOND + SHARE_BEYOND * n else math.inf
+
+
 def uniform(readings: Readings) -> tuple[Readings, float]:
     """Return readings whose elements all show from the same load, and that load."""
     under = readings.states == UNDER
     least = float(np.median(readings.logs[under])) if under.any() else -math.inf
-    return readings._replace(states=np.where(under, OFF, readings.states)), math.exp(least)
+    states = np.where(under, OFF, np.where(readings.states == OVER, ON, readings.states))
+    return readings._replace(states=states.astype(np.uint8)), math.exp(least)

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
-from tactile_graph_likelihood.geometry.outlines import DISC
-from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior
+from tactile_graph_likelihood.geometry.outlines import DISC, unknowns
+from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
 
 USUAL = 0.36
 """Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``: pads of 1.3 cm pitch."""
 
 VAGUE = 2.0
 """Times the usual deviation from which on an answer counts as vague."""
+
+
+EVENLY = 2.0
+"""Independent points that one of evenly spread points is worth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +31,16 @@ class AnyPadPosterior(Posterior):
     """
 
     usual_std_cm: float = math.inf
+
+    @cached_property
+    def reach(self) -> float:
+        """Squared Mahalanobis distance within which 90 % of the posterior lies.
+
+        That of the weighted points, but no less than that of a normal distribution that is known
+        from as many.
+        """
+        n = unknowns.call(self.kind, self.corners)
+        return max(self.reach_of_points(n), normal_reach(n, EVENLY * self.equal_points))
 
     @property
     def fits(self) -> bool:

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
 
-OFF, ON, UNKNOWN, UNDER = range(4)
-"""What is known of an element: reads nothing, reads a load, broken or saturated, reads nothing that
-its own least load would not explain."""
+OFF, ON, UNKNOWN, UNDER, OVER = range(5)
+"""What is known of an element: reads nothing, reads a load, broken or saturated, reads nothing, as
+far as its own least load goes, or a load at which readings end."""
 
 States: TypeAlias = NDArray[np.uint8]
 
@@ -31,6 +31,9 @@ of coverage that readings go with, 1 where they are loads."""
 SPAN = math.log(1e4)
 """Width of the logarithm of a stray's load, and of the prior of a covered element's load."""
 
+HIGH = 0.5
+"""Share of strays that read the most that an element can."""
+
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 SQRT_HALF = math.sqrt(0.5)
 
@@ -40,6 +43,13 @@ def on_level(noise: Values) -> float:
     """Return the log of the densest reading's likelihood over a stray's."""
     peak = (1.0 - noise[STRAYS]) * (1.0 - noise[VOIDS]) / (noise[SIGMA] * ROOT_TWO_PI)
     return math.log(peak) - math.log(noise[STRAYS] / SPAN)
+
+
+@compiled_as_is
+def over_odds(noise: Values) -> float:
+    """Return how much likelier an element reads the most, where it bears that, than by a stray."""
+    odds: float = (1.0 - noise[STRAYS]) * (1.0 - noise[VOIDS]) / (HIGH * noise[STRAYS])
+    return odds
 
 
 @compiled_later
@@ -55,9 +65,10 @@ def terms(
     row, column : int
         Where the window begins.
     logs : ndarray, shape (all rows, all columns)
-        Logarithm of each reading that shows; of an element's own least load where it is `UNDER`.
+        Logarithm of each reading that shows; of an element's own least load where it is `UNDER`, of
+        the load at which readings end where it is `OVER`.
     states : ndarray of uint8, the same shape
-        `OFF`, `ON`, `UNKNOWN` or `UNDER`.
+        As named by `OFF`, `ON` and so on.
     noise : ndarray, shape (9,)
         As named by `SIGMA`, `VOIDS` and so on.
 
@@ -65,11 +76,12 @@ def terms(
     -----
     With mu = ln m, u = (ln l - mu) / sigma and z = (mu - ln l_least) / sigma, an element adds
     ``ln(1 + (1 - e) (1 - v) N(u) / sigma / (e / SPAN))`` where it reads l and
-    ``ln(1 - (1 - v) Phi(z))`` where it reads nothing.
+    ``ln(1 - (1 - v) Phi(z))`` where it reads nothing. Where it reads the most, it adds
+    ``ln(1 + (1 - e) (1 - v) Phi(z) / (e HIGH))``, z being from there.
     """
     # Factors are multiplied up, and their logarithm taken now and then.
     sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
-    level = on_level(noise)
+    level, odds = on_level(noise), over_odds(noise)
     total, product = 0.0, 1.0
     load, mu, off, known = -1.0, 0.0, 0.0, math.nan
     for i in range(expected.shape[0]):
@@ -89,6 +101,9 @@ def terms(
                     total += a
                 elif a > -30.0:
                     product *= 1.0 + math.exp(a)
+            elif state == OVER:
+                z = (mu - logs[row + i, column + j]) / sigma
+                product *= 1.0 + odds * 0.5 * math.erfc(-SQRT_HALF * z)
             else:
                 least = logs[row + i, column + j] if state == UNDER else noise[LEAST]
                 if least != known:

@@ -14,6 +14,7 @@ from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     ON,
+    OVER,
     ROOT_TWO_PI,
     SIGMA,
     SPAN,
@@ -231,7 +232,7 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
     residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
     for i in range(rows):
         for j in range(columns):
-            if states[i, j] == UNKNOWN:
+            if states[i, j] == UNKNOWN or states[i, j] == OVER:
                 continue
             on = states[i, j] == ON
             r, c = i - box[0], j - box[1]

@@ -23,7 +23,7 @@ from tactile_graph_likelihood.geometry.outlines import (
     unknowns,
 )
 from tactile_graph_likelihood.geometry.oval import to_oval
-from tactile_graph_likelihood.single.element_terms import ON, States
+from tactile_graph_likelihood.single.element_terms import ON, OVER, States
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import maximise_softly_first
@@ -70,7 +70,7 @@ def _moments_within(grid: Values, logs: Values, states: States, far: float, out:
     for i in range(states.shape[0]):
         v = i - mean_y
         for j in range(states.shape[1]):
-            if states[i, j] != ON:
+            if states[i, j] != ON and states[i, j] != OVER:
                 continue
             u = j - mean_x
             if far < math.inf and a * u * u + b * u * v + c * v * v > far:
