@@ -37,6 +37,10 @@ worth its time."""
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
+PRESSED = 0.8
+"""Share that is added to the variance where a pressure of one or two numbers explains the load: no
+face presses quite like that."""
+
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
 
@@ -147,6 +151,7 @@ class AnyPad:
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
         inflation = variance_inflation(its.neighbours, readings.touched)
+        inflation *= 1.0 + PRESSED * (1.0 - shares.get(EVEN, 0.0) / sum(shares.values()))
         return on_any_pad(its, inflation, self.told.noise.sigma, float(readings.grid[2]))
 
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
