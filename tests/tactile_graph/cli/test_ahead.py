@@ -29,7 +29,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def test_the_kernels_of_a_frame_are_compiled_but_for_the_first(made: list[str]) -> None:
     ahead.compile_ahead([load("circle-likelihood")])
     assert "sample_around" in made
-    assert "find_mode" not in made
+    assert "unknowns" not in made
     assert len(made) == len(set(made))
 
 
