@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -138,7 +138,7 @@ class AnyPad:
 
     def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
         """Return the posterior around the most likely outlines, over all pressures."""
-        logs = log_chances(tops, readings.touched)
+        logs = log_chances(tops, shared_by(tops.values(), readings.touched))
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
         found = {best: self._looked_at(best, readings, tops[best])}
@@ -198,16 +198,19 @@ def asked_by(fit: GoodnessOfFit) -> list[str]:
     return [part for part in FIRST if asked[part]]
 
 
-def log_chances(tops: Mapping[str, Likeliest], touched: int) -> dict[str, float]:
-    """Return the log probability of each pressure, up to a constant.
+def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
+    """Return by how much elements count for less, since neighbours hang together in any fit."""
+    return min(variance_inflation(top.fit.neighbours, touched) for top in tops)
 
-    Evidence takes elements for independent. Where neighbours hang together whatever the pressure,
-    it is worth as many times less.
+
+def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float]:
+    """Return the log probability of each pressure with its fit, up to a constant.
+
+    Evidence takes elements for independent; it is worth as many times less as they are ``shared``.
     """
-    if len(tops) == 1:
-        return dict.fromkeys(tops, 0.0)
-    before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
-    shared = min(variance_inflation(top.fit.neighbours, touched) for top in tops.values())
+    before = {EVEN: 1.0}
+    if len(tops) > 1:
+        before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
 
 

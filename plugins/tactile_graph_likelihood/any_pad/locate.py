@@ -19,6 +19,7 @@ from tactile_graph_likelihood.single.likely import (
 )
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.readings import Readings
 
 QUICK = FootprintSettings(precision=0.3, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
@@ -50,12 +51,17 @@ class Located:
     ) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        if readings.states.size <= LARGE_PAD:
-            return self._any_pad.posterior(readings, start)
-        readings, least = uniform(readings)
-        told = self._any_pad.told
-        noise = replace(told.noise, least=least)
-        return AnyPad(replace(told, noise=noise)).posterior(readings, start)
+        readings, any_pad = fitted_to(readings, self._any_pad)
+        return any_pad.posterior(readings, start)
+
+
+def fitted_to(readings: Readings, any_pad: AnyPad) -> tuple[Readings, AnyPad]:
+    """Return both as they are, but of a large pad with one least load for all elements."""
+    if readings.states.size <= LARGE_PAD:
+        return readings, any_pad
+    readings, least = uniform(readings)
+    told = any_pad.told
+    return readings, AnyPad(replace(told, noise=replace(told.noise, least=least)))
 
 
 class LocateDisc(Located):

@@ -8,15 +8,12 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise_v
+from tactile_graph_likelihood.any_pad.above_noise import risen
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
-from tactile_graph_likelihood.single.readings import LARGEST, Readings
+from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_pads.law import ForceLaw
 from tactile_graph_pads.pad import Pad
-
-SHOWS = 4.0
-"""Standard deviations of noise above zero from which on a reading is one."""
 
 SPACED = 4
 """Least readings by whose spacing the least load that shows is extrapolated."""
@@ -63,18 +60,10 @@ def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
         raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
     if not gap_cm < across:
         raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
-    values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
-    if not np.abs(values).max(initial=0.0) <= LARGEST:
-        raise ValueError(f"readings must be finite and at most {LARGEST:g}")
-    known = image.valid
-    noise = _noise(image, values if known is None else values[known], pad)
-    least = np.maximum(SHOWS * noise.sigma, 0.5 * noise.step)
-    above = values - noise.zero
-    shows = above > least
-    above = np.where(shows, above, 0.0)
+    above, least, shows, _ = risen(image, pad)
     loads, least_loads, possible = _loads(image.quantity, above, least, pad)
-    known = possible if known is None else known & possible
-    shows &= known
+    known = possible if image.valid is None else image.valid & possible
+    shows = shows & known
     touched = int(np.count_nonzero(shows))
     if touched == 0:
         raise Degenerate("no reading rises above the noise: no outline fits")
@@ -94,17 +83,8 @@ def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
     return Readings(grid, logs, states, touched)
 
 
-def _noise(image: Image, readings: Values, pad: Pad) -> FrameNoise:
-    """Return zero and noise: the pad's, where it states them, else the frame's."""
-    if readings.size == 0:
-        return FrameNoise(0.0, 0.0, 0.0)
-    found = frame_noise(readings.ravel())
-    told = told_noise_v(pad) if image.quantity == "volt" else None
-    return found if told is None else found._replace(sigma=told)
-
-
 def _loads(
-    quantity: str, above: Values, least: Values, pad: Pad
+    quantity: str, above: Values, least: float | Values, pad: Pad
 ) -> tuple[Values, Values, np.ndarray]:
     """Return loads, the load that each element would have shown as ``least``, and what is possible.
 
