@@ -61,7 +61,7 @@ class Locate:
             Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
         ] = QUICK,
     ) -> None:
-        self._pad, self._gap_cm = settings.known_pad, settings.gap
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._every = {name: AnyPad(settings.model(KINDS[name])) for name in dict.fromkeys(shapes)}
 
     def __call__(self, image: Image) -> Located:

@@ -22,9 +22,8 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
-from tactile_graph_likelihood.single.importance import FREEDOM
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import BLOCK, Likeliest, Model, Start
+from tactile_graph_likelihood.single.model import Likeliest, Model, Start
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
@@ -108,29 +107,29 @@ class AnyPad:
 
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
-        model = self._fits[EVEN]
-        even = model.likeliest(readings, start=start)
+        its, even = self, self._fits[EVEN].likeliest(readings, start=start)
         if even.unsure:
-            even = model.likeliest(readings, before=even)
-        strays = strays_beyond(self.told, readings, even.mode.p)
-        if strays > MANY * self.told.noise.strays:
-            model = self._with(replace(self.told.noise, strays=strays), "sigma", "voids")
-            near = model.likeliest_near(readings, even.mode.p)
-            even = model.likeliest(readings, before=near)
+            even = self._fits[EVEN].likeliest(readings, before=even)
         if even.mode.height == -math.inf:
             raise Degenerate(
                 f"{readings.touched} touched elements: no such outline on the pad explains them"
             )
+        point = self.told.point_of(even)
+        strays = strays_beyond(self.told, readings, point)
+        if strays > MANY * self.told.noise.strays:
+            its = AnyPad(replace(self.told, noise=replace(self.told.noise, strays=strays)))
+            even = its._fits[EVEN].likeliest_near(readings, point)
+            even = its._fits[EVEN].likeliest(readings, before=even)
         found = {EVEN: even}
         asked = asked_by(even.fit) if readings.states.size <= LARGE_PAD else []
         for part in asked:
-            top = self._pressed(part, readings, even)
+            top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
         return found
 
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
-        n, p = self._count, even.mode.p
+        n, p = self._count, self.told.point_of(even)
         begin = np.concatenate([p[:n], PRESSURES[part], p[n:]])
         if part == "fall":
             begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
@@ -145,7 +144,7 @@ class AnyPad:
         for part, share in shares.items():
             if part != best and share > NEGLIGIBLE:
                 found[part] = self._normal(part, tops[part])
-        its = found[best]
+        its = replace(found[best], pressures={best: 1.0})
         if len(found) > 1:
             weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
@@ -154,6 +153,9 @@ class AnyPad:
         inflation *= 1.0 + PRESSED * (1.0 - shares.get(EVEN, 0.0) / sum(shares.values()))
         return on_any_pad(its, inflation, self.told.noise.sigma, float(readings.grid[2]))
 
+    def _normal(self, part: str, top: Likeliest) -> Posterior:
+        return self.told.normal_around(top, self._count + len(PRESSURES[part]))
+
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
 
@@ -161,34 +163,23 @@ class AnyPad:
         """
         if part != EVEN and self.told.kind != DISC:
             return self._normal(part, top)
-        return self._sampled(part, readings, top.mode)
+        return self._sampled(part, readings, top)
 
-    def _sampled(self, part: str, readings: Readings, top: Mode) -> Posterior:
+    def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
-        strays = strays_beyond(self.told, readings, top.p)
-        noise = learned(self.told.noise, top.p, readings.touched, strays)
-        if readings.states.size > LARGE_PAD:
-            noise = replace(noise, contrast=1.0)
-        if part != EVEN or readings.states.size > LARGE_PAD:
-            k = self._count + len(PRESSURES[part])
-            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
-            mode = Mode(top.p[:k].copy(), top.root[:k, :k].copy(), top.height)
-        else:
+        point = self.told.point_of(top)
+        strays = strays_beyond(self.told, readings, point)
+        noise = learned(self.told.noise, point, readings.touched, strays)
+        if part == EVEN and readings.states.size <= LARGE_PAD:
             model = self._with(noise, "contrast")
-            begin = np.append(top.p[: self._count], noise.contrast)
+            begin = np.append(point[: self._count], noise.contrast)
             mode = model.likeliest_near(readings, begin).mode
+        else:
+            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+            p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
+            mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
         model = replace(model, whole=self.told.whole)
         return model.posterior_around(readings, loosened(mode, readings))
-
-    def _normal(self, part: str, top: Likeliest) -> Posterior:
-        """Return the normal distribution around a top, its noise as found."""
-        k = self._count + len(PRESSURES[part])
-        p, spread = top.mode.p[:k], np.linalg.inv(top.mode.root[:k, :k])
-        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.told.table_of(k)[:BLOCK]
-        return Posterior(
-            self.told.kind, self.told.corners, p, spread.T @ spread, p + steps @ spread,
-            np.full(BLOCK, 1.0 / BLOCK), p, top.evidence, float(BLOCK), *top.fit,
-        )  # fmt: skip
 
 
 def asked_by(fit: GoodnessOfFit) -> list[str]:

@@ -43,7 +43,7 @@ class Located:
             Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
         ] = QUICK,
     ) -> None:
-        self._pad, self._gap_cm = settings.known_pad, settings.gap
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._any_pad = AnyPad(settings.model(self._kind))
 
     def posterior(

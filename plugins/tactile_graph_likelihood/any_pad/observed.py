@@ -21,6 +21,9 @@ SPACED = 4
 GAPS = 2.0
 """Mean spacings of the least readings by which what shows may lie below all of them."""
 
+SAME = 0.02
+"""Of a pitch: by how much it may differ from the pad's and be taken for it."""
+
 ALIKE, FEWEST_ALIKE, SHARE_ALIKE = 0.04, 5, 0.15
 """Span of the logarithm, and number, of readings that are so alike that they all read the most."""
 
@@ -28,7 +31,7 @@ BEYOND, SHARE_BEYOND = 3, 0.03
 """Readings beyond them that may be strays."""
 
 
-def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
+def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     """Return what an image shows, whatever its quantity.
 
     Parameters
@@ -38,8 +41,9 @@ def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
         as these are possible; any other quantity is taken to rise with load from the frame's own
         zero. Invalid cells say nothing.
     pad : Pad
-    gap_cm : float
-        Distance of neighbouring elements' edges; less than the pitch.
+    gap_cm : float, optional
+        Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
+        where the image's pitch is not the pad's.
 
     Returns
     -------
@@ -58,6 +62,8 @@ def observed(image: Image, pad: Pad, gap_cm: float) -> Readings:
     across, down = image.pitch_cm
     if abs(across - down) > 1e-9 * across:
         raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if gap_cm is None:
+        gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     if not gap_cm < across:
         raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
     above, least, shows, _ = risen(image, pad)

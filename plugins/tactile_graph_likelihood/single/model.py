@@ -27,7 +27,7 @@ from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
-from tactile_graph_likelihood.single.importance import weighted_moments
+from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -160,6 +160,30 @@ class Model:
         """Return the posterior around a mode."""
         problem = self._problem(readings, None)
         return self._sampled(readings, problem, self._table(problem), mode)
+
+    def point_of(self, top: Likeliest) -> Values:
+        """Return a most likely point in the outline's own numbers, shape (K,)."""
+        return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
+
+    def normal_around(self, top: Likeliest, count: int) -> Posterior:
+        """Return the posterior of a top's first numbers as if it were normal, the others known.
+
+        Parameters
+        ----------
+        top : Likeliest
+        count : int
+            How many: the outline's, its load, and what of the noise comes first.
+        """
+        p, spread = top.mode.p[:count], np.linalg.inv(top.mode.root[:count, :count])
+        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.table_of(count)[:BLOCK]
+        points, weights = p + steps @ spread, np.full(BLOCK, 1.0 / BLOCK)
+        likeliest, mean, covariance = p, p, spread.T @ spread
+        if self.kind == ELLIPSE:
+            likeliest, mean, covariance = _as_ellipses(p, points, weights)
+        return Posterior(
+            self.kind, self.corners, mean, covariance, points, weights, likeliest, top.evidence,
+            float(BLOCK), *top.fit,
+        )  # fmt: skip
 
     def _find(
         self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
