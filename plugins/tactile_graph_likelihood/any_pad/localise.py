@@ -10,8 +10,13 @@ from functools import cached_property
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.any_pad.from_frame import learned, strays_beyond, variance_inflation
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad
+from tactile_graph_likelihood.any_pad.from_frame import (
+    learned,
+    scatter_of_covered,
+    strays_beyond,
+    variance_inflation,
+)
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
@@ -40,6 +45,10 @@ PRESSED = 0.8
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that."""
 
+PATTERN = 3.0
+"""Pattern left over from which on an outline on a large pad, where no pressure is looked at, does not
+press as evenly as it is taken to."""
+
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
 
@@ -62,8 +71,9 @@ class AnyPad:
 
     Notes
     -----
-    The outline is fitted with sigma and voids; on a pad of up to 1024 elements also under each
-    pressure that an even face leaves a pattern of. The likeliest of these fits is sampled with the
+    The outline is fitted with sigma and voids; also under each pressure that an even face leaves a
+    pattern of. On a pad of more than 1024 elements sigma and voids are those of what it covers
+    whole, and a pattern only widens the posterior. The likeliest of these fits is sampled with the
     noise that it has found, an even face with the law's exponent; the others stand for themselves
     as normal distributions, by their evidence over what neighbouring elements share.
     """
@@ -107,22 +117,23 @@ class AnyPad:
 
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
-        its, even = self, self._fits[EVEN].likeliest(readings, start=start)
+        large = readings.states.size > LARGE_PAD
+        model = self._with(self.told.noise) if large else self._fits[EVEN]
+        its, even = self, model.likeliest(readings, start=start)
         if even.unsure:
-            even = self._fits[EVEN].likeliest(readings, before=even)
+            even = model.likeliest(readings, before=even)
         if even.mode.height == -math.inf:
             raise Degenerate(
                 f"{readings.touched} touched elements: no such outline on the pad explains them"
             )
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
-        if strays > MANY * self.told.noise.strays:
+        if strays > MANY * self.told.noise.strays and not large:
             its = AnyPad(replace(self.told, noise=replace(self.told.noise, strays=strays)))
             even = its._fits[EVEN].likeliest_near(readings, point)
             even = its._fits[EVEN].likeliest(readings, before=even)
         found = {EVEN: even}
-        asked = asked_by(even.fit) if readings.states.size <= LARGE_PAD else []
-        for part in asked:
+        for part in [] if large else asked_by(even.fit):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
@@ -151,7 +162,10 @@ class AnyPad:
         its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
         inflation = variance_inflation(its.neighbours, readings.touched)
         inflation *= 1.0 + PRESSED * (1.0 - shares.get(EVEN, 0.0) / sum(shares.values()))
-        return on_any_pad(its, inflation, self.told.noise.sigma, float(readings.grid[2]))
+        pitch = float(readings.grid[2])
+        its = on_any_pad(its, inflation, self.told.noise.sigma, pitch)
+        large = readings.states.size > LARGE_PAD
+        return unexplained(its, pitch) if large and its.alike > PATTERN else its
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
         return self.told.normal_around(top, self._count + len(PRESSURES[part]))
@@ -168,9 +182,11 @@ class AnyPad:
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
         point = self.told.point_of(top)
+        large = readings.states.size > LARGE_PAD
+        scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, point, readings.touched, strays)
-        if part == EVEN and readings.states.size <= LARGE_PAD:
+        noise = learned(self.told.noise, scatter, readings.touched, strays)
+        if part == EVEN and not large:
             model = self._with(noise, "contrast")
             begin = np.append(point[: self._count], noise.contrast)
             mode = model.likeliest_near(readings, begin).mode

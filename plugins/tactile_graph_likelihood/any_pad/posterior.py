@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
-from tactile_graph_likelihood.geometry.outlines import DISC, unknowns
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
 
 USUAL = 0.36
@@ -15,6 +15,9 @@ USUAL = 0.36
 VAGUE = 2.0
 """Times the usual deviation from which on an answer counts as vague."""
 
+
+HIDDEN = 0.25
+"""Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
 
 EVENLY = 2.0
 """Independent points that one of evenly spread points is worth."""
@@ -52,7 +55,9 @@ class AnyPadPosterior(Posterior):
         return self.surprise > UNLIKELY and self.centre_std_cm < VAGUE * self.usual_std_cm
 
 
-def on_any_pad(found: Posterior, inflation: float, sigma: float, pitch_cm: float) -> Posterior:
+def on_any_pad(
+    found: Posterior, inflation: float, sigma: float, pitch_cm: float
+) -> AnyPadPosterior:
     """Return a posterior with its variance inflated and its usual deviation told.
 
     Parameters
@@ -72,3 +77,11 @@ def on_any_pad(found: Posterior, inflation: float, sigma: float, pitch_cm: float
         return its
     points = found.mean + math.sqrt(inflation) * (found.points - found.mean)
     return replace(its, covariance=inflation * found.covariance, points=points)
+
+
+def unexplained(found: AnyPadPosterior, pitch_cm: float) -> AnyPadPosterior:
+    """Return a posterior whose lengths may be off by what a pattern of the load hides."""
+    lengths = 2 + sizes.call(found.kind)
+    covariance = found.covariance.copy()
+    covariance[range(lengths), range(lengths)] += (HIDDEN * pitch_cm) ** 2
+    return replace(found, covariance=covariance)
