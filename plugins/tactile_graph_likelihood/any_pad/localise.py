@@ -46,8 +46,8 @@ PRESSED = 0.8
 face presses quite like that."""
 
 PATTERN = 3.0
-"""Pattern left over from which on an outline on a large pad, where no pressure is looked at, does not
-press as evenly as it is taken to."""
+"""Pattern left over from which on an outline on a large pad, where no pressure is looked at, is not
+taken to press evenly."""
 
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""

@@ -168,7 +168,8 @@ def ceiling_of(logs: Values) -> float:
     if widths[at] > ALIKE:
         return math.inf
     last = int(np.searchsorted(values, values[at] + 2.0 * ALIKE, side="right"))
-    return float(values[at]) if n - last <= BEYOND + SHARE_BEYOND * n else math.inf
+    ends = n - last <= BEYOND + SHARE_BEYOND * n
+    return float(values[at]) - 0.5 * ALIKE if ends else math.inf
 
 
 def uniform(readings: Readings) -> tuple[Readings, float]:

@@ -12,7 +12,7 @@ from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, norma
 USUAL = 0.36
 """Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``: pads of 1.3 cm pitch."""
 
-VAGUE = 2.0
+VAGUE = 2.5
 """Times the usual deviation from which on an answer counts as vague."""
 
 
@@ -50,7 +50,7 @@ class AnyPadPosterior(Posterior):
         """Whether the readings place the outline about as well as they should.
 
         They do not where they are less likely than the model's own, whatever is estimated with the
-        outline, or where the centre's deviation is twice the usual one.
+        outline, or where the centre's deviation is two and a half times the usual one.
         """
         return self.surprise > UNLIKELY and self.centre_std_cm < VAGUE * self.usual_std_cm
 
