@@ -9,7 +9,7 @@ A pad draws what it is from a seeded generator, and every frame carries its trut
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,11 +119,14 @@ class Bench:
         objects = self.kind.discs if shape == "disc" else self.kind.rectangles
         for index in range(n):
             weight_g, *sizes = objects[index % len(objects)]
-            outline = self._put_down(*sizes)
-            volts = self._read(self._load_g(outline, weight_g))
-            truth = (TrueObject(outline, weight_g),)
-            pitch = self.kind.pitch_cm
-            yield Frame.of(volts, pitch, self._origin_cm, "volt", index=index, truth=truth)
+            yield self.frame([TrueObject(self._put_down(*sizes), weight_g)], index)
+
+    def frame(self, objects: Sequence[TrueObject], index: int = 0) -> Frame:
+        """Return a frame of discs and rectangles that lie on the pad all at once."""
+        load_g = sum(self._load_g(it.shape, it.weight_g) for it in objects)
+        volts = self._read(np.asarray(load_g))
+        pitch, truth = self.kind.pitch_cm, tuple(objects)
+        return Frame.of(volts, pitch, self._origin_cm, "volt", index=index, truth=truth)
 
     @property
     def _origin_cm(self) -> tuple[float, float]:

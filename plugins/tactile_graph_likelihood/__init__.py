@@ -18,6 +18,7 @@ _STEPS = {
     "locate": "any_pad.choose:Locate",
     "locate_disc": "any_pad.locate:LocateDisc",
     "locate_ellipse": "any_pad.locate:LocateEllipse",
+    "locate_objects": "several.locate_objects:LocateObjects",
     "locate_rectangle": "any_pad.locate:LocateRectangle",
 }
 

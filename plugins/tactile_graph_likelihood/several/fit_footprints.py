@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
-import numpy as np
 from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
-from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
-from tactile_graph_likelihood.settings import FootprintSettings, Load, Positive
-from tactile_graph_likelihood.several.posteriors import configuration_of, posteriors
-from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.settings import ON_PAD, FootprintSettings, Load, Positive
+from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.pad import Expected, OnPad, likeliest
+from tactile_graph_likelihood.several.posteriors import posteriors
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import UNLIKELY
 from tactile_graph_likelihood.single.readings import readings_of
@@ -53,14 +50,15 @@ class SeveralSettings(FootprintSettings):
 
     Parameters
     ----------
-    on_pad : "whole" or "partly"
-        Whether all outlines lie wholly on the pad, or their centres only.
+    on_pad : "whole", "mostly" or "partly"
+        Whether all outlines lie wholly on the pad, or their centres only; in nine of ten cases
+        the whole.
     smallest_cm, largest_cm : float
         Range of radii and half sides; of a regular polygon, what its sides keep from its centre
         is no less.
     """
 
-    on_pad: Literal["whole", "partly"] = "whole"
+    on_pad: Literal["whole", "mostly", "partly"] = "whole"
     smallest_cm: Positive = 1.0
     largest_cm: Positive = 12.0
 
@@ -115,23 +113,17 @@ class FitFootprints:
         ] = SEVERAL,
     ) -> None:
         self.noise, self.gap_cm = settings.noise, settings.gap
-        self.kinds = [KINDS[k] for k in dict.fromkeys(kinds)]
-        self.most, self.more = most, more
-        self.sizes = settings.smallest_cm, settings.largest_cm
-        self.whole = settings.on_pad == "whole"
+        sizes = settings.smallest_cm, settings.largest_cm
+        found = [KINDS[k] for k in dict.fromkeys(kinds)]
+        self.expected = Expected(found, sizes, ON_PAD[settings.on_pad], most, more)
 
-    def __call__(
-        self, image: Load, starts: Sequence[Circle | Ellipse | Rectangle | Polygon] = ()
-    ) -> Footprints:
+    def __call__(self, image: Load) -> Footprints:
         """Return the outlines.
 
         Parameters
         ----------
         image : Image
             Loads; invalid cells say nothing.
-        starts : list of Circle, Ellipse, Rectangle or Polygon
-            Where the search may begin too, one for each object; those of kinds that are not
-            looked for become the ellipse of the same place and area.
 
         Raises
         ------
@@ -140,26 +132,20 @@ class FitFootprints:
         Degenerate
             If nothing is touched, or no such outlines explain what is.
         """
-        search = self.search(image)
-        found = search.run(configuration_of(starts, search) if len(starts) else None)
-        parts, surprise, alike = posteriors(search, found)
-        odds = [math.exp(f.log_evidence - found.log_evidence) for f in search.allowed()]
-        return Footprints(
-            tuple(likely(p) for p in parts),
-            found.count,
-            1.0 / sum(odds),
-            found.log_evidence,
-            surprise,
-            surprise > UNLIKELY and alike < 4.0,
-        )
-
-    def search(self, image: Load) -> Search:
-        """Return the search of an image, not yet run."""
         readings = readings_of(image, self.gap_cm, self.noise.least)
-        prior = np.zeros(9)
-        prior[:2] = readings.grid[:2]
-        prior[2:4] = readings.size_cm
-        prior[4:6] = self.sizes
-        prior[6] = float(self.whole)
         noise = self.noise.vector(float(readings.grid[2]))
-        return Search(readings, noise, self.kinds, prior, self.most, self.more)
+        problem = self.expected.problem(readings, noise)
+        return footprints(problem, likeliest(problem, self.expected))
+
+
+def footprints(problem: JointProblem, found: OnPad) -> Footprints:
+    """Return the outlines that were found on a pad with their posteriors."""
+    parts, fit = posteriors(problem, found)
+    return Footprints(
+        tuple(likely(p) for p in parts),
+        len(parts),
+        found.count_probability,
+        max(found.counts.values()),
+        fit.surprise,
+        fit.surprise > UNLIKELY and fit.neighbours < 4.0,
+    )

@@ -17,17 +17,19 @@ from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
-    ON,
-    ROOT_TWO_PI,
-    SIGMA,
-    SQRT_HALF,
+    OFF,
     UNKNOWN,
-    VOIDS,
     States,
     on_level,
     terms,
 )
-from tactile_graph_likelihood.single.information import SLIVER, STEP, Information, steps_of
+from tactile_graph_likelihood.single.information import (
+    SLIVER,
+    STEP,
+    Information,
+    score_of,
+    steps_of,
+)
 from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
@@ -41,8 +43,6 @@ OVERLAP = 0.1
 MIDDLE, SPREAD = 9, 10
 """Places in a prior vector of several outlines, after those of `outline_prior`: mean and standard
 deviation of the logarithm of an outline's load."""
-
-DENSITY = 1.0 / ROOT_TWO_PI
 
 
 class Outlines(NamedTuple):
@@ -237,8 +237,7 @@ def _sum_up(
     logs, states, noise = problem.logs, problem.states, problem.noise
     slope, matrix = out
     rows, cols = states.shape
-    sigma, present, level = noise[SIGMA], 1.0 - noise[VOIDS], on_level(noise)
-    size = slope.shape[0]
+    level, size = on_level(noise), slope.shape[0]
     along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
     for i in range(rows):
         for j in range(cols):
@@ -260,18 +259,11 @@ def _sum_up(
             if n == 0:
                 continue
             score, weight = 0.0, 0.0
-            if states[i, j] != UNKNOWN:
-                mu = math.log(expected[i, j])
-                if states[i, j] == ON:
-                    u = (logs[i, j] - mu) / sigma
-                    a = min(max(level - 0.5 * u * u, -700.0), 700.0)
-                    chance = 1.0 / (1.0 + math.exp(-a))
-                    score, weight = chance * u / sigma, chance / (sigma * sigma)
-                else:
-                    z = (mu - noise[LEAST]) / sigma
-                    none = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-                    score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * none)
-                    weight = score * score
+            state = states[i, j]
+            if state != UNKNOWN:
+                log = noise[LEAST] if state == OFF else logs[i, j]
+                found = score_of(state, log, math.log(expected[i, j]), noise, level)
+                score, weight = found[0], found[1]
             excess = (total[i, j] - 1.0) / (OVERLAP * OVERLAP)
             push = 1.0 / (OVERLAP * OVERLAP) if excess > 0.0 else 0.0
             for a_ in range(n):

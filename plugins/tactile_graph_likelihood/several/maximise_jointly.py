@@ -203,37 +203,40 @@ def _log_of_part(fall: float) -> float:
 
 @compiled_as_is
 def fit_piece(
-    problem: JointProblem, kind: int, corners: int, piece: States, table: Values, tries: int
-) -> tuple[Values, float]:
-    """Return an outline's point, shape (6,), and its log posterior given others.
+    problem: JointProblem, outline: Outlines, piece: States, table: Values, tries: int,
+    matrix: Values,
+) -> float:  # fmt: skip
+    """Fit one outline to a piece beside others; return the log evidence around it.
 
     Parameters
     ----------
     problem : JointProblem
         Its states are what the outline has to explain in the end.
-    kind, corners : int
-        Of the outline.
+    outline : Outlines
+        One, written; where its size is positive the search begins there, else with the piece.
     piece : ndarray of uint8, shape (rows, columns)
-        States of the elements, in which only the piece's own are on: where the search begins.
+        States of the elements, in which only the piece's own are on.
     table, tries : ndarray, shape (N, 6), and int
         As in `search.likeliest_start`.
+    matrix : ndarray, shape (6, 6)
+        Written: the information.
     """
-    first = unknowns(kind, corners)
-    start = np.zeros(first + 1)
-    alone = problem_of(
-        kind, corners, problem.grid, problem.logs, piece, problem.noise, problem.prior
-    )
-    likeliest_start(alone, table, tries, start)
-    one = Outlines(np.empty(1, np.int64), np.empty(1, np.int64), np.zeros((1, WIDTH)))
-    one.kinds[0], one.corners[0] = kind, corners
-    one.points[0, : first + 1] = start
-    bare = np.zeros(piece.shape)
-    by_itself = JointProblem(
-        problem.grid, problem.logs, piece, problem.noise, problem.prior, bare, bare
-    )
-    maximise_softly(by_itself, one, ROUNDS)
-    top = maximise_jointly(problem, one, ROUNDS, ENOUGH)
-    return one.points[0].copy(), top
+    kind, corners, points = outline.kinds[0], outline.corners[0], outline.points
+    if points[0, 2] <= 0.0:
+        first = unknowns(kind, corners)
+        start = np.zeros(first + 1)
+        alone = problem_of(
+            kind, corners, problem.grid, problem.logs, piece, problem.noise, problem.prior
+        )
+        likeliest_start(alone, table, tries, start)
+        for k in range(first + 1):
+            points[0, k] = start[k]
+        bare = np.zeros(piece.shape)
+        by_itself = JointProblem(
+            problem.grid, problem.logs, piece, problem.noise, problem.prior, bare, bare
+        )
+        maximise_softly(by_itself, outline, ROUNDS)
+    return settle(problem, outline, ROUNDS, ENOUGH, matrix)
 
 
 @compiled_as_is

@@ -1,15 +1,15 @@
-"""``Parts``: outlines for the pieces of a footprint, cut in two again and again."""
+"""``Parts``: how the touched elements of a part of a pad come apart into pieces of one outline."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import ELLIPSE, RECTANGLE
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.maximise_jointly import piece_states
 from tactile_graph_likelihood.several.scene import Configuration, Scene, joined
 from tactile_graph_likelihood.single.element_terms import States
@@ -18,33 +18,50 @@ from tactile_graph_likelihood.single.problem import Places
 LEAST_PIECE = 4
 """Elements of a piece; fewer join the nearest piece."""
 
-SPARE = 1
-"""Outlines that the search may use beyond the most that are allowed in the end."""
-
-CUTS = 5
+CUTS = 3
 """Cuts of a piece that are tried."""
 
-NO_GAIN = 25.0
-"""How much worse than no cut a cut that is tried may be."""
+NO_GAIN = 10.0
+"""How much worse than no cut a cut that is tried may be, by the outlines of the halves' moments."""
 
-WORSE = 30.0
+WORSE = 12.0
 """How much worse than the best cut another one that is tried may be."""
 
-CLOSE = 15.0
-"""How much less evidence two halves may have than the whole, to be looked at closely."""
+PAIR_ROUNDS = 6
+"""Rounds in which two halves are brought to their joint mode."""
 
-SLACK = 25.0
+SLACK = 8.0
 """How much less evidence two halves may have than the whole, for their own halves to be tried."""
 
 
-class Parts(Scene):
-    """A scene, and how its touched elements come apart into pieces of one outline each."""
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Touched elements in pieces that one outline each explains.
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        two = [k for k in self.kinds if k[0] in (ELLIPSE, RECTANGLE)]
-        self.rough = two if len(two) == 2 else self.kinds
-        self.kept: dict[bytes, Configuration] = {}
+    Parameters
+    ----------
+    outlines : list of Configuration
+        One for each piece.
+    worth : float
+        What they add to the log probability of the scene, by themselves.
+    """
+
+    outlines: list[Configuration]
+    worth: float
+
+
+Divisions: TypeAlias = dict[int, Pieces]
+"""By how many pieces there are, those of the most evidence."""
+
+
+class Parts(Scene):
+    """A part of a pad, cut into pieces again and again."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        rough = [k for k in self.kinds if k[0] in (RECTANGLE, DISC)]
+        self.rough = rough[::-1] if len(rough) == 2 else self.kinds
+        self.known: dict[bytes, Configuration] = {}
 
     def labelled(self, mask: Places) -> States:
         """Return states in which only a mask's elements are on; others unknown nearby, else off."""
@@ -53,30 +70,29 @@ class Parts(Scene):
         return around
 
     def single(self, mask: Places) -> Configuration:
-        """Return the outline with the most evidence that explains a piece by itself."""
+        """Return the outline that explains a mask's elements best, by itself."""
         key = mask.tobytes()
-        if key in self.kept:
-            return self.kept[key]
-        piece = self.labelled(mask)
-        alone = self.problem._replace(states=piece)
-        best = None
-        for kind, corners in self.rough:
-            here = self.one(kind, corners, piece, alone)
-            if best is None or here.log_evidence > best.log_evidence:
-                best = here
-        assert best is not None
-        self.kept[key] = best
-        return best
+        if key not in self.known:
+            around = self.labelled(mask)
+            alone = self.problem._replace(states=around)
+            best = None
+            for kind in self.rough:
+                here = self.fitted(kind, around, alone, best)
+                if best is None or here.log_evidence > best.log_evidence:
+                    best = here
+            assert best is not None
+            self.known[key] = best
+        return self.known[key]
 
     def halves(self, mask: Places, most: int = CUTS) -> list[tuple[Places, Places]]:
         """Return the best straight cuts of a piece, each as two masks."""
-        if (mask == 1).sum() < 2 * LEAST_PIECE:
+        if np.count_nonzero(mask) < 2 * LEAST_PIECE:
             return []
         piece = self.problem._replace(states=self.labelled(mask))
         sides = np.zeros((2 * ANGLES, *mask.shape), np.uint8)
         good, whole = cuts(piece, LEAST_PIECE, sides)
         out: list[tuple[Places, Places]] = []
-        least = max(good.max() - WORSE, whole - NO_GAIN)
+        least = max(good.max() - WORSE * self.shared, whole - NO_GAIN * self.shared)
         for t in np.argsort(-good, kind="stable"):
             if len(out) == most or good[t] < least:
                 break
@@ -85,78 +101,54 @@ class Parts(Scene):
                 out.append((a, b))
         return out
 
-    def paired(
-        self, mask: Places, beside: JointProblem, worth: float
-    ) -> tuple[Configuration, Places, Places] | None:
-        """Return the best two outlines, either side of a straight cut, that explain a piece.
-
-        They are looked at closely only if their evidence comes near ``worth``.
-        """
-        tried = []
-        for a, b in self.halves(mask):
-            tried.append((self.settled(joined([self.single(a), self.single(b)]), beside), a, b))
-        tried.sort(key=lambda t: -t[0].log_evidence)
-        best = None
-        for pair, a, b in tried[:2]:
-            if pair.log_evidence < max(worth, tried[0][0].log_evidence) - CLOSE:
-                continue
-            refined = self.refined(pair, (a, b), beside)
-            if best is None or refined.log_evidence > best[0].log_evidence:
-                best = refined, a, b
-        return best or (tried[0] if tried else None)
-
-    def refined(
-        self, pair: Configuration, masks: tuple[Places, Places], beside: JointProblem
-    ) -> Configuration:
-        """Return two outlines, each replaced by the best kind beside the other."""
-        for k in (0, 1):
-            beside_both = self.beside(pair, (k,), beside)
-            piece = self.labelled(masks[k])
-            for kind, corners in self.kinds:
-                if kind == pair.kinds[k] and kind in (ELLIPSE, RECTANGLE):
-                    continue
-                other = self.one(kind, corners, piece, beside_both)
-                if other.log_evidence == -math.inf:
-                    continue
-                two = [other, pair.only(1 - k)]
-                made = self.settled(joined(two if k == 0 else two[::-1]), beside)
-                if made.log_evidence > pair.log_evidence:
-                    pair = made
-        return pair
-
-    def outlines_of(self, mask: Places, room: int) -> Configuration:
-        """Return the outlines that explain a piece best, cut in two again and again."""
+    def divided(self, mask: Places, room: int) -> Divisions:
+        """Return a mask's elements as one piece, and cut in two again and again."""
         alone = self.single(mask)
+        found = {1: Pieces([alone], self.worth(alone))}
         if room < 2:
-            return alone
-        beside = self.problem._replace(states=self.labelled(mask))
-        best = self.paired(mask, beside, alone.log_evidence)
-        if best is None or best[0].log_evidence < alone.log_evidence - SLACK:
-            return alone
+            return found
+        here, best = self.problem._replace(states=self.labelled(mask)), None
+        for a, b in self.halves(mask):
+            pair = self.settled(joined([self.single(a), self.single(b)]), here, PAIR_ROUNDS)[0]
+            if best is None or pair.log_evidence > best[0].log_evidence:
+                best = pair, a, b
+        if best is None:
+            return found
         pair, a, b = best
-        first = self.outlines_of(a, room - 1)
-        second = self.outlines_of(b, room - first.count)
-        if first.count + second.count > 2:
-            more = self.settled(joined([first, second]), beside)
-            if more.log_evidence > pair.log_evidence:
-                pair = more
-        return pair if pair.log_evidence > alone.log_evidence else alone
+        found[2] = Pieces([pair.only(0), pair.only(1)], self.worth(pair))
+        if found[2].worth < found[1].worth - SLACK:
+            return found
+        loss = found[2].worth - self.worth(self.single(a)) - self.worth(self.single(b))
+        more = combined(self.divided(a, room - 1), self.divided(b, room - 1), room, min(loss, 0.0))
+        return more | found
 
-    def from_pieces(self, spare: int = SPARE) -> Configuration:
-        """Return the outlines of all pieces that nothing connects, brought to their joint mode."""
+    def start(self, room: int) -> Divisions:
+        """Return all touched elements in pieces: what nothing connects, and cut further."""
         labels = components.call(self.on, 1)
         sizes = np.bincount(labels.ravel())[1:]
         large = [k + 1 for k in np.argsort(-sizes, kind="stable") if sizes[k] >= LEAST_PIECE]
-        large = large[: self.most + spare] or [int(np.argmax(sizes)) + 1]
+        large = large[:room] or [int(np.argmax(sizes)) + 1]
         for k in range(1, len(sizes) + 1):
             if k not in large:
                 labels[labels == k] = nearest(labels, k, large)
-        room = self.most + spare - len(large)
-        parts = []
+        found = {0: Pieces([], 0.0)}
         for k in large:
-            parts.append(self.outlines_of((labels == k).astype(np.int64), 1 + room))
-            room -= parts[-1].count - 1
-        return self.maximised(joined(parts))
+            mask = (labels == k).astype(np.int64)
+            found = combined(found, self.divided(mask, room - len(large) + 1), room)
+        return found
+
+
+def combined(one: Divisions, other: Divisions, most: int, loss: float = 0.0) -> Divisions:
+    """Return the best divisions of two masks together, by their number of pieces.
+
+    ``loss`` is what they add less together than each by itself.
+    """
+    found: Divisions = {}
+    for (i, some), (k, more) in product(one.items(), other.items()):
+        worth = some.worth + more.worth + loss
+        if i + k <= most and (i + k not in found or worth > found[i + k].worth):
+            found[i + k] = Pieces([*some.outlines, *more.outlines], worth)
+    return found
 
 
 def nearest(labels: Places, lost: int, large: list[int]) -> int:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Shape
-from tactile_graph_likelihood.geometry.outlines import ELLIPSE, FREE, Values, packed, unknowns
-from tactile_graph_likelihood.several.joint_posterior import MIDDLE, WIDTH, JointProblem
-from tactile_graph_likelihood.several.maximise_jointly import settle
-from tactile_graph_likelihood.several.scene import Configuration, Scene
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
+from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
+from tactile_graph_likelihood.several.pad import Found, OnPad, laid
+from tactile_graph_likelihood.several.scene import Configuration
+from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     ON,
@@ -22,8 +23,10 @@ from tactile_graph_likelihood.single.element_terms import (
     SPAN,
     SQRT_HALF,
     STRAYS,
+    UNDER,
     UNKNOWN,
     VOIDS,
+    States,
 )
 from tactile_graph_likelihood.single.goodness_of_fit import (
     DENSITY,
@@ -32,6 +35,13 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
     moments_of_term,
 )
 from tactile_graph_likelihood.single.posterior import Posterior
+
+
+class GoodnessOfLoad(NamedTuple):
+    """How surprising an image is, and how much neighbours' gains are alike."""
+
+    surprise: float
+    neighbours: float
 
 
 @compiled_as_is
@@ -70,7 +80,8 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
                 variance += var_bare
                 continue
             mu = math.log(expected[i, j])
-            z = min(max((mu - noise[LEAST]) / sigma, -40.0), 40.0)
+            least = logs[i, j] if states[i, j] == UNDER else noise[LEAST]
+            z = min(max((mu - least) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
             off, one, spread = moments_of_term(z, tail, density, level, present, bare)
             if on:
@@ -91,63 +102,119 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
     return (got - 0.5 * fitted - mean) / math.sqrt(variance), alike
 
 
-def posteriors(scene: Scene, found: Configuration) -> tuple[list[Posterior], float, float]:
-    """Return each outline's posterior, and the two numbers of `goodness_of_load`.
+def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], GoodnessOfLoad]:
+    """Return each outline's posterior, and how well all together explain a pad.
 
     Raises
     ------
     Degenerate
         If an outline has no posterior: too few of its points are possible.
+    """
+    every = [one for part in found.parts for one in posteriors_of(part)]
+    counts = [len(one.mean) for one in every]
+    together = Configuration(
+        np.array([one.kind for one in every]),
+        np.array([one.corners for one in every]),
+        np.array(
+            [np.pad(one.most_likely, (0, WIDTH - n)) for one, n in zip(every, counts, strict=True)]
+        ),
+        0.0,
+    )
+    fit = GoodnessOfLoad(*goodness_of_load.call(laid(problem, together), sum(counts)))
+    return [replace(one, surprise=fit.surprise, neighbours=fit.neighbours) for one in every], fit
+
+
+def posteriors_of(part: Found) -> list[Posterior]:
+    """Return the posteriors of the outlines of a part of a pad.
 
     Notes
     -----
-    Points are sampled around each outline beside the others, then spread by what the others'
-    own uncertainty adds to its covariance, from the information of all together.
+    Each outline is fitted as each kind beside the others, and the likeliest kind's points are
+    sampled there; they are then spread by what the others' own uncertainty adds to their
+    covariance, from the information of all together, and by how far the other kinds lie off.
     """
-    counts = [unknowns.call(int(k), int(n)) + 1 for k, n, _ in zip(*found.outlines, strict=True)]
-    surprise, alike = goodness_of_load.call(scene.beside(found, ()), sum(counts))
-    matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
-    settle.call(scene.problem, found.outlines, 0, 0.0, matrix)
+    scene, every = part.scene, list[Kinds]()
+    found, _ = scene.settled(part.outlines)
+    own = scene.owners(found)
+    for k in range(found.count):
+        every.append(kinds_of(scene, found, k, scene.labelled((own == k).astype(np.int64))))
+        found = found.with_one(k, every[-1].best)
+    found, matrix = scene.settled(found, None, 4)
     together = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     out = []
-    for k, n in enumerate(counts):
+    for k, kinds in enumerate(every):
         some = scene.sampled(found, k)
         if some.equal_points <= 1.0:
             raise Degenerate(f"object {k + 1} of {found.count}: no outlines near the likeliest one")
+        n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
         alone = np.asarray(np.linalg.inv(matrix[here, here]), dtype=np.float64)
-        points = some.points.copy()
-        mean = np.asarray(some.weights @ points, dtype=np.float64)
-        off = np.asarray((points - mean) @ _wider(alone, together[here, here]).T, dtype=np.float64)
-        points = mean + off
+        mean = np.asarray(some.weights @ some.points, dtype=np.float64)
+        off = (some.points - mean) @ _wider(alone, together[here, here]).T
         covariance = (off * some.weights[:, None]).T @ off
         covariance /= max(1.0 - float(some.weights @ some.weights), 0.05)
-        kind, corners, top = int(found.kinds[k]), int(found.corners[k]), found.points[k, :n]
-        own = (some.log_evidence, some.equal_points, surprise, alike)
+        shift, spread = kinds.apart(n)
+        wider = covariance + spread
+        points = mean + shift + off @ _wider(covariance, wider).T
         out.append(
-            Posterior(kind, corners, mean, covariance, points, some.weights, top.copy(), *own)
-        )
-    return out, surprise, alike
+            Posterior(
+                int(found.kinds[k]), int(found.corners[k]), mean + shift, wider, points,
+                some.weights, found.points[k, :n].copy(), some.log_evidence, some.equal_points,
+                0.0, 0.0,
+            )
+        )  # fmt: skip
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class Kinds:
+    """One outline as each kind, beside others: fits, the likeliest one, and their probabilities."""
+
+    fits: list[Configuration]
+    best: Configuration
+    chances: Values
+
+    def apart(self, n: int) -> tuple[Values, Values]:
+        """Return how far the mean over all kinds lies off the likeliest one's, and their spread.
+
+        Shapes (n,) and (n, n): of the centre and, all sizes alike, of the root of the area.
+        """
+        shift, spread = np.zeros(n), np.zeros((n, n))
+        own = sizes.call(int(self.best.kinds[0]))
+        offs = np.zeros((len(self.fits), n))
+        for off, fit in zip(offs, self.fits, strict=True):
+            off[:2] = fit.points[0, :2] - self.best.points[0, :2]
+            ratio = math.sqrt(_area(fit) / _area(self.best))
+            off[2 : 2 + own] = (ratio - 1.0) * self.best.points[0, 2 : 2 + own]
+        shift = self.chances @ offs
+        spread = (offs * self.chances[:, None]).T @ offs - np.outer(shift, shift)
+        return shift, spread
+
+
+def kinds_of(scene: Search, found: Configuration, k: int, piece: States) -> Kinds:
+    """Return one outline, of a piece, as each kind beside the others."""
+    beside, own, fits = scene.beside(found, k), found.only(k), []
+    for kind in scene.kinds:
+        if kind == (found.kinds[k], found.corners[k]):
+            fits.append(scene.settled(own, beside, 4)[0])
+        else:
+            fits.append(scene.fitted(kind, piece, beside, own))
+    fits = [fit for fit in fits if fit.log_evidence > -math.inf]
+    logs = np.array([fit.log_evidence for fit in fits]) / scene.shared
+    chances = np.exp(logs - logs.max())
+    return Kinds(fits, fits[int(logs.argmax())], chances / chances.sum())
+
+
+def _area(found: Configuration) -> float:
+    """Return the area of one outline, in cm2."""
+    kind, n, p = int(found.kinds[0]), int(found.corners[0]), found.points[0]
+    if kind == REGULAR:
+        return float(0.5 * n * p[2] * p[2] * math.sin(2.0 * math.pi / n))
+    if kind == RECTANGLE:
+        return float(4.0 * p[2] * p[3])
+    return float(math.pi * p[2] * (p[2] if kind == DISC else p[3]))
 
 
 def _wider(alone: Values, together: Values) -> Values:
     """Return what turns points of one covariance into points of another."""
     return np.asarray(np.linalg.cholesky(together) @ np.linalg.inv(np.linalg.cholesky(alone)))
-
-
-def configuration_of(shapes: Sequence[Shape], scene: Scene) -> Configuration:
-    """Return shapes as outlines of the kinds that are looked for, not yet maximised."""
-    fallback = next((k for k in scene.kinds if k[0] == ELLIPSE), scene.kinds[0])
-    kinds, corners, points = [], [], np.zeros((len(shapes), WIDTH))
-    for row, shape in zip(points, shapes, strict=True):
-        kind, n, p = packed(shape)
-        if kind == FREE or (kind, n) not in scene.kinds:
-            kind, n = fallback
-            radius = math.sqrt(shape.area_cm2 / math.pi)
-            p = np.array([shape.x_cm, shape.y_cm, radius, radius, 0.0])
-            p = p[: unknowns.call(kind, n)]
-        row[: len(p)] = p
-        row[unknowns.call(kind, n)] = scene.problem.prior[MIDDLE]
-        kinds.append(kind)
-        corners.append(n)
-    return Configuration(np.array(kinds), np.array(corners), points, 0.0)

@@ -1,14 +1,20 @@
-"""``Scene``: the evidence for outlines on a pad, and the posterior of each beside the others."""
+"""``Scene``: the evidence for outlines on a part of a pad, and the posterior of each."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    RECTANGLE,
+    REGULAR,
+    Values,
+    unknowns,
+)
 from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
@@ -20,27 +26,19 @@ from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.problem import Places
-from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.sample import Plan
-from tactile_graph_likelihood.single.search import LIGHT_EDGE
 
-FEWEST_POINTS, UNSURE = 3.0, -3.0
-"""Equal weights that an evidence needs, and what is added to Laplace's where there are fewer."""
-
-BLOCK, POINTS, WORTH = 48, 192, 40.0
+BLOCK, POINTS, WORTH = 32, 128, 24.0
 """Points of a block, points at most, and equal weights enough, of a posterior beside others."""
 
-TRIES = 16
+TRIES = 8
 """Outlines tried around a piece's moments before the search."""
 
-ALIKE = 0.05
-"""Outlines whose numbers differ by less share what sampling adds to Laplace's evidence."""
-
-LOADS = 1.5
-"""Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
+ROUND = math.sqrt(4.0 / 3.0)
+"""Half an ellipse's axis over the half side of the rectangle of the same moments."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Configuration:
     """Outlines on a pad, and the log evidence around them; arrays as in `Outlines`."""
 
@@ -64,6 +62,17 @@ class Configuration:
         at = slice(k, k + 1)
         return Configuration(self.kinds[at], self.corners[at], self.points[at], 0.0)
 
+    def without(self, *left_out: int) -> Configuration:
+        """Return them but for some."""
+        keep = [k for k in range(self.count) if k not in left_out]
+        return Configuration(self.kinds[keep], self.corners[keep], self.points[keep], 0.0)
+
+    def with_one(self, k: int, other: Configuration) -> Configuration:
+        """Return them with another outline in the place of one."""
+        kinds, corners, points = self.kinds.copy(), self.corners.copy(), self.points.copy()
+        kinds[k], corners[k], points[k] = other.kinds[0], other.corners[0], other.points[0]
+        return Configuration(kinds, corners, points, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
@@ -73,115 +82,97 @@ class Sampled:
     weights: Values
     log_evidence: float
     equal_points: float
-    over_laplace: float
 
 
 class Scene:
-    """One image, and what it says of any outlines on the pad.
+    """A part of a pad, and what it says of the outlines there.
 
     Parameters
     ----------
-    readings : Readings
-    noise : ndarray, shape (9,)
-        As in `element_terms`.
+    problem : JointProblem
+        Nothing lies there yet.
     kinds : list of (int, int)
         Kinds of outlines and their corners, all alike likely beforehand.
-    prior : ndarray, shape (9,)
-        Of each outline, as in `outline_prior`.
-    most : int
-        Outlines at most.
     more : float
         Log odds of a number of outlines over one less, before anything is read.
+    shared : float
+        How many times less evidence is worth than were elements independent.
     """
 
     def __init__(
-        self,
-        readings: Readings,
-        noise: Values,
-        kinds: list[tuple[int, int]],
-        prior: Values,
-        most: int,
-        more: float = 3.0,
+        self, problem: JointProblem, kinds: list[tuple[int, int]], more: float, shared: float
     ) -> None:
-        self.kinds, self.most, self.more = kinds, most, more
-        self.on = readings.states == ON
-        middle = float(np.median(readings.logs[self.on])) + LIGHT_EDGE
-        bare = np.zeros(self.on.shape)
-        self.problem = JointProblem(
-            *readings[:3], noise, np.append(prior, [middle, LOADS]), bare, bare
-        )
+        self.problem, self.kinds, self.more, self.shared = problem, kinds, more, shared
+        self.on = problem.states == ON
         self.table = _table(WIDTH)
-        self.tries = 0
-        self.corrections: dict[tuple[float, ...], float] = {}
 
-    def beside(
-        self, found: Configuration, left_out: tuple[int, ...], others: JointProblem | None = None
-    ) -> JointProblem:
-        """Return the problem beside all but some outlines, and beside what others bring."""
-        before = others or self.problem
+    def beside(self, found: Configuration, *left_out: int) -> JointProblem:
+        """Return the problem beside all outlines, but for some."""
+        before = self.problem
         problem = before._replace(load=before.load.copy(), share=before.share.copy())
         for k in range(found.count):
             if k not in left_out:
                 add_outline.call(problem, found.outlines, k)
         return problem
 
-    def weighed(self, outlines: Outlines, beside: JointProblem | None = None) -> Configuration:
-        """Return outlines with their log evidence beside others, where they are."""
-        return self._evident(outlines, beside or self.problem, 0, 0.0)
-
-    def _evident(
-        self, outlines: Outlines, beside: JointProblem, most: int, enough: float
-    ) -> Configuration:
-        count = len(outlines.kinds)
-        matrix = np.empty((count * WIDTH, count * WIDTH))
-        log = settle.call(beside, outlines, most, enough, matrix)
-        log += math.lgamma(count + 1.0) + count * (self.more - math.log(len(self.kinds)))
-        return Configuration(*outlines, log)
-
     def settled(
-        self, found: Configuration, beside: JointProblem, most: int = 15, enough: float = 0.3
+        self, found: Configuration, beside: JointProblem | None = None, most: int = 15
+    ) -> tuple[Configuration, Values]:
+        """Return outlines brought to their joint mode beside others, and the information there."""
+        points = found.points.copy()
+        matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
+        outlines = Outlines(found.kinds, found.corners, points)
+        log = settle.call(beside or self.problem, outlines, most, 0.1, matrix)
+        return Configuration(found.kinds, found.corners, points, log), matrix
+
+    def fitted(
+        self, kind: tuple[int, int], piece: States, beside: JointProblem, like: Configuration | None
     ) -> Configuration:
-        """Return outlines brought to their joint mode beside others, with their own evidence."""
-        outlines = found.outlines._replace(points=found.points.copy())
-        return self._evident(outlines, beside, most, enough)
+        """Return one kind of outline fitted to a piece beside others, with its own evidence.
 
-    def maximised(self, found: Configuration, enough: float = 0.1) -> Configuration:
-        """Return all outlines brought to their joint mode."""
-        return self.settled(found, self.problem, 15, enough)
+        The search begins with an outline like another one, if there is one.
+        """
+        points = np.zeros((1, WIDTH)) if like is None else _like(kind[0], like)
+        outline = Outlines(np.array([kind[0]]), np.array([kind[1]]), points)
+        log = fit_piece.call(beside, outline, piece, self.table, TRIES, np.empty((WIDTH, WIDTH)))
+        return Configuration(*outline, log)
 
-    def one(self, kind: int, corners: int, piece: States, beside: JointProblem) -> Configuration:
-        """Return one kind of outline fitted to a piece beside others, with its own evidence."""
-        self.tries += 1
-        p, top = fit_piece.call(beside, kind, corners, piece, self.table, TRIES)
-        outline = Outlines(np.array([kind]), np.array([corners]), p[None])
-        if top == -math.inf:
-            return Configuration(*outline, top)
-        log = settle.call(beside, outline, 0, 0.0, np.empty((WIDTH, WIDTH)))
-        return Configuration(*outline, log + self.more - math.log(len(self.kinds)))
+    def worth(self, found: Configuration) -> float:
+        """Return what outlines add to the log probability of a scene."""
+        each = self.more - math.log(len(self.kinds))
+        return found.log_evidence / self.shared + found.count * each
 
     def sampled(self, found: Configuration, k: int) -> Sampled:
         """Return the posterior of one outline beside the others, and its evidence."""
-        beside, outline = self.beside(found, (k,)), found.only(k).outlines
+        beside, outline = self.beside(found, k), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
-        log = settle.call(beside, outline, 0, 0.0, matrix)
+        settle.call(beside, outline, 0, 0.0, matrix)
         n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
         plan = Plan(_table(n), BLOCK, WORTH)
         points, weights = np.empty((POINTS, n)), np.empty(POINTS)
         used, evidence, equal = sample_beside.call(
             beside, outline, np.linalg.inv(matrix[:n, :n]), plan, points, weights
         )
-        over = evidence - log if equal >= FEWEST_POINTS else UNSURE
-        return Sampled(points[:used], weights[:used], evidence, equal, over)
+        return Sampled(points[:used], weights[:used], evidence, equal)
 
-    def corrected(self, found: Configuration) -> Configuration:
-        """Return outlines with their evidence by sampling each beside the others."""
-        total = found.log_evidence
-        for k in range(found.count):
-            key = (int(found.kinds[k]), *np.rint(found.points[k] / ALIKE).tolist())
-            if key not in self.corrections:
-                self.corrections[key] = self.sampled(found, k).over_laplace
-            total += self.corrections[key]
-        return replace(found, log_evidence=total)
+
+def _like(kind: int, other: Configuration) -> Values:
+    """Return the point of a kind of outline of about another's moments; zeros if none is."""
+    p, points = other.points[0], np.zeros((1, WIDTH))
+    was = int(other.kinds[0])
+    if REGULAR in (kind, was):
+        return points
+    first, second = p[2], p[2] if was == DISC else p[3]
+    angle = 0.0 if was == DISC else p[4]
+    scale = (1.0 if was == RECTANGLE else 1.0 / ROUND) * (1.0 if kind == RECTANGLE else ROUND)
+    points[0, :2] = p[:2]
+    if kind == DISC:
+        points[0, 2] = scale * math.sqrt(0.5 * (first * first + second * second))
+        points[0, 3] = p[5]
+    else:
+        points[0, 2:5] = scale * first, scale * second, angle
+        points[0, 5] = p[3] if was == DISC else p[5]
+    return points
 
 
 @cache

@@ -1,4 +1,4 @@
-"""How many outlines lie on a pad, of which kinds, and where: a search for the most evidence."""
+"""How many outlines lie on a part of a pad, and which elements are whose."""
 
 from __future__ import annotations
 
@@ -8,152 +8,96 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
-from tactile_graph_likelihood.several.parts import SPARE, Parts
+from tactile_graph_likelihood.several.joint_posterior import add_outline
+from tactile_graph_likelihood.several.parts import Parts
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.single.element_terms import States
 from tactile_graph_likelihood.single.problem import Places
 
-NEARLY = 12.0
+NEARLY = 6.0
 """How much less evidence a move may bring at first, for all outlines to settle beside it."""
+
+GAIN = 0.1
+"""Evidence that a move must bring."""
+
+Move = tuple[tuple[int, ...], Configuration]
+"""Which outlines to take away, and what to put in their place."""
 
 
 class Search(Parts):
-    """Moves from one set of outlines to another of more evidence, until none is found."""
+    """Outlines on a part of a pad, improved by moves until none gains."""
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.done: set[tuple[str, bytes]] = set()
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.tried: set[tuple[int, bytes]] = set()
         self.best: dict[int, Configuration] = {}
 
-    def run(self, start: Configuration | None = None) -> Configuration:
-        """Return the outlines with the most evidence that the search comes upon.
+    def divisions(self, room: int) -> dict[int, Configuration]:
+        """Return the best outlines of each number that the search comes upon."""
+        start = self.start(room)
+        likely = max(start, key=lambda n: start[n].worth + math.lgamma(n + 1.0))
+        found = self.noted(joined(start[likely].outlines))
+        if found.count == 1 and len(start) == 1:
+            return self.best
+        better: Configuration | None = found
+        while better is not None:
+            found, better = better, self.improved(better, room)
+        return self.best
 
-        Parameters
-        ----------
-        start : Configuration, optional
-            Where it may begin, too.
+    def rank(self, found: Configuration) -> float:
+        """Return the log probability of outlines, of any number of them."""
+        return self.worth(found) + math.lgamma(found.count + 1.0)
 
-        Raises
-        ------
-        Degenerate
-            If no outlines, as many as are allowed, explain the image.
-        """
-        found = self.corrected(self.from_pieces())
-        self.note(found)
-        if start is not None and start.count <= self.most + SPARE:
-            other = self.corrected(self.maximised(start))
-            self.note(other)
-            found = max(found, other, key=lambda f: f.log_evidence)
-        self.improved(found)
-        if not self.allowed():
-            self.note(self.corrected(self.from_pieces(0)))
-        allowed = self.allowed()
-        if not allowed:
-            raise Degenerate(f"no {self.most} objects or fewer explain what is touched")
-        return max(allowed, key=lambda f: f.log_evidence)
-
-    def allowed(self) -> list[Configuration]:
-        """Return the best outlines of each number that is allowed."""
-        return [f for n, f in self.best.items() if n <= self.most and f.log_evidence > -math.inf]
-
-    def improved(self, found: Configuration) -> Configuration:
-        """Return what moves make of outlines, until none gains."""
-        better = True
-        while better:
-            better = False
-            for out, new in self.moves(found):
-                if new.log_evidence == -math.inf:
-                    continue
-                made = self.replaced(found, out, new)
-                if made.log_evidence > found.log_evidence + 0.1:
-                    found, better = made, True
-                    break
+    def noted(self, found: Configuration) -> Configuration:
+        """Return outlines brought to their joint mode; they are kept if their number's best."""
+        found = self.settled(found)[0]
+        best = self.best.get(found.count)
+        if best is None or found.log_evidence > best.log_evidence:
+            self.best[found.count] = found
         return found
 
-    def moves(self, found: Configuration) -> Iterator[tuple[tuple[int, ...], Configuration]]:
+    def improved(self, found: Configuration, room: int) -> Configuration | None:
+        """Return better outlines, None if no move makes any."""
+        for out, new in self.moves(found, room):
+            beside = self.beside(found, *out)
+            now = joined([found.only(k) for k in out])
+            before = self.worth(self.settled(now, beside, 0)[0])
+            if self.worth(self.settled(new, beside, 6)[0]) < before - NEARLY:
+                continue
+            made = self.noted(joined([found.without(*out), new]))
+            if self.rank(made) > self.rank(found) + GAIN:
+                return made
+        return None
+
+    def moves(self, found: Configuration, room: int) -> Iterator[Move]:
         """Yield what might be better: other outlines in the place of one or two."""
         own = self.owners(found)
         masks = [(own == k).astype(np.int64) for k in range(found.count)]
         for a in range(found.count):
-            yield from self.moves_of_one(found, a, masks[a])
-        for a in range(found.count):
-            near, far = dilated(masks[a], 1), dilated(masks[a], 2)
+            far = dilated(masks[a], 2)
             for b in range(a):
                 if (far & (masks[b] == 1)).any():
-                    touching = bool((near & (masks[b] == 1)).any())
-                    yield from self.moves_of_two(found, a, b, masks[a] + masks[b], touching)
+                    yield from self.moves_of_two((a, b), masks[a] + masks[b])
+        if found.count < room:
+            for a in range(found.count):
+                if self.fresh(1, masks[a]):
+                    for one, other in self.halves(masks[a], 2):
+                        yield (a,), joined([self.single(one), self.single(other)])
 
-    def moves_of_one(
-        self, found: Configuration, a: int, mask: Places
-    ) -> Iterator[tuple[tuple[int, ...], Configuration]]:
-        """Yield nothing, another kind, and two outlines in the place of one."""
-        room = found.count < self.most + SPARE
-        if not self.fresh(f"one, {room}", mask):
-            return
-        if found.count > 1:
-            yield (a,), Configuration(found.kinds[:0], found.corners[:0], found.points[:0], 0.0)
-        beside = self.beside(found, (a,))
-        alone = self.refit(mask, beside, self.kinds, int(found.kinds[a]))
-        if alone is not None:
-            yield (a,), alone
-        if room:
-            worth = self.weighed(found.only(a).outlines, beside).log_evidence
-            two = self.paired(mask, beside, worth)
-            if two is not None:
-                yield (a,), two[0]
-
-    def moves_of_two(
-        self, found: Configuration, a: int, b: int, mask: Places, touching: bool
-    ) -> Iterator[tuple[tuple[int, ...], Configuration]]:
+    def moves_of_two(self, out: tuple[int, int], mask: Places) -> Iterator[Move]:
         """Yield one outline in the place of two, and two that share their elements otherwise."""
-        if not self.fresh("two", mask):
+        if not self.fresh(2, mask):
             return
-        beside = self.beside(found, (a, b))
-        one = self.refit(mask, beside, self.kinds if touching else self.rough)
-        if one is not None:
-            yield (a, b), one
-        if touching:
-            both = joined([found.only(a), found.only(b)])
-            two = self.paired(mask, beside, self.weighed(both.outlines, beside).log_evidence)
-            if two is not None:
-                yield (a, b), two[0]
+        yield out, self.single(mask)
+        for one, other in self.halves(mask):
+            yield out, joined([self.single(one), self.single(other)])
 
-    def refit(
-        self, mask: Places, beside: JointProblem, kinds: list[tuple[int, int]], known: int = -1
-    ) -> Configuration | None:
-        """Return the best kind of outline for a mask beside others, but for a known kind."""
-        piece = self.labelled(mask)
-        fits = [self.one(k, n, piece, beside) for k, n in kinds if k != known]
-        return max(fits, key=lambda f: f.log_evidence, default=None)
-
-    def fresh(self, what: str, mask: Places) -> bool:
+    def fresh(self, count: int, mask: Places) -> bool:
         """Return whether a move has not been tried on a mask yet; from now on it has."""
-        key = (what, mask.tobytes())
-        known = key in self.done
-        self.done.add(key)
+        key = (count, mask.tobytes())
+        known = key in self.tried
+        self.tried.add(key)
         return not known and bool((mask == 1).any())
-
-    def replaced(
-        self, found: Configuration, out: tuple[int, ...], new: Configuration
-    ) -> Configuration:
-        """Return outlines with some put in the place of others, brought to their top."""
-        keep = [k for k in range(found.count) if k not in out]
-        rest = Configuration(found.kinds[keep], found.corners[keep], found.points[keep], 0.0)
-        both = joined([rest, new])
-        made = self.weighed(both.outlines)
-        if made.log_evidence < found.log_evidence - NEARLY:
-            return made
-        made = self.corrected(self.maximised(made, enough=0.3))
-        self.note(made)
-        return made
-
-    def note(self, found: Configuration) -> None:
-        """Keep the outlines with the most evidence of each number of them."""
-        best = self.best.get(found.count)
-        if best is None or found.log_evidence > best.log_evidence:
-            self.best[found.count] = found
 
     def owners(self, found: Configuration) -> Places:
         """Return which outline, from 0, each touched element belongs to; -1 where untouched."""
@@ -162,15 +106,13 @@ class Search(Parts):
         for k in range(found.count):
             bare = self.problem._replace(load=loads[k], share=spare)
             add_outline.call(bare, found.outlines, k)
-        own = loads.argmax(axis=0)
-        none = (loads.max(axis=0) <= 0.0) & self.on
-        for i, j in zip(*np.nonzero(none), strict=True):
-            y, x = np.nonzero((loads.max(axis=0) > 0.0) & self.on)
-            if len(y):
-                off = np.maximum(abs(y - i), abs(x - j))
-                at = np.argmin(off)
-                own[i, j] = own[y[at], x[at]] if off[at] <= 2 else -1
-        return np.where(self.on, own, -1)
+        own = np.where(self.on & (loads.max(axis=0) > 0.0), loads.argmax(axis=0), -1)
+        for i, j in zip(*np.nonzero(self.on & (own < 0)), strict=True):
+            y, x = np.nonzero(own >= 0)
+            off = np.maximum(abs(y - i), abs(x - j))
+            if len(off) and off.min() <= 2:
+                own[i, j] = own[y[off.argmin()], x[off.argmin()]]
+        return own
 
 
 def dilated(mask: Places, reach: int) -> States:

@@ -1,0 +1,148 @@
+"""``locate_objects``: several objects on any pad."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Le, MinLen
+
+from tactile_graph.steps import Spread
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.from_frame import FEWEST, NORMAL, learned, variance_inflation
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad
+from tactile_graph_likelihood.settings import ON_PAD
+from tactile_graph_likelihood.several.fit_footprints import (
+    KINDS,
+    Footprints,
+    Kind,
+    SeveralSettings,
+)
+from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.pad import Expected, OnPad, laid, likeliest
+from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
+from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.likely import likely
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.posterior import UNLIKELY
+
+COVERED = 0.95
+"""Share of an element from which on it counts as covered whole."""
+
+TOLD = 8.0
+"""Covered elements that what is told of gains and voids is worth."""
+
+ANEW = 0.25
+"""Change of ln sigma, of the voids' log odds or of ln shared from which on the search is made
+anew."""
+
+SEVERAL = SeveralSettings(on_pad="mostly")
+
+
+class LocateObjects:
+    """Return the outlines of all objects on a pad that need not be as it is told.
+
+    Parameters
+    ----------
+    kinds : list of str
+        What an object may be; each is as likely as any other. Polygons are regular.
+    most : int
+        Objects at most.
+    more : float
+        Log odds of a number of objects over one less, before anything is read.
+    settings : SeveralSettings
+
+    Notes
+    -----
+    What counts as touched follows from the noise in the frame itself. Gains and voids are those of
+    what the outlines cover whole, all objects together, beside what the pad says; the search is
+    made anew where they differ much. Readings at the end of their range count as loads.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006 - settings are never changed
+        most: Annotated[int, Ge(1), Le(12)] = 6,
+        more: float = 3.0,
+        settings: Annotated[
+            SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
+        ] = SEVERAL,
+    ) -> None:
+        self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
+        sizes = settings.smallest_cm, settings.largest_cm
+        found = [KINDS[k] for k in dict.fromkeys(kinds)]
+        self._expected = Expected(found, sizes, ON_PAD[settings.on_pad], most, more)
+
+    def __call__(self, image: Image) -> Footprints:
+        """Return the outlines.
+
+        Parameters
+        ----------
+        image : Image
+            Readings that rise with load, in any quantity; invalid cells say nothing.
+
+        Raises
+        ------
+        ValueError
+            If the image's cells are not square.
+        Degenerate
+            If nothing rises above the noise, or no such outlines explain what does.
+        """
+        readings = observed(image, self._pad, self._gap_cm)
+        pitch = float(readings.grid[2])
+        told = self._told.vector(pitch)
+        problem = self._expected.problem(readings, told)
+        found = likeliest(problem, self._expected)
+        noise, shared = said_by(problem, found, self._told)
+        new = noise.vector(pitch)
+        problem = problem._replace(noise=new)
+        if is_other(self._told, noise, shared):
+            found = likeliest(problem, self._expected, shared)
+        its = found.under(new, shared)
+        parts, fit = posteriors(problem, its)
+        wide = variance_inflation(fit.neighbours, readings.touched)
+        shapes = [on_any_pad(part, wide, self._told.sigma, pitch) for part in parts]
+        return Footprints(
+            tuple(likely(shape) for shape in shapes),
+            len(shapes),
+            found.count_probability,
+            max(found.counts.values()),
+            fit.surprise,
+            fit.surprise > UNLIKELY and all(shape.fits for shape in shapes),
+        )
+
+
+def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, float]:
+    """Return the noise that outlines leave, and how many times less evidence is worth by it."""
+    its = laid(problem, found.outlines)
+    known = problem.states != UNKNOWN
+    on = problem.states == ON
+    whole = (its.share >= COVERED) & known
+    shown = whole & on
+    n, many = int(np.count_nonzero(whole)), int(np.count_nonzero(shown))
+    sigma = told.sigma
+    if many >= FEWEST:
+        off = problem.logs[shown] - np.log(its.load[shown])
+        sigma = max(NORMAL * float(np.median(np.abs(off - np.median(off)))), 0.05)
+    sigma = math.exp((many * math.log(sigma) + TOLD * math.log(told.sigma)) / (many + TOLD))
+    voids = (n - many + TOLD * told.voids) / (n + TOLD)
+    bare = (its.share <= 0.0) & known
+    strays = (np.count_nonzero(bare & on) + 50.0 * told.strays) / (np.count_nonzero(bare) + 50.0)
+    scatter = np.array([math.log(sigma), math.log(voids / (1.0 - voids))])
+    noise = learned(told, scatter, 10**6, min(float(strays), 0.3))
+    fitted = 4 * found.outlines.count
+    pitch = float(problem.grid[2])
+    _, alike = goodness_of_load.call(its._replace(noise=noise.vector(pitch)), fitted)
+    return noise, variance_inflation(alike, int(np.count_nonzero(on)))
+
+
+def is_other(told: Noise, noise: Noise, shared: float) -> bool:
+    """Return whether a noise is so different that outlines should be looked for anew."""
+    odds = [math.log(x.voids / (1.0 - x.voids)) for x in (told, noise)]
+    changes = math.log(noise.sigma / told.sigma), odds[1] - odds[0], math.log(shared)
+    return max(abs(change) for change in changes) > ANEW

@@ -1,0 +1,187 @@
+"""All objects on a pad: parts that nothing connects, each looked at by itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.several.cuts import components
+from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
+from tactile_graph_likelihood.several.parts import LEAST_PIECE
+from tactile_graph_likelihood.several.scene import Configuration, joined
+from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.search import LIGHT_EDGE
+
+REACH = 2
+"""Cells within which touched elements may be one object's."""
+
+MARGIN = 2
+"""Cells around a part that are looked at with it."""
+
+LOADS = 1.5
+"""Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What is expected on a pad before a frame is read.
+
+    Parameters
+    ----------
+    kinds : list of (int, int)
+        Kinds of outlines and their corners, all alike likely.
+    sizes_cm : (float, float)
+        Range of radii and half sides.
+    whole : float
+        Probability that an outline lies on the pad whole.
+    most : int
+        Outlines at most.
+    more : float
+        Log odds of a number of outlines over one less.
+    """
+
+    kinds: list[tuple[int, int]]
+    sizes_cm: tuple[float, float]
+    whole: float
+    most: int
+    more: float
+
+    def problem(self, readings: Readings, noise: Values) -> JointProblem:
+        """Return the problem of a whole pad on which nothing lies yet."""
+        grid, logs, states, _ = readings
+        states = np.where(states == OVER, ON, states).astype(np.uint8)
+        prior = np.zeros(11)
+        prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_cm
+        prior[6] = self.whole
+        prior[9:] = float(np.median(logs[states == ON])) + LIGHT_EDGE, LOADS
+        bare = np.zeros(states.shape)
+        return JointProblem(grid, logs, states, noise, prior, bare, bare)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The likeliest outlines of a part of a pad."""
+
+    scene: Search
+    outlines: Configuration
+
+
+@dataclass(frozen=True, eq=False)
+class OnPad:
+    """The likeliest outlines on a pad, and the log probabilities of each number of them."""
+
+    parts: list[Found]
+    counts: dict[int, float]
+
+    @property
+    def outlines(self) -> Configuration:
+        """Return the outlines of all parts."""
+        return joined([part.outlines for part in self.parts])
+
+    @property
+    def count_probability(self) -> float:
+        """Return the probability of this number among all that the search came upon."""
+        odds = [math.exp(log - self.counts[self.outlines.count]) for log in self.counts.values()]
+        return 1.0 / sum(odds)
+
+    def under(self, noise: Values, shared: float) -> OnPad:
+        """Return the same outlines under another noise."""
+        parts = []
+        for part in self.parts:
+            its = part.scene
+            scene = Search(its.problem._replace(noise=noise), its.kinds, its.more, shared)
+            parts.append(Found(scene, part.outlines))
+        return OnPad(parts, self.counts)
+
+
+def laid(problem: JointProblem, found: Configuration) -> JointProblem:
+    """Return a problem beside outlines."""
+    its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
+    for k in range(found.count):
+        add_outline.call(its, found.outlines, k)
+    return its
+
+
+def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[Search]:
+    """Return the parts of a pad that nothing connects, each with some cells around it."""
+    on = problem.states == ON
+    labels = components.call(on, REACH)
+    sizes = np.bincount(labels.ravel())[1:]
+    large = (
+        np.flatnonzero(sizes >= LEAST_PIECE) if (sizes >= LEAST_PIECE).any() else [sizes.argmax()]
+    )
+    found = []
+    for k in large:
+        own = labels == k + 1
+        rows, columns = np.flatnonzero(own.any(axis=1)), np.flatnonzero(own.any(axis=0))
+        top, left = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
+        box = slice(top, int(rows[-1]) + MARGIN + 1), slice(left, int(columns[-1]) + MARGIN + 1)
+        grid = problem.grid.copy()
+        grid[:2] += grid[2] * np.array([left, top])
+        states = np.where(on & ~own, UNKNOWN, problem.states)[box].astype(np.uint8)
+        bare = np.zeros(states.shape)
+        part = problem._replace(
+            grid=grid, logs=problem.logs[box].copy(), states=states, load=bare, share=bare
+        )
+        found.append(Search(part, expected.kinds, expected.more, shared))
+    return found
+
+
+def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) -> OnPad:
+    """Return the outlines on a pad of the most evidence.
+
+    Parameters
+    ----------
+    problem : JointProblem
+        Of the whole pad.
+    expected : Expected
+    shared : float
+        As in `Scene`.
+
+    Raises
+    ------
+    Degenerate
+        If no outlines, as many as are allowed, explain the image.
+    """
+    scenes = parts_of(problem, expected, shared)
+    every = [scene.divisions(expected.most) for scene in scenes]
+    worths = [
+        {n: scene.worth(f) for n, f in its.items()}
+        for scene, its in zip(scenes, every, strict=True)
+    ]
+    logs, choice = chosen(worths, expected.most)
+    if not logs:
+        raise Degenerate(f"no {expected.most} objects or fewer explain what is touched")
+    counts = choice[max(logs, key=logs.__getitem__)]
+    parts = []
+    for scene, divisions, n in zip(scenes, every, counts, strict=True):
+        if n == 0:
+            continue
+        parts.append(Found(scene, divisions[n]))
+    return OnPad(parts, logs)
+
+
+def chosen(
+    every: list[dict[int, float]], most: int
+) -> tuple[dict[int, float], dict[int, tuple[int, ...]]]:
+    """Return the log probability of each number of outlines, and how many each part has then.
+
+    Outlines have no names: K of them may be exchanged in K! ways.
+    """
+    best: dict[int, tuple[float, tuple[int, ...]]] = {0: (0.0, ())}
+    for some in every:
+        new: dict[int, tuple[float, tuple[int, ...]]] = {}
+        for (n, (log, counts)), (k, more) in product(best.items(), [(0, 0.0), *some.items()]):
+            total = log + more
+            if n + k <= most and total > -math.inf and total > new.get(n + k, (-math.inf,))[0]:
+                new[n + k] = total, (*counts, k)
+        best = new
+    logs = {n: log + math.lgamma(n + 1.0) for n, (log, _) in best.items() if n > 0}
+    return logs, {n: counts for n, (_, counts) in best.items()}
