@@ -46,7 +46,29 @@ def ellipse_of(a: Values, grid: Values, p: Values) -> None:
     outline_of_moments(ELLIPSE, 0, found, 0.0, THINNEST, p)
 
 
-def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, float]:
+class Cuts(NamedTuple):
+    """Cuts of a piece in two.
+
+    Parameters
+    ----------
+    gains : ndarray, shape (24,)
+        What the two ellipses with the halves' moments add to the log likelihood, -inf where there
+        is no cut.
+    whole : float
+        What the piece's one ellipse does.
+    points : ndarray, shape (24, 2, 6)
+        The halves' ellipses, each with the logarithm of its load.
+    one : ndarray, shape (6,)
+        The piece's.
+    """
+
+    gains: Values
+    whole: float
+    points: Values
+    one: Values
+
+
+def cuts(problem: JointProblem, least: int, sides: States) -> Cuts:
     """Propose cuts of a piece: at each of 12 angles the fullest halves, and the narrowest neck.
 
     Parameters
@@ -57,18 +79,14 @@ def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, floa
         Elements on either side.
     sides : ndarray of uint8, shape (24, rows, columns)
         Written: 1 and 2 on the two sides of each cut, 0 off the piece.
-
-    Returns
-    -------
-    (ndarray, float)
-        What the two ellipses with the halves' moments add to the log likelihood, shape (24,), -inf
-        where there is no cut; and what the piece's one ellipse does.
     """
     r, c = np.nonzero(problem.states == ON)
     angles = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
     along = np.cos(angles)[:, None] * c + np.sin(angles)[:, None] * r
     across = Across(r, c, along, np.argsort(along, axis=1, kind="stable"))
-    return cuts_across.call(problem, across, least, sides)
+    points, one = np.zeros((2 * ANGLES, 2, WIDTH)), np.zeros(WIDTH)
+    gains, whole = cuts_across.call(problem, across, least, sides, points, one)
+    return Cuts(gains, whole, points, one)
 
 
 class Across(NamedTuple):
@@ -91,9 +109,9 @@ class Across(NamedTuple):
 
 @compiled_as_is
 def cuts_across(
-    problem: JointProblem, across: Across, least: int, sides: States
+    problem: JointProblem, across: Across, least: int, sides: States, ellipses: Values, one: Values
 ) -> tuple[Values, float]:
-    """Return what `cuts` returns."""
+    """Return the gains of cuts and of the whole; write sides and ellipses, as in `cuts`."""
     grid, logs = problem.grid, problem.logs
     rows, cols = problem.states.shape
     r, c = across.row, across.column
@@ -143,9 +161,14 @@ def cuts_across(
             ellipse_of(sums[k], grid, points[0])
             ellipse_of(sums[n] - sums[k], grid, points[1])
             found[2 * t + way] = gain(problem, halves)
+            for m in range(WIDTH):
+                ellipses[2 * t + way, 0, m] = points[0, m]
+                ellipses[2 * t + way, 1, m] = points[1, m]
             for i in range(n):
                 sides[2 * t + way, r[i], c[i]] = 1 if place[i] < k else 2
     ellipse_of(sums[n], grid, points[0])
+    for m in range(WIDTH):
+        one[m] = points[0, m]
     whole = gain(problem, Outlines(kinds[:1], corners[:1], points[:1]))
     return found, whole
 

@@ -34,8 +34,8 @@ COVERED = 0.95
 TOLD = 8.0
 """Covered elements that what is told of gains and voids is worth."""
 
-ANEW = 0.25
-"""Change of ln sigma, of the voids' log odds or of ln shared from which on the search is made
+ANEW = np.array([0.4, 1.0, 0.3])
+"""Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
 
 SEVERAL = SeveralSettings(on_pad="mostly")
@@ -145,4 +145,4 @@ def is_other(told: Noise, noise: Noise, shared: float) -> bool:
     """Return whether a noise is so different that outlines should be looked for anew."""
     odds = [math.log(x.voids / (1.0 - x.voids)) for x in (told, noise)]
     changes = math.log(noise.sigma / told.sigma), odds[1] - odds[0], math.log(shared)
-    return max(abs(change) for change in changes) > ANEW
+    return bool((np.abs(changes) > ANEW).any())

@@ -175,13 +175,15 @@ def laplace_evidence(problem: JointProblem, outlines: Outlines, matrix: Values) 
 
 @compiled_as_is
 def settle(
-    problem: JointProblem, outlines: Outlines, most: int, enough: float, matrix: Values
+    problem: JointProblem, outlines: Outlines, soft: int, most: int, enough: float, matrix: Values
 ) -> float:
     """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
 
-    With no rounds they stay where they are; otherwise as in `maximise_jointly`. The information is
-    written to ``matrix``.
+    With no rounds they stay where they are; otherwise as in `maximise_softly`, in ``soft`` rounds,
+    and `maximise_jointly`. The information is written to ``matrix``.
     """
+    if soft > 0:
+        maximise_softly(problem, outlines, soft)
     if most > 0:
         maximise_jointly(problem, outlines, most, enough)
     return laplace_evidence(problem, outlines, matrix)
@@ -236,7 +238,7 @@ def fit_piece(
             problem.grid, problem.logs, piece, problem.noise, problem.prior, bare, bare
         )
         maximise_softly(by_itself, outline, ROUNDS)
-    return settle(problem, outline, ROUNDS, ENOUGH, matrix)
+    return settle(problem, outline, 0, ROUNDS, ENOUGH, matrix)
 
 
 @compiled_as_is

@@ -4,34 +4,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
+from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.maximise_jointly import piece_states
-from tactile_graph_likelihood.several.scene import Configuration, Scene, joined
+from tactile_graph_likelihood.several.scene import Configuration, Scene, joined, like
 from tactile_graph_likelihood.single.element_terms import States
 from tactile_graph_likelihood.single.problem import Places
 
 LEAST_PIECE = 4
 """Elements of a piece; fewer join the nearest piece."""
 
-CUTS = 3
+CUTS = 4
 """Cuts of a piece that are tried."""
 
-NO_GAIN = 10.0
+NO_GAIN = 20.0
 """How much worse than no cut a cut that is tried may be, by the outlines of the halves' moments."""
 
-WORSE = 12.0
+ROUND_FROM = 0.75
+"""Ratio of a half's axes from which on it is taken to be a disc."""
+
+WORSE = 25.0
 """How much worse than the best cut another one that is tried may be."""
 
-PAIR_ROUNDS = 6
-"""Rounds in which two halves are brought to their joint mode."""
+FIRST, SOFT, ROUNDS = 4, 5, 8
+"""Rounds in which outlines of moments are brought to their mode: at first, and of those that come
+near, in the soft search and after it."""
 
-SLACK = 8.0
-"""How much less evidence two halves may have than the whole, for their own halves to be tried."""
+NEAR, CLOSE = 14.0, 7.0
+"""How much less evidence they may have then than what they replace, to be looked at closely, and
+for other kinds to be tried."""
+
+SLACK = 0.6
+"""How much less evidence for each element two halves may have than the whole, for their own halves
+to be tried."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +60,14 @@ class Pieces:
     worth: float
 
 
+class Halves(NamedTuple):
+    """A cut of a piece: the masks of both sides, and outlines of their moments."""
+
+    one: Places
+    other: Places
+    outlines: Configuration
+
+
 Divisions: TypeAlias = dict[int, Pieces]
 """By how many pieces there are, those of the most evidence."""
 
@@ -60,7 +78,7 @@ class Parts(Scene):
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
         rough = [k for k in self.kinds if k[0] in (RECTANGLE, DISC)]
-        self.rough = rough[::-1] if len(rough) == 2 else self.kinds
+        self.rough = [(RECTANGLE, 0), (DISC, 0)] if len(rough) == 2 else self.kinds
         self.known: dict[bytes, Configuration] = {}
 
     def labelled(self, mask: Places) -> States:
@@ -84,22 +102,51 @@ class Parts(Scene):
             self.known[key] = best
         return self.known[key]
 
-    def halves(self, mask: Places, most: int = CUTS) -> list[tuple[Places, Places]]:
-        """Return the best straight cuts of a piece, each as two masks."""
+    def halves(self, mask: Places, most: int = CUTS) -> list[Halves]:
+        """Return the best straight cuts of a piece."""
         if np.count_nonzero(mask) < 2 * LEAST_PIECE:
             return []
         piece = self.problem._replace(states=self.labelled(mask))
         sides = np.zeros((2 * ANGLES, *mask.shape), np.uint8)
-        good, whole = cuts(piece, LEAST_PIECE, sides)
-        out: list[tuple[Places, Places]] = []
+        good, whole, points, _ = cuts(piece, LEAST_PIECE, sides)
+        out: list[Halves] = []
         least = max(good.max() - WORSE * self.shared, whole - NO_GAIN * self.shared)
         for t in np.argsort(-good, kind="stable"):
             if len(out) == most or good[t] < least:
                 break
             a, b = (sides[t] == 1).astype(np.int64), (sides[t] == 2).astype(np.int64)
-            if all(min((a != x).sum(), (a != y).sum()) > 2 for x, y in out):
-                out.append((a, b))
+            if all(min((a != x).sum(), (a != y).sum()) > 2 for x, y, _ in out):
+                out.append(Halves(a, b, joined([self.guessed(p) for p in points[t]])))
         return out
+
+    def guessed(self, ellipse: Values) -> Configuration:
+        """Return the outline of a likely kind that has an ellipse's moments."""
+        its = Configuration(np.array([ELLIPSE]), np.array([0]), ellipse[None], 0.0)
+        kind = self.rough[
+            int(len(self.rough) == 2 and min(ellipse[2:4]) > ROUND_FROM * max(ellipse[2:4]))
+        ]
+        return Configuration(np.array([kind[0]]), np.array([kind[1]]), like(kind[0], its), 0.0)
+
+    def tried(self, found: Configuration, beside: JointProblem, worth: float) -> Configuration:
+        """Return outlines brought to their mode beside others, with care if near a worth."""
+        found = self.settled(found, beside, FIRST)[0]
+        if self.worth(found) > worth - NEAR:
+            found = self.settled(found, beside, ROUNDS, SOFT)[0]
+            if self.worth(found) > worth - CLOSE:
+                found = self.refined(found, beside)
+        return found
+
+    def refined(self, found: Configuration, beside: JointProblem) -> Configuration:
+        """Return outlines beside others, each of the rough kind that explains most."""
+        for k in range(found.count):
+            for kind in self.rough:
+                if kind != (found.kinds[k], found.corners[k]):
+                    points = like(kind[0], found.only(k))
+                    other = Configuration(np.array([kind[0]]), np.array([kind[1]]), points, 0.0)
+                    made = self.settled(found.with_one(k, other), beside, ROUNDS)[0]
+                    if made.log_evidence > found.log_evidence:
+                        found = made
+        return found
 
     def divided(self, mask: Places, room: int) -> Divisions:
         """Return a mask's elements as one piece, and cut in two again and again."""
@@ -108,17 +155,21 @@ class Parts(Scene):
         if room < 2:
             return found
         here, best = self.problem._replace(states=self.labelled(mask)), None
-        for a, b in self.halves(mask):
-            pair = self.settled(joined([self.single(a), self.single(b)]), here, PAIR_ROUNDS)[0]
-            if best is None or pair.log_evidence > best[0].log_evidence:
-                best = pair, a, b
+        for a, b, pair in self.halves(mask):
+            pair = self.tried(pair, here, self.worth(alone))
+            if best is None or pair.log_evidence > best[2].log_evidence:
+                best = a, b, pair
         if best is None:
             return found
-        pair, a, b = best
+        a, b, pair = best
         found[2] = Pieces([pair.only(0), pair.only(1)], self.worth(pair))
-        if found[2].worth < found[1].worth - SLACK:
+        if found[2].worth < found[1].worth - SLACK * np.count_nonzero(mask):
             return found
-        loss = found[2].worth - self.worth(self.single(a)) - self.worth(self.single(b))
+        one, other = self.single(a), self.single(b)
+        fitted = self.settled(joined([one, other]), here, ROUNDS)[0]
+        if fitted.log_evidence > pair.log_evidence:
+            found[2] = Pieces([fitted.only(0), fitted.only(1)], self.worth(fitted))
+        loss = found[2].worth - self.worth(one) - self.worth(other)
         more = combined(self.divided(a, room - 1), self.divided(b, room - 1), room, min(loss, 0.0))
         return more | found
 

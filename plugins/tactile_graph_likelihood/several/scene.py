@@ -116,23 +116,31 @@ class Scene:
         return problem
 
     def settled(
-        self, found: Configuration, beside: JointProblem | None = None, most: int = 15
+        self,
+        found: Configuration,
+        beside: JointProblem | None = None,
+        most: int = 15,
+        soft: int = 0,
     ) -> tuple[Configuration, Values]:
         """Return outlines brought to their joint mode beside others, and the information there."""
         points = found.points.copy()
         matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
         outlines = Outlines(found.kinds, found.corners, points)
-        log = settle.call(beside or self.problem, outlines, most, 0.1, matrix)
+        log = settle.call(beside or self.problem, outlines, soft, most, 0.1, matrix)
         return Configuration(found.kinds, found.corners, points, log), matrix
 
     def fitted(
-        self, kind: tuple[int, int], piece: States, beside: JointProblem, like: Configuration | None
+        self,
+        kind: tuple[int, int],
+        piece: States,
+        beside: JointProblem,
+        begin: Configuration | None,
     ) -> Configuration:
         """Return one kind of outline fitted to a piece beside others, with its own evidence.
 
         The search begins with an outline like another one, if there is one.
         """
-        points = np.zeros((1, WIDTH)) if like is None else _like(kind[0], like)
+        points = np.zeros((1, WIDTH)) if begin is None else like(kind[0], begin)
         outline = Outlines(np.array([kind[0]]), np.array([kind[1]]), points)
         log = fit_piece.call(beside, outline, piece, self.table, TRIES, np.empty((WIDTH, WIDTH)))
         return Configuration(*outline, log)
@@ -146,7 +154,7 @@ class Scene:
         """Return the posterior of one outline beside the others, and its evidence."""
         beside, outline = self.beside(found, k), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
-        settle.call(beside, outline, 0, 0.0, matrix)
+        settle.call(beside, outline, 0, 0, 0.0, matrix)
         n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
         plan = Plan(_table(n), BLOCK, WORTH)
         points, weights = np.empty((POINTS, n)), np.empty(POINTS)
@@ -156,7 +164,7 @@ class Scene:
         return Sampled(points[:used], weights[:used], evidence, equal)
 
 
-def _like(kind: int, other: Configuration) -> Values:
+def like(kind: int, other: Configuration) -> Values:
     """Return the point of a kind of outline of about another's moments; zeros if none is."""
     p, points = other.points[0], np.zeros((1, WIDTH))
     was = int(other.kinds[0])

@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 
 from tactile_graph_likelihood.several.joint_posterior import add_outline
-from tactile_graph_likelihood.several.parts import Parts
+from tactile_graph_likelihood.several.parts import Divisions, Parts
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.single.element_terms import States
 from tactile_graph_likelihood.single.problem import Places
 
-NEARLY = 6.0
+NEARLY = 3.0
 """How much less evidence a move may bring at first, for all outlines to settle beside it."""
+
+SAME = 2
+"""Elements by which masks differ that are the same for a move."""
 
 GAIN = 0.1
 """Evidence that a move must bring."""
@@ -29,7 +32,7 @@ class Search(Parts):
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self.tried: set[tuple[int, bytes]] = set()
+        self.seen: dict[int, list[Places]] = {1: [], 2: []}
         self.best: dict[int, Configuration] = {}
 
     def divisions(self, room: int) -> dict[int, Configuration]:
@@ -43,6 +46,11 @@ class Search(Parts):
         while better is not None:
             found, better = better, self.improved(better, room)
         return self.best
+
+    def divided(self, mask: Places, room: int) -> Divisions:
+        """Return a mask's elements cut in two again and again, which is not tried again."""
+        self.seen[1].append(mask)
+        return super().divided(mask, room)
 
     def rank(self, found: Configuration) -> float:
         """Return the log probability of outlines, of any number of them."""
@@ -62,9 +70,10 @@ class Search(Parts):
             beside = self.beside(found, *out)
             now = joined([found.only(k) for k in out])
             before = self.worth(self.settled(now, beside, 0)[0])
-            if self.worth(self.settled(new, beside, 6)[0]) < before - NEARLY:
+            near = self.tried(new, beside, before)
+            if self.worth(near) < before - NEARLY:
                 continue
-            made = self.noted(joined([found.without(*out), new]))
+            made = self.noted(joined([found.without(*out), near]))
             if self.rank(made) > self.rank(found) + GAIN:
                 return made
         return None
@@ -81,23 +90,24 @@ class Search(Parts):
         if found.count < room:
             for a in range(found.count):
                 if self.fresh(1, masks[a]):
-                    for one, other in self.halves(masks[a], 2):
-                        yield (a,), joined([self.single(one), self.single(other)])
+                    for cut in self.halves(masks[a], 2):
+                        yield (a,), cut.outlines
 
     def moves_of_two(self, out: tuple[int, int], mask: Places) -> Iterator[Move]:
         """Yield one outline in the place of two, and two that share their elements otherwise."""
         if not self.fresh(2, mask):
             return
         yield out, self.single(mask)
-        for one, other in self.halves(mask):
-            yield out, joined([self.single(one), self.single(other)])
+        for cut in self.halves(mask):
+            yield out, cut.outlines
 
     def fresh(self, count: int, mask: Places) -> bool:
-        """Return whether a move has not been tried on a mask yet; from now on it has."""
-        key = (count, mask.tobytes())
-        known = key in self.tried
-        self.tried.add(key)
-        return not known and bool((mask == 1).any())
+        """Return whether a move has not been tried on about this mask yet; from now on it has."""
+        tried = self.seen[count]
+        if not mask.any() or any(np.count_nonzero(mask != it) <= SAME for it in tried):
+            return False
+        tried.append(mask)
+        return True
 
     def owners(self, found: Configuration) -> Places:
         """Return which outline, from 0, each touched element belongs to; -1 where untouched."""
