@@ -10,7 +10,13 @@ from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.from_frame import FEWEST, NORMAL, learned, variance_inflation
+from tactile_graph_likelihood.any_pad.from_frame import (
+    FEWEST,
+    NORMAL,
+    PAIRS,
+    learned,
+    variance_inflation,
+)
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad
 from tactile_graph_likelihood.settings import ON_PAD
@@ -37,6 +43,13 @@ TOLD = 8.0
 ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
+
+FEW_ELEMENTS = 1.7
+"""Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
+own."""
+
+ABSORBED = 2.0
+"""Over an outline's number of elements: by how much its fit lowers neighbours' correlation."""
 
 SEVERAL = SeveralSettings(on_pad="mostly")
 
@@ -105,7 +118,8 @@ class LocateObjects:
             found = likeliest(problem, self._expected, shared)
         its = found.under(new, shared)
         parts, fit = posteriors(problem, its)
-        wide = variance_inflation(fit.neighbours, readings.touched)
+        alike = unbiased(fit.neighbours, readings.touched, len(parts))
+        wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
         shapes = [on_any_pad(part, wide, self._told.sigma, pitch) for part in parts]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
@@ -138,7 +152,16 @@ def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, fl
     fitted = 4 * found.outlines.count
     pitch = float(problem.grid[2])
     _, alike = goodness_of_load.call(its._replace(noise=noise.vector(pitch)), fitted)
-    return noise, variance_inflation(alike, int(np.count_nonzero(on)))
+    touched = int(np.count_nonzero(on))
+    return noise, variance_inflation(unbiased(alike, touched, found.outlines.count), touched)
+
+
+def unbiased(neighbours: float, touched: int, n_outlines: int) -> float:
+    """Return how alike neighbours are, free of what the fit of each outline takes away.
+
+    A load and a place fitted to few elements leave residuals that are unlike by themselves.
+    """
+    return neighbours + ABSORBED * math.sqrt(PAIRS / max(touched, 1)) * n_outlines
 
 
 def is_other(told: Noise, noise: Noise, shared: float) -> bool:

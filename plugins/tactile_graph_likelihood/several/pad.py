@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -67,10 +67,19 @@ class Expected:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The likeliest outlines of a part of a pad."""
+    """The likeliest outlines of a part of a pad, and others that the search came upon.
+
+    Parameters
+    ----------
+    scene : Search
+    outlines : Configuration
+    others : list of (float, Configuration)
+        Each with its log probability over that of the likeliest.
+    """
 
     scene: Search
     outlines: Configuration
+    others: list[tuple[float, Configuration]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +106,7 @@ class OnPad:
         for part in self.parts:
             its = part.scene
             scene = Search(its.problem._replace(noise=noise), its.kinds, its.more, shared)
-            parts.append(Found(scene, part.outlines))
+            parts.append(replace(part, scene=scene))
         return OnPad(parts, self.counts)
 
 
@@ -164,7 +173,9 @@ def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) ->
     for scene, divisions, n in zip(scenes, every, counts, strict=True):
         if n == 0:
             continue
-        parts.append(Found(scene, divisions[n]))
+        its = divisions[n]
+        others = [(scene.rank(o) - scene.rank(its), o) for o in scene.every if o is not its]
+        parts.append(Found(scene, its, others))
     return OnPad(parts, logs)
 
 

@@ -36,6 +36,16 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
 )
 from tactile_graph_likelihood.single.posterior import Posterior
 
+TEMPER = 2.0
+"""How many times less evidence between kinds, and between other outlines, is worth: none of them
+is quite what lies there."""
+
+NEGLIGIBLE = 0.02
+"""Probability over the likeliest outlines' below which others are left out."""
+
+SAME_CM = 0.15
+"""Distance of centres that are the same."""
+
 
 class GoodnessOfLoad(NamedTuple):
     """How surprising an image is, and how much neighbours' gains are alike."""
@@ -131,7 +141,8 @@ def posteriors_of(part: Found) -> list[Posterior]:
     -----
     Each outline is fitted as each kind beside the others, and the likeliest kind's points are
     sampled there; they are then spread by what the others' own uncertainty adds to their
-    covariance, from the information of all together, and by how far the other kinds lie off.
+    covariance, from the information of all together, and by how far the other kinds, and other
+    outlines that the search came upon, lie off.
     """
     scene, every = part.scene, list[Kinds]()
     found, _ = scene.settled(part.outlines)
@@ -154,7 +165,7 @@ def posteriors_of(part: Found) -> list[Posterior]:
         covariance = (off * some.weights[:, None]).T @ off
         covariance /= max(1.0 - float(some.weights @ some.weights), 0.05)
         shift, spread = kinds.apart(n)
-        wider = covariance + spread
+        wider = covariance + spread + spread_of_others(part, found.only(k), n)
         points = mean + shift + off @ _wider(covariance, wider).T
         out.append(
             Posterior(
@@ -179,13 +190,7 @@ class Kinds:
 
         Shapes (n,) and (n, n): of the centre and, all sizes alike, of the root of the area.
         """
-        shift, spread = np.zeros(n), np.zeros((n, n))
-        own = sizes.call(int(self.best.kinds[0]))
-        offs = np.zeros((len(self.fits), n))
-        for off, fit in zip(offs, self.fits, strict=True):
-            off[:2] = fit.points[0, :2] - self.best.points[0, :2]
-            ratio = math.sqrt(_area(fit) / _area(self.best))
-            off[2 : 2 + own] = (ratio - 1.0) * self.best.points[0, 2 : 2 + own]
+        offs = np.array([_off(fit, self.best, n) for fit in self.fits])
         shift = self.chances @ offs
         spread = (offs * self.chances[:, None]).T @ offs - np.outer(shift, shift)
         return shift, spread
@@ -200,9 +205,41 @@ def kinds_of(scene: Search, found: Configuration, k: int, piece: States) -> Kind
         else:
             fits.append(scene.fitted(kind, piece, beside, own))
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
-    logs = np.array([fit.log_evidence for fit in fits]) / scene.shared
+    logs = np.array([fit.log_evidence for fit in fits]) / (TEMPER * scene.shared)
     chances = np.exp(logs - logs.max())
     return Kinds(fits, fits[int(logs.argmax())], chances / chances.sum())
+
+
+def spread_of_others(part: Found, one: Configuration, n: int) -> Values:
+    """Return the covariance that other outlines of a part add to one of the likeliest."""
+    spread, total, different = np.zeros((n, n)), 1.0, [part.outlines]
+    for log, other in part.others:
+        chance = math.exp(min(log / TEMPER, 0.0))
+        if chance < NEGLIGIBLE or any(_are_same(other, it) for it in different):
+            continue
+        different.append(other)
+        far = np.hypot(*(other.points[:, :2] - one.points[0, :2]).T)
+        off = _off(other.only(int(far.argmin())), one, n)
+        spread += chance * np.outer(off, off)
+        total += chance
+    return spread / total
+
+
+def _are_same(one: Configuration, other: Configuration) -> bool:
+    """Return whether outlines lie at about the same places."""
+    if one.count != other.count:
+        return False
+    off = one.points[:, None, :2] - other.points[None, :, :2]
+    return bool((np.abs(off).max(axis=2).min(axis=1) < SAME_CM).all())
+
+
+def _off(found: Configuration, one: Configuration, n: int) -> Values:
+    """Return how far an outline lies off another, in the other's numbers, all sizes alike."""
+    off, own = np.zeros(n), sizes.call(int(one.kinds[0]))
+    off[:2] = found.points[0, :2] - one.points[0, :2]
+    ratio = math.sqrt(_area(found) / _area(one))
+    off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
+    return off
 
 
 def _area(found: Configuration) -> float:

@@ -34,6 +34,7 @@ class Search(Parts):
         super().__init__(*args)
         self.seen: dict[int, list[Places]] = {1: [], 2: []}
         self.best: dict[int, Configuration] = {}
+        self.every: list[Configuration] = []
 
     def divisions(self, room: int) -> dict[int, Configuration]:
         """Return the best outlines of each number that the search comes upon."""
@@ -59,6 +60,7 @@ class Search(Parts):
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
         found = self.settled(found)[0]
+        self.every.append(found)
         best = self.best.get(found.count)
         if best is None or found.log_evidence > best.log_evidence:
             self.best[found.count] = found
