@@ -5,13 +5,13 @@ Run with ``python benchmarks/unknown_objects.py``; ``--scenes N`` takes so many 
 tables. Pads are those of `second_simulator`, which shares no code with the project's own; all
 pipelines are told the thesis' pad.
 
-One, two, three or six discs and rectangles of 10 to 21 cm2 (one to three of them up to 1.5 times as
-wide) lie a pitch or more apart, or each touches one that already lies there. "Counts" is how often
-the number is right, more and fewer how often it is not; the centre's error is the mean over the true
-objects that have a found one within 2 cm, the size's that of the radius of a disc of the same area.
-"Held" is how often the centre lies in the 90 % region of the centre, "off" its error over the stated
-deviation, root mean square; "flagged" how often ``fits`` is False. Times are of the
-processor, a whole frame.
+One, two, three or six discs and rectangles of 10 to 21 cm2 (one to three of them up to 1.5 times
+as wide) lie a pitch or more apart, or each touches one that already lies there. "Counts" is how
+often the number is right, more and fewer how often it is not; the centre's error is the mean over
+the true objects that have a found one within 2 cm, the size's that of the radius of a disc of the
+same area. "Held" is how often the centre lies in the 90 % region of the centre, "off" its error
+over the stated deviation, root mean square, both where there is one; "flagged" how often ``fits``
+is False. Times are of the processor, a whole frame.
 
 Settings were tuned with seed 1; what is reported is of another.
 """

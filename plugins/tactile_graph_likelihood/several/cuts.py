@@ -58,14 +58,11 @@ class Cuts(NamedTuple):
         What the piece's one ellipse does.
     points : ndarray, shape (24, 2, 6)
         The halves' ellipses, each with the logarithm of its load.
-    one : ndarray, shape (6,)
-        The piece's.
     """
 
     gains: Values
     whole: float
     points: Values
-    one: Values
 
 
 def cuts(problem: JointProblem, least: int, sides: States) -> Cuts:
@@ -84,9 +81,9 @@ def cuts(problem: JointProblem, least: int, sides: States) -> Cuts:
     angles = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
     along = np.cos(angles)[:, None] * c + np.sin(angles)[:, None] * r
     across = Across(r, c, along, np.argsort(along, axis=1, kind="stable"))
-    points, one = np.zeros((2 * ANGLES, 2, WIDTH)), np.zeros(WIDTH)
-    gains, whole = cuts_across.call(problem, across, least, sides, points, one)
-    return Cuts(gains, whole, points, one)
+    points = np.zeros((2 * ANGLES, 2, WIDTH))
+    gains, whole = cuts_across.call(problem, across, least, sides, points)
+    return Cuts(gains, whole, points)
 
 
 class Across(NamedTuple):
@@ -109,7 +106,7 @@ class Across(NamedTuple):
 
 @compiled_as_is
 def cuts_across(
-    problem: JointProblem, across: Across, least: int, sides: States, ellipses: Values, one: Values
+    problem: JointProblem, across: Across, least: int, sides: States, ellipses: Values
 ) -> tuple[Values, float]:
     """Return the gains of cuts and of the whole; write sides and ellipses, as in `cuts`."""
     grid, logs = problem.grid, problem.logs
@@ -167,8 +164,6 @@ def cuts_across(
             for i in range(n):
                 sides[2 * t + way, r[i], c[i]] = 1 if place[i] < k else 2
     ellipse_of(sums[n], grid, points[0])
-    for m in range(WIDTH):
-        one[m] = points[0, m]
     whole = gain(problem, Outlines(kinds[:1], corners[:1], points[:1]))
     return found, whole
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
+from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
 from tactile_graph_likelihood.settings import ON_PAD, FootprintSettings, Load, Positive
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
@@ -117,13 +119,18 @@ class FitFootprints:
         found = [KINDS[k] for k in dict.fromkeys(kinds)]
         self.expected = Expected(found, sizes, ON_PAD[settings.on_pad], most, more)
 
-    def __call__(self, image: Load) -> Footprints:
+    def __call__(
+        self, image: Load, starts: Sequence[Circle | Ellipse | Rectangle | Polygon] = ()
+    ) -> Footprints:
         """Return the outlines.
 
         Parameters
         ----------
         image : Image
             Loads; invalid cells say nothing.
+        starts : list of Circle, Ellipse, Rectangle or Polygon
+            Where the search may begin too, one for each object; those of kinds that are not
+            looked for become the ellipse of the same place and area.
 
         Raises
         ------
@@ -135,7 +142,8 @@ class FitFootprints:
         readings = readings_of(image, self.gap_cm, self.noise.least)
         noise = self.noise.vector(float(readings.grid[2]))
         problem = self.expected.problem(readings, noise)
-        return footprints(problem, likeliest(problem, self.expected))
+        begin = self.expected.outlines(starts, problem) if len(starts) else None
+        return footprints(problem, likeliest(problem, self.expected, starts=begin))
 
 
 def footprints(problem: JointProblem, found: OnPad) -> Footprints:

@@ -44,6 +44,9 @@ ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
 
+LIKELY = 0.6
+"""Probability of the number of objects below which the answer is flagged."""
+
 FEW_ELEMENTS = 1.7
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
 own."""
@@ -127,7 +130,9 @@ class LocateObjects:
             found.count_probability,
             max(found.counts.values()),
             fit.surprise,
-            fit.surprise > UNLIKELY and all(shape.fits for shape in shapes),
+            fit.surprise > UNLIKELY
+            and found.count_probability > LIKELY
+            and all(shape.fits for shape in shapes),
         )
 
 

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph.wires import Shape
+from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
 from tactile_graph_likelihood.several.cuts import components
-from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
+from tactile_graph_likelihood.several.joint_posterior import (
+    MIDDLE,
+    WIDTH,
+    JointProblem,
+    add_outline,
+)
 from tactile_graph_likelihood.several.parts import LEAST_PIECE
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.several.search import Search
@@ -24,6 +31,10 @@ REACH = 2
 
 MARGIN = 2
 """Cells around a part that are looked at with it."""
+
+TEMPER = 2.0
+"""How many times less evidence between kinds, numbers of outlines and other outlines is worth: none
+of them is quite what lies there."""
 
 LOADS = 1.5
 """Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
@@ -52,6 +63,26 @@ class Expected:
     whole: float
     most: int
     more: float
+
+    def outlines(self, shapes: Sequence[Shape], problem: JointProblem) -> Configuration:
+        """Return shapes as outlines of the kinds that are looked for.
+
+        Those of other kinds become the ellipse, or the first kind, of the same place and area.
+        """
+        fallback = next((k for k in self.kinds if k[0] == ELLIPSE), self.kinds[0])
+        kinds, corners, points = [], [], np.zeros((len(shapes), WIDTH))
+        for row, shape in zip(points, shapes, strict=True):
+            kind, n, p = packed(shape)
+            if (kind, n) not in self.kinds:
+                kind, n = fallback
+                radius = math.sqrt(shape.area_cm2 / math.pi)
+                p = np.array([shape.x_cm, shape.y_cm, radius, radius, 0.0])
+                p = p[: unknowns.call(kind, n)]
+            row[: len(p)] = p
+            row[len(p)] = problem.prior[MIDDLE]
+            kinds.append(kind)
+            corners.append(n)
+        return Configuration(np.array(kinds), np.array(corners), points, 0.0)
 
     def problem(self, readings: Readings, noise: Values) -> JointProblem:
         """Return the problem of a whole pad on which nothing lies yet."""
@@ -97,7 +128,8 @@ class OnPad:
     @property
     def count_probability(self) -> float:
         """Return the probability of this number among all that the search came upon."""
-        odds = [math.exp(log - self.counts[self.outlines.count]) for log in self.counts.values()]
+        here = self.counts[self.outlines.count]
+        odds = [math.exp(min((log - here) / TEMPER, 50.0)) for log in self.counts.values()]
         return 1.0 / sum(odds)
 
     def under(self, noise: Values, shared: float) -> OnPad:
@@ -143,7 +175,12 @@ def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[S
     return found
 
 
-def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) -> OnPad:
+def likeliest(
+    problem: JointProblem,
+    expected: Expected,
+    shared: float = 1.0,
+    starts: Configuration | None = None,
+) -> OnPad:
     """Return the outlines on a pad of the most evidence.
 
     Parameters
@@ -153,6 +190,8 @@ def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) ->
     expected : Expected
     shared : float
         As in `Scene`.
+    starts : Configuration, optional
+        Where the search may begin, too.
 
     Raises
     ------
@@ -160,10 +199,11 @@ def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) ->
         If no outlines, as many as are allowed, explain the image.
     """
     scenes = parts_of(problem, expected, shared)
-    every = [scene.divisions(expected.most) for scene in scenes]
+    begins = split(starts, scenes) if starts else [None] * len(scenes)
+    every = [s.divisions(expected.most, b) for s, b in zip(scenes, begins, strict=True)]
     worths = [
-        {n: scene.worth(f) for n, f in its.items()}
-        for scene, its in zip(scenes, every, strict=True)
+        {n: scene.worth(found) for n, found in divisions.items()}
+        for scene, divisions in zip(scenes, every, strict=True)
     ]
     logs, choice = chosen(worths, expected.most)
     if not logs:
@@ -176,7 +216,17 @@ def likeliest(problem: JointProblem, expected: Expected, shared: float = 1.0) ->
         its = divisions[n]
         others = [(scene.rank(o) - scene.rank(its), o) for o in scene.every if o is not its]
         parts.append(Found(scene, its, others))
-    return OnPad(parts, logs)
+    weighed, _ = chosen([scene.worths for scene in scenes], expected.most)
+    return OnPad(parts, weighed | {sum(counts): logs[sum(counts)]})
+
+
+def split(found: Configuration, scenes: list[Search]) -> list[Configuration | None]:
+    """Return the outlines that lie nearest to each part, None where there are none."""
+    near = np.array(
+        [[scene.far_from(x, y) for x, y in found.points[:, :2]] for scene in scenes]
+    ).argmin(axis=0)
+    its = [np.flatnonzero(near != part) for part in range(len(scenes))]
+    return [found.without(*out) if len(out) < found.count else None for out in its]
 
 
 def chosen(

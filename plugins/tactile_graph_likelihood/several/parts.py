@@ -108,7 +108,7 @@ class Parts(Scene):
             return []
         piece = self.problem._replace(states=self.labelled(mask))
         sides = np.zeros((2 * ANGLES, *mask.shape), np.uint8)
-        good, whole, points, _ = cuts(piece, LEAST_PIECE, sides)
+        good, whole, points = cuts(piece, LEAST_PIECE, sides)
         out: list[Halves] = []
         least = max(good.max() - WORSE * self.shared, whole - NO_GAIN * self.shared)
         for t in np.argsort(-good, kind="stable"):

@@ -12,7 +12,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.pad import Found, OnPad, laid
+from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
 from tactile_graph_likelihood.several.scene import Configuration
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import (
@@ -35,10 +35,6 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
     moments_of_term,
 )
 from tactile_graph_likelihood.single.posterior import Posterior
-
-TEMPER = 2.0
-"""How many times less evidence between kinds, and between other outlines, is worth: none of them
-is quite what lies there."""
 
 NEGLIGIBLE = 0.02
 """Probability over the likeliest outlines' below which others are left out."""

@@ -35,14 +35,20 @@ class Search(Parts):
         self.seen: dict[int, list[Places]] = {1: [], 2: []}
         self.best: dict[int, Configuration] = {}
         self.every: list[Configuration] = []
+        self.worths: dict[int, float] = {}
 
-    def divisions(self, room: int) -> dict[int, Configuration]:
-        """Return the best outlines of each number that the search comes upon."""
+    def divisions(self, room: int, begin: Configuration | None = None) -> dict[int, Configuration]:
+        """Return the best outlines of each number that the search comes upon.
+
+        It may begin with some outlines, too.
+        """
         start = self.start(room)
+        for n, pieces in start.items():
+            self.weighed(n, pieces.worth)
         likely = max(start, key=lambda n: start[n].worth + math.lgamma(n + 1.0))
         found = self.noted(joined(start[likely].outlines))
-        if found.count == 1 and len(start) == 1:
-            return self.best
+        if begin is not None:
+            found = max(found, self.noted(begin), key=self.rank)
         better: Configuration | None = found
         while better is not None:
             found, better = better, self.improved(better, room)
@@ -53,6 +59,13 @@ class Search(Parts):
         self.seen[1].append(mask)
         return super().divided(mask, room)
 
+    def far_from(self, x_cm: float, y_cm: float) -> float:
+        """Return the distance of a place from the nearest touched element, in cm."""
+        rows, columns = np.nonzero(self.on)
+        x0, y0, pitch, side = self.problem.grid[:4]
+        x, y = x0 + 0.5 * side + pitch * columns, y0 + 0.5 * side + pitch * rows
+        return float(np.hypot(x - x_cm, y - y_cm).min())
+
     def rank(self, found: Configuration) -> float:
         """Return the log probability of outlines, of any number of them."""
         return self.worth(found) + math.lgamma(found.count + 1.0)
@@ -61,10 +74,15 @@ class Search(Parts):
         """Return outlines brought to their joint mode; they are kept if their number's best."""
         found = self.settled(found)[0]
         self.every.append(found)
+        self.weighed(found.count, self.worth(found))
         best = self.best.get(found.count)
         if best is None or found.log_evidence > best.log_evidence:
             self.best[found.count] = found
         return found
+
+    def weighed(self, n: int, worth: float) -> None:
+        """Keep what a number of outlines adds to the log probability, if it is the most."""
+        self.worths[n] = max(worth, self.worths.get(n, -math.inf))
 
     def improved(self, found: Configuration, room: int) -> Configuration | None:
         """Return better outlines, None if no move makes any."""
@@ -73,7 +91,9 @@ class Search(Parts):
             now = joined([found.only(k) for k in out])
             before = self.worth(self.settled(now, beside, 0)[0])
             near = self.tried(new, beside, before)
-            if self.worth(near) < before - NEARLY:
+            gain = self.worth(near) - before
+            self.weighed(found.count - len(out) + new.count, self.worth(found) + gain)
+            if gain < -NEARLY:
                 continue
             made = self.noted(joined([found.without(*out), near]))
             if self.rank(made) > self.rank(found) + GAIN:

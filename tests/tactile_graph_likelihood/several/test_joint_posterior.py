@@ -159,7 +159,7 @@ def test_the_best_cut_parts_two_discs():
     states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
     logs = np.log(np.where(load > 5.0, load, 1.0))
     sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
-    found, _ = cuts(problem_of_joint(logs, states), 4, sides)
+    found = cuts(problem_of_joint(logs, states), 4, sides).gains
     best = sides[int(np.argmax(found))]
     assert ((best > 0) == (states == ON)).all()
     assert min(((best == k) != first).sum() for k in (1, 2)) <= 2
