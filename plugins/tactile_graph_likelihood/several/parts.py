@@ -35,7 +35,7 @@ FIRST, SOFT, ROUNDS = 4, 5, 8
 """Rounds in which outlines of moments are brought to their mode: at first, and of those that come
 near, in the soft search and after it."""
 
-NEAR, CLOSE = 14.0, 7.0
+NEAR, CLOSE = 30.0, 12.0
 """How much less evidence they may have then than what they replace, to be looked at closely, and
 for other kinds to be tried."""
 
@@ -79,7 +79,8 @@ class Parts(Scene):
         super().__init__(*args)
         rough = [k for k in self.kinds if k[0] in (RECTANGLE, DISC)]
         self.rough = [(RECTANGLE, 0), (DISC, 0)] if len(rough) == 2 else self.kinds
-        self.known: dict[bytes, Configuration] = {}
+        self.finer = [k for k in self.kinds if k not in self.rough]
+        self.known: tuple[dict[bytes, Configuration], ...] = ({}, {})
 
     def labelled(self, mask: Places) -> States:
         """Return states in which only a mask's elements are on; others unknown nearby, else off."""
@@ -87,20 +88,23 @@ class Parts(Scene):
         piece_states.call(self.problem.states, mask, 1, around)
         return around
 
-    def single(self, mask: Places) -> Configuration:
-        """Return the outline that explains a mask's elements best, by itself."""
-        key = mask.tobytes()
-        if key not in self.known:
+    def single(self, mask: Places, every: bool = False) -> Configuration:
+        """Return the outline that explains a mask's elements best by itself, of the rough kinds.
+
+        Or of ``every`` kind.
+        """
+        known, key = self.known[every], mask.tobytes()
+        if key not in known:
             around = self.labelled(mask)
             alone = self.problem._replace(states=around)
-            best = None
-            for kind in self.rough:
+            best = self.single(mask) if every else None
+            for kind in self.finer if every else self.rough:
                 here = self.fitted(kind, around, alone, best)
                 if best is None or here.log_evidence > best.log_evidence:
                     best = here
             assert best is not None
-            self.known[key] = best
-        return self.known[key]
+            known[key] = best
+        return known[key]
 
     def halves(self, mask: Places, most: int = CUTS) -> list[Halves]:
         """Return the best straight cuts of a piece."""
@@ -137,16 +141,22 @@ class Parts(Scene):
         return found
 
     def refined(self, found: Configuration, beside: JointProblem) -> Configuration:
-        """Return outlines beside others, each of the rough kind that explains most."""
+        """Return outlines beside others, each of the kind that explains most beside the rest."""
+        made = found
         for k in range(found.count):
-            for kind in self.rough:
-                if kind != (found.kinds[k], found.corners[k]):
-                    points = like(kind[0], found.only(k))
-                    other = Configuration(np.array([kind[0]]), np.array([kind[1]]), points, 0.0)
-                    made = self.settled(found.with_one(k, other), beside, ROUNDS)[0]
-                    if made.log_evidence > found.log_evidence:
-                        found = made
-        return found
+            rest = self.beside(made, k, before=beside)
+            own = self.settled(made.only(k), rest, 0)[0]
+            for kind in self.kinds:
+                points = like(kind[0], own)
+                if kind == (own.kinds[0], own.corners[0]) or not points.any():
+                    continue
+                other = Configuration(np.array([kind[0]]), np.array([kind[1]]), points, 0.0)
+                other = self.settled(other, rest, ROUNDS)[0]
+                if other.log_evidence > own.log_evidence:
+                    own = other
+            made = made.with_one(k, own)
+        made = self.settled(made, beside, ROUNDS)[0]
+        return made if made.log_evidence > found.log_evidence else found
 
     def divided(self, mask: Places, room: int) -> Divisions:
         """Return a mask's elements as one piece, and cut in two again and again."""
@@ -162,6 +172,9 @@ class Parts(Scene):
         if best is None:
             return found
         a, b, pair = best
+        if self.worth(pair) > self.worth(alone) - CLOSE:
+            alone = self.single(mask, every=True)
+            found[1] = Pieces([alone], self.worth(alone))
         found[2] = Pieces([pair.only(0), pair.only(1)], self.worth(pair))
         if found[2].worth < found[1].worth - SLACK * np.count_nonzero(mask):
             return found

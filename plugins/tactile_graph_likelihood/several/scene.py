@@ -106,9 +106,11 @@ class Scene:
         self.on = problem.states == ON
         self.table = _table(WIDTH)
 
-    def beside(self, found: Configuration, *left_out: int) -> JointProblem:
-        """Return the problem beside all outlines, but for some."""
-        before = self.problem
+    def beside(
+        self, found: Configuration, *left_out: int, before: JointProblem | None = None
+    ) -> JointProblem:
+        """Return the problem beside all outlines, but for some, and beside what already lies."""
+        before = before or self.problem
         problem = before._replace(load=before.load.copy(), share=before.share.copy())
         for k in range(found.count):
             if k not in left_out:

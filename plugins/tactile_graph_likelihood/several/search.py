@@ -47,6 +47,8 @@ class Search(Parts):
             self.weighed(n, pieces.worth)
         likely = max(start, key=lambda n: start[n].worth + math.lgamma(n + 1.0))
         found = self.noted(joined(start[likely].outlines))
+        if found.count > 1:
+            found = self.noted(self.refined(found, self.problem))
         if begin is not None:
             found = max(found, self.noted(begin), key=self.rank)
         better: Configuration | None = found
@@ -119,7 +121,7 @@ class Search(Parts):
         """Yield one outline in the place of two, and two that share their elements otherwise."""
         if not self.fresh(2, mask):
             return
-        yield out, self.single(mask)
+        yield out, self.single(mask, every=True)
         for cut in self.halves(mask):
             yield out, cut.outlines
 
