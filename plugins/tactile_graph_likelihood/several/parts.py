@@ -19,8 +19,8 @@ from tactile_graph_likelihood.single.problem import Places
 LEAST_PIECE = 4
 """Elements of a piece; fewer join the nearest piece."""
 
-CUTS = 4
-"""Cuts of a piece that are tried."""
+CUTS, FEW = 4, 3
+"""Cuts of a piece that are tried, and that are looked at closely."""
 
 NO_GAIN = 20.0
 """How much worse than no cut a cut that is tried may be, by the outlines of the halves' moments."""
@@ -131,14 +131,26 @@ class Parts(Scene):
         ]
         return Configuration(np.array([kind[0]]), np.array([kind[1]]), like(kind[0], its), 0.0)
 
-    def tried(self, found: Configuration, beside: JointProblem, worth: float) -> Configuration:
-        """Return outlines brought to their mode beside others, with care if near a worth."""
-        found = self.settled(found, beside, FIRST)[0]
-        if self.worth(found) > worth - NEAR:
-            found = self.settled(found, beside, ROUNDS, SOFT)[0]
-            if self.worth(found) > worth - CLOSE:
-                found = self.refined(found, beside)
-        return found
+    def best_cut(self, mask: Places, beside: JointProblem, worth: float) -> Halves | None:
+        """Return the cut of a mask whose two outlines explain most beside others.
+
+        They are looked at closely only where they come near a worth.
+        """
+        rough = [
+            cut._replace(outlines=self.settled(cut.outlines, beside, FIRST)[0])
+            for cut in self.halves(mask)
+        ]
+        rough.sort(key=lambda cut: -cut.outlines.log_evidence)
+        if not rough or self.worth(rough[0].outlines) < worth - NEAR:
+            return rough[0] if rough else None
+        close = [
+            cut._replace(outlines=self.settled(cut.outlines, beside, ROUNDS, SOFT)[0])
+            for cut in rough[:FEW]
+        ]
+        best = max(close, key=lambda cut: cut.outlines.log_evidence)
+        if self.worth(best.outlines) < worth - CLOSE:
+            return best
+        return best._replace(outlines=self.refined(best.outlines, beside))
 
     def refined(self, found: Configuration, beside: JointProblem) -> Configuration:
         """Return outlines beside others, each of the kind that explains most beside the rest."""
@@ -164,11 +176,8 @@ class Parts(Scene):
         found = {1: Pieces([alone], self.worth(alone))}
         if room < 2:
             return found
-        here, best = self.problem._replace(states=self.labelled(mask)), None
-        for a, b, pair in self.halves(mask):
-            pair = self.tried(pair, here, self.worth(alone))
-            if best is None or pair.log_evidence > best[2].log_evidence:
-                best = a, b, pair
+        here = self.problem._replace(states=self.labelled(mask))
+        best = self.best_cut(mask, here, self.worth(alone))
         if best is None:
             return found
         a, b, pair = best

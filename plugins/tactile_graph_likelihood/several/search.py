@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph_likelihood.several.joint_posterior import add_outline
-from tactile_graph_likelihood.several.parts import Divisions, Parts
+from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
+from tactile_graph_likelihood.several.parts import ROUNDS, Divisions, Parts
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.single.element_terms import States
 from tactile_graph_likelihood.single.problem import Places
@@ -23,8 +23,8 @@ SAME = 2
 GAIN = 0.1
 """Evidence that a move must bring."""
 
-Move = tuple[tuple[int, ...], Configuration]
-"""Which outlines to take away, and what to put in their place."""
+Place = tuple[tuple[int, ...], Places]
+"""Numbers of outlines, and the mask of their elements."""
 
 
 class Search(Parts):
@@ -88,42 +88,41 @@ class Search(Parts):
 
     def improved(self, found: Configuration, room: int) -> Configuration | None:
         """Return better outlines, None if no move makes any."""
-        for out, new in self.moves(found, room):
+        for out, mask in self.places(found, room):
             beside = self.beside(found, *out)
             now = joined([found.only(k) for k in out])
             before = self.worth(self.settled(now, beside, 0)[0])
-            near = self.tried(new, beside, before)
-            gain = self.worth(near) - before
-            self.weighed(found.count - len(out) + new.count, self.worth(found) + gain)
-            if gain < -NEARLY:
-                continue
-            made = self.noted(joined([found.without(*out), near]))
-            if self.rank(made) > self.rank(found) + GAIN:
-                return made
+            for new in self.instead(out, mask, beside, before):
+                gain = self.worth(new) - before
+                self.weighed(found.count - len(out) + new.count, self.worth(found) + gain)
+                if gain < -NEARLY:
+                    continue
+                made = self.noted(joined([found.without(*out), new]))
+                if self.rank(made) > self.rank(found) + GAIN:
+                    return made
         return None
 
-    def moves(self, found: Configuration, room: int) -> Iterator[Move]:
-        """Yield what might be better: other outlines in the place of one or two."""
+    def places(self, found: Configuration, room: int) -> Iterator[Place]:
+        """Yield one or two outlines that may be others, and which elements are theirs."""
         own = self.owners(found)
         masks = [(own == k).astype(np.int64) for k in range(found.count)]
         for a in range(found.count):
             far = dilated(masks[a], 2)
             for b in range(a):
-                if (far & (masks[b] == 1)).any():
-                    yield from self.moves_of_two((a, b), masks[a] + masks[b])
-        if found.count < room:
-            for a in range(found.count):
-                if self.fresh(1, masks[a]):
-                    for cut in self.halves(masks[a], 2):
-                        yield (a,), cut.outlines
+                if (far & (masks[b] == 1)).any() and self.fresh(2, masks[a] + masks[b]):
+                    yield (a, b), masks[a] + masks[b]
+        for a in range(found.count if found.count < room else 0):
+            if self.fresh(1, masks[a]):
+                yield (a,), masks[a]
 
-    def moves_of_two(self, out: tuple[int, int], mask: Places) -> Iterator[Move]:
-        """Yield one outline in the place of two, and two that share their elements otherwise."""
-        if not self.fresh(2, mask):
-            return
-        yield out, self.single(mask, every=True)
-        for cut in self.halves(mask):
-            yield out, cut.outlines
+    def instead(
+        self, out: tuple[int, ...], mask: Places, beside: JointProblem, worth: float
+    ) -> Iterator[Configuration]:
+        """Yield what may explain a mask beside others: one outline, and two."""
+        if len(out) > 1:
+            yield self.settled(self.single(mask, every=True), beside, ROUNDS)[0]
+        if (cut := self.best_cut(mask, beside, worth)) is not None:
+            yield cut.outlines
 
     def fresh(self, count: int, mask: Places) -> bool:
         """Return whether a move has not been tried on about this mask yet; from now on it has."""
