@@ -14,6 +14,7 @@ STEPS = {
     "choose_shape": ("partly", 0.2, None),
     "identify_footprint": ("partly", 0.2, None),
     "fit_footprints": ("whole", None, 1.0),
+    "locate_objects": ("mostly", None, 1.0),
 }
 
 

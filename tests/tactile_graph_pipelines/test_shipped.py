@@ -17,7 +17,7 @@ NAMES = installed().names("pipelines")
 LONGEST_LINE = 2048
 
 
-SLOW = {"bayes-objects", "circle-by-order", "objects-likelihood"}
+SLOW = {"bayes-objects", "circle-by-order", "locate-objects", "objects-likelihood"}
 """Their kernels alone compile for up to half a minute."""
 
 

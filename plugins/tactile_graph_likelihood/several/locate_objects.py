@@ -123,7 +123,8 @@ class LocateObjects:
         parts, fit = posteriors(problem, its)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
-        shapes = [on_any_pad(part, wide, self._told.sigma, pitch) for part in parts]
+        usual = math.sqrt(FEW_ELEMENTS) * self._told.sigma
+        shapes = [on_any_pad(part, wide, usual, pitch) for part in parts]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),

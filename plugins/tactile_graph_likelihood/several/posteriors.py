@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
@@ -109,13 +108,7 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
 
 
 def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], GoodnessOfLoad]:
-    """Return each outline's posterior, and how well all together explain a pad.
-
-    Raises
-    ------
-    Degenerate
-        If an outline has no posterior: too few of its points are possible.
-    """
+    """Return each outline's posterior, and how well all together explain a pad."""
     every = [one for part in found.parts for one in posteriors_of(part)]
     counts = [len(one.mean) for one in every]
     together = Configuration(
@@ -151,8 +144,6 @@ def posteriors_of(part: Found) -> list[Posterior]:
     out = []
     for k, kinds in enumerate(every):
         some = scene.sampled(found, k)
-        if some.equal_points <= 1.0:
-            raise Degenerate(f"object {k + 1} of {found.count}: no outlines near the likeliest one")
         n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
         alone = np.asarray(np.linalg.inv(matrix[here, here]), dtype=np.float64)

@@ -31,6 +31,9 @@ from tactile_graph_likelihood.single.sample import Plan
 BLOCK, POINTS, WORTH = 32, 128, 24.0
 """Points of a block, points at most, and equal weights enough, of a posterior beside others."""
 
+FEWEST_POINTS = 3.0
+"""Equal weights that say more than the information at the mode."""
+
 TRIES = 8
 """Outlines tried around a piece's moments before the search."""
 
@@ -153,16 +156,24 @@ class Scene:
         return found.log_evidence / self.shared + found.count * each
 
     def sampled(self, found: Configuration, k: int) -> Sampled:
-        """Return the posterior of one outline beside the others, and its evidence."""
+        """Return the posterior of one outline beside the others, and its evidence.
+
+        Where hardly any point is possible, it is that of the information at the mode.
+        """
         beside, outline = self.beside(found, k), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
         settle.call(beside, outline, 0, 0, 0.0, matrix)
         n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
         plan = Plan(_table(n), BLOCK, WORTH)
         points, weights = np.empty((POINTS, n)), np.empty(POINTS)
+        covariance = np.linalg.inv(matrix[:n, :n])
         used, evidence, equal = sample_beside.call(
-            beside, outline, np.linalg.inv(matrix[:n, :n]), plan, points, weights
+            beside, outline, covariance, plan, points, weights
         )
+        if equal < FEWEST_POINTS:
+            root = np.linalg.cholesky(covariance)
+            around = found.points[k, :n] + plan.table[:BLOCK] @ root.T
+            return Sampled(around, np.full(BLOCK, 1.0 / BLOCK), evidence, float(BLOCK))
         return Sampled(points[:used], weights[:used], evidence, equal)
 
 

@@ -1,0 +1,100 @@
+"""Several objects on pads that are not the one told: counts, places, regions, flags."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph.compiled import warm_up
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Circle, Image
+from tactile_graph_likelihood.several.locate_objects import LocateObjects, is_other, unbiased
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_tracking.score_objects import score_objects
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+from unknown_objects import Asked, apart_cm, frames_of
+
+pytestmark = pytest.mark.slow  # the kernels alone compile for a quarter of a minute
+
+
+@pytest.fixture(autouse=True, scope="module")
+def compiled():
+    warm_up()
+
+
+def looked_at(pad, n, touching=False, scenes=10, seed=7):
+    """Return how often the number is right, centres' errors, and how often regions hold."""
+    right, errors, held = [], [], []
+    for frame in frames_of(pad, n, touching, Asked(scenes, seed)):
+        found = LocateObjects()(frame.image)
+        score = score_objects(frame, found.shapes)
+        right.append(score.count_right)
+        for i, j, error in score.pairs:
+            true, posterior = frame.truth[i].shape, found.shapes[j].posterior
+            off = np.array([true.x_cm, true.y_cm]) - posterior.mean[:2]
+            errors.append(error)
+            held.append(off @ np.linalg.solve(posterior.covariance[:2, :2], off) < 4.605)
+    return np.mean(right), np.mean(errors), np.mean(held)
+
+
+@pytest.mark.parametrize("pad", ["noise 0.2 mV", "noise 3 mV", "law 1/F", "turn-on 2 g"])
+def test_objects_apart_are_counted_on_any_pad_and_regions_hold_them(pad):
+    right, error, held = looked_at(pad, 3)
+    assert right >= 0.8
+    assert error < 0.3
+    assert held >= 0.7
+
+
+def test_two_that_touch_are_told_apart():
+    right, error, held = looked_at("noise 1.6 mV", 2, touching=True)
+    assert right >= 0.7
+    assert error < 0.5
+    assert held >= 0.6
+
+
+def test_the_quantity_and_its_unit_do_not_matter_to_the_number():
+    (frame,) = frames_of("noise 0.2 mV", 2, False, Asked(1, 4))
+    volts = frame.image
+    raw = Image(3.0 * volts.values + 7.0, volts.pitch_cm, volts.origin_cm, "raw")
+    found, other = LocateObjects()(volts), LocateObjects()(raw)
+    assert found.count == other.count == 2
+    true = [t.shape for t in frame.truth]
+    for its in other.shapes:
+        assert min(np.hypot(its.x_cm - t.x_cm, its.y_cm - t.y_cm) for t in true) < 0.8
+
+
+def test_other_numbers_of_objects_that_are_as_likely_are_flagged():
+    frames = frames_of("voids 0.4", 3, True, Asked(12, 3))
+    found = [LocateObjects()(frame.image) for frame in frames]
+    unsure = [f for f in found if f.count_probability <= 0.6]
+    assert unsure
+    assert not any(f.fits for f in unsure)
+
+
+def test_nothing_above_the_noise_is_told():
+    noise = np.random.default_rng(1).normal(0.0, 1e-3, (16, 16))
+    with pytest.raises(Degenerate, match="noise"):
+        LocateObjects()(Image(np.abs(noise) * 0.0, (1.3, 1.3), (0.0, 0.0), "volt"))
+
+
+def test_what_a_fit_takes_from_the_residuals_is_given_back():
+    assert unbiased(0.5, 60, 0) == 0.5
+    assert unbiased(0.5, 60, 6) > unbiased(0.5, 60, 2) > 0.5
+
+
+def test_only_a_very_different_noise_is_worth_another_search():
+    told = Noise(0.5, 0.15)
+    assert not is_other(told, Noise(0.55, 0.18), 1.0)
+    assert is_other(told, Noise(0.2, 0.15), 1.0)
+    assert is_other(told, Noise(0.5, 0.5), 1.0)
+    assert is_other(told, told, 1.6)
+
+
+def test_the_benchmarks_outlines_touch_or_lie_apart():
+    assert apart_cm(Circle(5.0, 5.0, 2.0), Circle(10.0, 5.0, 2.0)) == pytest.approx(1.0, abs=0.01)
+    for touching, least, most in ((True, 0.0, 0.06), (False, 1.3, 20.0)):
+        (frame,) = frames_of("noise 0", 2, touching, Asked(1, 9))
+        one, other = (t.shape for t in frame.truth)
+        assert least <= apart_cm(one, other) <= most
