@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -17,7 +18,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observed import observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad
 from tactile_graph_likelihood.settings import ON_PAD
 from tactile_graph_likelihood.several.fit_footprints import (
@@ -111,19 +112,19 @@ class LocateObjects:
         """
         readings = observed(image, self._pad, self._gap_cm)
         pitch = float(readings.grid[2])
-        told = self._told.vector(pitch)
-        problem = self._expected.problem(readings, told)
+        told = replace(self._told, least=uniform(readings)[1])
+        problem = self._expected.problem(readings, told.vector(pitch))
         found = likeliest(problem, self._expected)
-        noise, shared = said_by(problem, found, self._told)
+        noise, shared = said_by(problem, found, told)
         new = noise.vector(pitch)
         problem = problem._replace(noise=new)
-        if is_other(self._told, noise, shared):
+        if is_other(told, noise, shared):
             found = likeliest(problem, self._expected, shared)
         its = found.under(new, shared)
         parts, fit = posteriors(problem, its)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
-        usual = math.sqrt(FEW_ELEMENTS) * self._told.sigma
+        usual = math.sqrt(FEW_ELEMENTS) * told.sigma
         shapes = [on_any_pad(part, wide, usual, pitch) for part in parts]
         return Footprints(
             tuple(likely(shape) for shape in shapes),

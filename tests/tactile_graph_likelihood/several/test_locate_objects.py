@@ -54,15 +54,16 @@ def test_two_that_touch_are_told_apart():
     assert held >= 0.6
 
 
-def test_the_quantity_and_its_unit_do_not_matter_to_the_number():
+def test_readings_of_any_unit_and_offset_give_the_same_answer():
     (frame,) = frames_of("noise 0.2 mV", 2, False, Asked(1, 4))
     volts = frame.image
-    raw = Image(3.0 * volts.values + 7.0, volts.pitch_cm, volts.origin_cm, "raw")
-    found, other = LocateObjects()(volts), LocateObjects()(raw)
-    assert found.count == other.count == 2
-    true = [t.shape for t in frame.truth]
-    for its in other.shapes:
-        assert min(np.hypot(its.x_cm - t.x_cm, its.y_cm - t.y_cm) for t in true) < 0.8
+    one, other = (
+        LocateObjects()(Image(a * volts.values + b, volts.pitch_cm, volts.origin_cm, "raw"))
+        for a, b in ((1.0, 0.0), (300.0, 70.0))
+    )
+    assert one.count == other.count
+    for its, same in zip(one.shapes, other.shapes, strict=True):
+        assert its.posterior.mean[:3] == pytest.approx(same.posterior.mean[:3], abs=0.02)
 
 
 def test_other_numbers_of_objects_that_are_as_likely_are_flagged():
