@@ -9,8 +9,9 @@ from functools import cached_property
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
 
-USUAL = 0.36
-"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``: pads of 1.3 cm pitch."""
+USUAL, ALONG = 0.36, 1.25
+"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that of
+an outline with two sizes is, whose ends are short."""
 
 VAGUE = 2.5
 """Times the usual deviation from which on an answer counts as vague."""
@@ -20,7 +21,8 @@ HIDDEN = 0.25
 """Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
 
 EVENLY = 2.0
-"""Independent points that one of evenly spread points is worth."""
+"""Independent points that one of a disc's evenly spread points is worth; in five dimensions and
+more they are too far apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +45,10 @@ class AnyPadPosterior(Posterior):
         from as many.
         """
         n = unknowns.call(self.kind, self.corners)
-        return max(self.reach_of_points(n), normal_reach(n, EVENLY * self.equal_points))
+        return max(
+            self.reach_of_points(n),
+            normal_reach(n, (EVENLY if n == 3 else 1.0) * self.equal_points),
+        )
 
     @property
     def fits(self) -> bool:
@@ -69,8 +74,10 @@ def on_any_pad(
         Of ln gain, as told.
     pitch_cm : float
     """
-    size = found.mean[2] if found.kind == DISC else math.sqrt(found.mean[2] * found.mean[3])
-    usual = USUAL * sigma * pitch_cm * math.sqrt(pitch_cm / max(size, 0.5 * pitch_cm))
+    size, usual = found.mean[2], USUAL
+    if found.kind != DISC:
+        size, usual = math.sqrt(abs(found.mean[2] * found.mean[3])), ALONG * USUAL
+    usual *= sigma * pitch_cm * math.sqrt(pitch_cm / max(size, 0.5 * pitch_cm))
     values = {field.name: getattr(found, field.name) for field in fields(Posterior)}
     its = AnyPadPosterior(**values, usual_std_cm=usual)
     if inflation <= 1.0:
