@@ -10,8 +10,8 @@ from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
 
 USUAL, ALONG = 0.36, 1.25
-"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that of
-an outline with two sizes is, whose ends are short."""
+"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that
+of an outline with two sizes is, whose ends are short."""
 
 VAGUE = 2.5
 """Times the usual deviation from which on an answer counts as vague."""
