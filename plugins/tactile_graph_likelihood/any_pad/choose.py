@@ -79,7 +79,10 @@ class Locate:
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """
-        readings = observed(image, self._pad, self._gap_cm)
+        return self.chosen(observed(image, self._pad, self._gap_cm))
+
+    def chosen(self, readings: Readings) -> Located:
+        """Return the choice by some readings; errors as of a call."""
         every: dict[str, AnyPad] = {}
         tops: dict[str, dict[str, Likeliest]] = {}
         reason = Degenerate("none of the shapes explains what is touched")
