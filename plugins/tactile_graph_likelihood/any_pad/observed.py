@@ -12,7 +12,6 @@ from tactile_graph_likelihood.any_pad.above_noise import risen
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_pads.law import ForceLaw
 from tactile_graph_pads.pad import Pad
 
 SPACED = 4
@@ -103,8 +102,8 @@ def _loads(
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
         siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
         from_s = least * _siemens_per_volt(siemens, above)
-    loads = _by_law(siemens, pad.law)
-    least_loads = _by_law(np.array(np.broadcast_to(from_s, above.shape)), pad.law)
+    loads = pad.law.load_of(siemens)
+    least_loads = pad.law.load_of(np.array(np.broadcast_to(from_s, above.shape)))
     return loads, least_loads, valid & np.isfinite(loads)
 
 
@@ -116,18 +115,6 @@ def _siemens_per_volt(siemens: Values, above: Values) -> Values:
     if not bare.all():
         found[bare] = found[~bare].min()
     return np.asarray(found)
-
-
-def _by_law(siemens: Values, law: ForceLaw) -> Values:
-    """Return loads by a law whose power goes on below the turn-on.
-
-    Where a pad turns on is its own: by a turn-on that is told too high, all that it does read
-    below would come out nearly alike.
-    """
-    loads = law.load_of(siemens)
-    low = (loads < law.turn_on_g) & (siemens > 0.0)
-    loads[low] = law.load_g * (siemens[low] * law.resistance_ohm) ** (1.0 / law.power)
-    return loads
 
 
 def least_that_shows(logs: Values, told: float) -> float:
