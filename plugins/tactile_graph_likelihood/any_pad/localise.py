@@ -93,8 +93,9 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        """Return the model with another noise; its search goes over the pad's edge freely."""
-        return replace(self.told, noise=replace(noise, estimated=estimated), whole=0.0)
+        """Return the model with another noise; unless it must not, it searches beyond the pad."""
+        whole = 1.0 if self.told.whole >= 1.0 else 0.0
+        return replace(self.told, noise=replace(noise, estimated=estimated), whole=whole)
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
         """Return the posterior of the outline.
