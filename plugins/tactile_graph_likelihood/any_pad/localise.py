@@ -41,9 +41,9 @@ worth its time."""
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
-PRESSED = 0.8
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
-face presses quite like that."""
+face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
 PATTERN = 3.0
 """Pattern left over from which on an outline on a large pad, where no pressure is looked at, is not
@@ -162,7 +162,8 @@ class AnyPad:
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
         inflation = variance_inflation(its.neighbours, readings.touched)
-        inflation *= 1.0 + PRESSED * (1.0 - shares.get(EVEN, 0.0) / sum(shares.values()))
+        total = sum(shares.values())
+        inflation *= 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
         pitch = float(readings.grid[2])
         its = on_any_pad(its, inflation, self.told.noise.sigma, pitch)
         large = readings.states.size > LARGE_PAD
