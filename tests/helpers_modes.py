@@ -32,6 +32,14 @@ def plainly(one: kernel.Kernel[..., Any]) -> Callable[..., Any]:
     return run
 
 
+def cool_down() -> None:
+    """Let kernels that `warm_up` told to be compiled, and that nobody called, be plain again."""
+    kernel._warm = False
+    for each in kernel._kernels:
+        if each._entry is None:
+            each.reset()
+
+
 def _restart() -> None:
     for each in kernel._kernels:
         each.reset()

@@ -11,6 +11,8 @@ from tactile_graph import Circle, Frame, Rectangle, load
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 EVERY = ("bayes-smooth", "bayes-lines", "bayes-circle", "bayes-rectangle", "bayes-objects")
 PARENTS = {
     "bayes-smooth": "",

@@ -8,6 +8,8 @@ from helpers_objects import LEVEL_V, discs, frames
 from tactile_graph_filters.parting.object_scale import Cells, parts, split_by_scale
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 SPLIT = SplitContacts()
 FINE = SplitContacts(working_cells=10**6)
 

@@ -21,6 +21,8 @@ from tactile_graph_filters.parting.split_contacts import SplitContacts
 from tactile_graph_filters.parting.straight_cuts import joined_and_cut
 from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 LOBES = drawn("""
     .###...###.
     ####..#####

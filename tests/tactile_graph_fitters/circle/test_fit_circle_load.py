@@ -12,6 +12,8 @@ from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 PITCH, ORIGIN = 1.3, (-0.15, -0.15)
 GEOMETRY = Geometry(16, 16, 1.0, 0.3)
 

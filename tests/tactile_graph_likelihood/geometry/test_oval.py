@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn, made
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, OVAL, bounds
@@ -14,10 +13,7 @@ from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_e
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_likelihood.single.model import Model
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def ovals(n):

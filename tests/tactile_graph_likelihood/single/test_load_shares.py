@@ -8,7 +8,6 @@ import pytest
 
 from helpers_likelihood import GRID, NOISE, made
 from helpers_modes import plainly
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
 from tactile_graph_likelihood.single.any_pressure import (
@@ -28,6 +27,8 @@ from tactile_graph_likelihood.single.model import Model
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 FINE = 48
 SHAPES = [
     Circle(9.1, 8.7, 5.2),
@@ -35,11 +36,6 @@ SHAPES = [
     Rectangle(10.0, 9.0, 13.0, 6.0, -0.4),
     Polygon(np.array([[4.0, 12.0], [10.0, 2.5], [16.0, 12.0]])),
 ]
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def distances(shape, x, y):
