@@ -62,7 +62,7 @@ def _out_of_range(
 
 
 def _as_points(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the array as `Points` hold it, read-only: for others corners would be compiled anew."""
+    """Return the array as `Points` hold it, read-only: others have the corners compiled anew."""
     if xy.flags.writeable:
         xy = xy.view()
         xy.setflags(write=False)
