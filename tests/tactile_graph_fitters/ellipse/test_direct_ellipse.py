@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval
-from helpers_modes import answered_by
+from helpers_modes import answered_by, held
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import OK, into_frame
@@ -130,7 +130,7 @@ def test_points_at_four_places_but_for_rounding_are_refused():
     for _ in range(50):
         xy = corners[rng.integers(0, 4, 30)]
         xy += np.spacing(1.0) * rng.integers(-1, 2, xy.shape)
-        status = direct_fit(xy)[0]
+        status = direct_fit(held(xy))[0]
         assert status in (FEW_PLACES, OTHER_CONIC)
 
 
