@@ -42,16 +42,21 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+@pytest.fixture(autouse=True)
+def cool_kernels() -> Iterator[None]:
+    """Whatever a test warms up is for that test alone."""
+    yield
+    cool_down()
+
+
 @pytest.fixture
-def warm_kernels() -> Iterator[None]:
+def warm_kernels() -> None:
     """Machine code from the first call on, as for live sources.
 
     For tests with much to do: plain loops would take long, and have those below them compiled
     for themselves.
     """
     warm_up()
-    yield
-    cool_down()
 
 
 @pytest.fixture

@@ -47,10 +47,11 @@ def held(values: NDArray[Any]) -> NDArray[Any]:
 
 def cool_down() -> None:
     """Let kernels that `warm_up` told to be compiled, and that nobody called, be plain again."""
-    kernel._warm = False
-    for each in kernel._kernels:
-        if each._entry is None:
-            each.reset()
+    if kernel._warm:
+        kernel._warm = False
+        for each in kernel._kernels:
+            if each._entry is None:
+                each.reset()
 
 
 def _restart() -> None:

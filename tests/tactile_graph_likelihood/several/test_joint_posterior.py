@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE
-from helpers_modes import compiled, plainly
+from helpers_modes import answered_by, compiled, plainly
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
@@ -152,8 +152,8 @@ def test_no_prior_where_an_outline_is_too_small_or_too_light():
     assert rest(REGULAR, 3, good - [0, 0, 0, 0, 3.0, 0]) == -math.inf  # shows not even once
 
 
-@pytest.mark.parametrize("by", BOTH)
-def test_the_best_cut_parts_two_discs(by):
+@pytest.mark.parametrize("mode", ["plain", pytest.param("compiled", marks=pytest.mark.slow)])
+def test_the_best_cut_parts_two_discs(mode):
     kinds = np.array([DISC, DISC])
     points = np.array([[6.0, 6.0, 2.6, 4.5, 0, 0], [9.9, 9.9, 2.6, 4.5, 0, 0]])
     discs = Outlines(kinds, CORNERS, points)
@@ -162,7 +162,8 @@ def test_the_best_cut_parts_two_discs(by):
     states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
     logs = np.log(np.where(load > 5.0, load, 1.0))
     sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
-    found, _ = by(cuts)(problem_of_joint(logs, states), 4, sides)
+    with answered_by(mode):
+        found, _ = cuts(problem_of_joint(logs, states), 4, sides)
     best = sides[int(np.argmax(found))]
     assert ((best > 0) == (states == ON)).all()
     assert min(((best == k) != first).sum() for k in (1, 2)) <= 2

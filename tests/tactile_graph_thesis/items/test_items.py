@@ -17,6 +17,8 @@ from tactile_graph_thesis.measure import noise_response
 from tactile_graph_thesis.measure.shown_reading import stages, typical_rectangle
 from tactile_graph_thesis.work import Work
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
 
 
