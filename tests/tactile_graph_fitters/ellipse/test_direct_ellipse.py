@@ -52,6 +52,7 @@ def test_it_is_the_eigenvector_of_halir_and_flusser(kind):
         assert [u, v, first, second] == pytest.approx(expected, rel=1e-9, abs=1e-9 * first)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*WELL, *DEGENERATE])
 def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
     """Degenerate ones too: whether there is an ellipse, and which; never anything but a number."""
@@ -66,6 +67,7 @@ def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
             assert one[1:5] == pytest.approx(two[1:5], rel=1e-9, abs=1e-9 * one[3])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "n"), [(k, 40) for k in WELL if k != "blob"] + [(k, 3) for k in ("blob", *DEGENERATE)]
 )

@@ -27,7 +27,7 @@ BOTH = (plainly, compiled)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
-@pytest.mark.parametrize("by", BOTH)
+@pytest.mark.parametrize("by", [plainly, pytest.param(compiled, marks=pytest.mark.slow)])
 def test_a_window_holds_all_that_an_outline_covers(shape, by):
     kind, corners, p = packed(shape)
     r0, c0, rows, columns = by(window)(kind, corners, p, GRID, 16, 16, 0.0)

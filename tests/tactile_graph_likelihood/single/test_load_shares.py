@@ -138,6 +138,7 @@ def errors(step, seen):
 SETTINGS = {"sigma": 0.48, "voids": 0.16, "shows_from": 5.0, "gap_cm": 0.3, "on_pad": "whole"}
 
 
+@pytest.mark.slow
 def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     ball = [errors(step, frames(40, 1, fall=0.5)) for step in steps]
@@ -148,6 +149,7 @@ def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
     assert leaning[0][2] > 0.65 > 0.2 > leaning[1][2]
 
 
+@pytest.mark.slow
 def test_an_even_face_loses_nothing_by_the_question():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     asked, plain = (errors(step, frames(60, 3)) for step in steps)
@@ -224,6 +226,7 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     assert unknown["foam"] / unknown["fall"] == pytest.approx(FOAM_ODDS)
 
 
+@pytest.mark.slow
 def test_foam_nobody_told_of_is_found():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     pad = Geometry()

@@ -45,6 +45,7 @@ def test_each_comes_out(name: str, work: Work) -> None:
             assert not drawn or axes.get_xlabel() or axes.get_ylabel() or axes.get_title(), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NOISES)
 def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(noise_response, "QUICK_READINGS", 2)
