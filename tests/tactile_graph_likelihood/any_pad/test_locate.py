@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad.choose import Locate
@@ -19,10 +18,7 @@ from tactile_graph_likelihood.settings import FootprintSettings
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import BASE, KINDS, Bench
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def looked_at(kind, n=18, seed=5, step=None, shape="disc"):

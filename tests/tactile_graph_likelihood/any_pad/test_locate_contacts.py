@@ -4,17 +4,13 @@ import numpy as np
 import pytest
 
 from tactile_graph import load
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.locate_contacts import LocateContacts, alone
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def contacts_of(frame):
