@@ -175,11 +175,15 @@ class AnyPad:
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
 
-        That has nine unknowns and more, for which few points are worse than none.
+        That has nine unknowns and more, for which few points are worse than none. Nor is one
+        sampled that lies where hardly any is possible, as where strays explain all there is.
         """
         if part != EVEN and self.told.kind != DISC:
             return self._normal(part, top)
-        return self._sampled(part, readings, top)
+        try:
+            return self._sampled(part, readings, top)
+        except Degenerate:
+            return self._normal(part, top)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
