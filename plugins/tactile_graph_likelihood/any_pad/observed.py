@@ -29,6 +29,9 @@ ALIKE, FEWEST_ALIKE, SHARE_ALIKE = 0.04, 5, 0.15
 BEYOND, SHARE_BEYOND = 3, 0.03
 """Readings beyond them that may be strays."""
 
+MISFIT = 1e-3
+"""Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
+
 
 def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     """Return what an image shows, whatever its quantity.
@@ -36,8 +39,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     Parameters
     ----------
     image : Image
-        Volts are freed of the pad's circuit, and conductances turned into loads by its law, as far
-        as these are possible; any other quantity is taken to rise with load from the frame's own
+        Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
+        turned into loads by its law; any other quantity is taken to rise with load from the frame's own
         zero. Invalid cells say nothing.
     pad : Pad
     gap_cm : float, optional
@@ -93,13 +96,17 @@ def _loads(
 ) -> tuple[Values, Values, np.ndarray]:
     """Return loads, the load that each element would have shown as ``least``, and what is possible.
 
-    What has no law is its own load.
+    What has no law is its own load; so are volts that are not the circuit's.
     """
+    every = np.ones(above.shape, np.bool_)
     if quantity not in ("volt", "siemens"):
-        return above, np.broadcast_to(least, above.shape), np.ones(above.shape, np.bool_)
-    siemens, valid, from_s = above, np.ones(above.shape, np.bool_), least
+        return above, np.broadcast_to(least, above.shape), every
+    siemens, valid, from_s = above, every, least
     if quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
+        possible = np.count_nonzero(found.valid & (above > 0.0))
+        if found.residual > MISFIT or 2 * possible < np.count_nonzero(above):
+            return above, np.broadcast_to(least, above.shape), every
         siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
         from_s = least * _siemens_per_volt(siemens, above)
     loads = pad.law.load_of(siemens)

@@ -71,6 +71,15 @@ def test_any_quantity_is_taken(quantity):
     assert found.touched <= 27
 
 
+def test_volts_that_cannot_be_the_circuits_are_taken_as_they_are():
+    values = np.zeros((16, 16))
+    values[4:10, 4:10] = np.random.default_rng(10).uniform(1.5, 2.5, (6, 6))
+    found = observed(image_of(values), PAD)
+    assert found.touched == 36
+    on = found.states == ON
+    np.testing.assert_allclose(found.logs[on], np.log(values[on]))
+
+
 def test_an_invalid_cell_says_nothing():
     values, _ = volts(np.random.default_rng(5))
     valid = np.ones(values.shape, bool)
