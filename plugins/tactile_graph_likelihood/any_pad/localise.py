@@ -175,15 +175,18 @@ class AnyPad:
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
 
-        That has nine unknowns and more, for which few points are worse than none. Nor is one
-        sampled that lies where hardly any is possible, as where strays explain all there is.
+        That has nine unknowns and more, for which few points are worse than none. Nor is a sample
+        taken whose points are worth fewer than there are unknowns, as where strays explain all
+        there is: it would promise far too much.
         """
-        if part != EVEN and self.told.kind != DISC:
-            return self._normal(part, top)
-        try:
-            return self._sampled(part, readings, top)
-        except Degenerate:
-            return self._normal(part, top)
+        if part == EVEN or self.told.kind == DISC:
+            try:
+                found = self._sampled(part, readings, top)
+            except Degenerate:
+                return self._normal(part, top)
+            if found.equal_points > self._count:
+                return found
+        return self._normal(part, top)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""

@@ -40,8 +40,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     ----------
     image : Image
         Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
-        turned into loads by its law; any other quantity is taken to rise with load from the frame's own
-        zero. Invalid cells say nothing.
+        turned into loads by its law; any other quantity is taken to rise with load from the
+        frame's own zero. Invalid cells say nothing.
     pad : Pad
     gap_cm : float, optional
         Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
