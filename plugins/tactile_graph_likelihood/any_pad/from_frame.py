@@ -81,10 +81,11 @@ def scatter_of_covered(model: Model, readings: Readings, p: Values) -> Values:
 
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     """Return the share of strays, by what reads beyond the box around an outline."""
+    x, y = p[:2].tolist()
+    left, top, pitch, side, *_ = readings.grid.tolist()
     wide, high = _half_extents(model.kind, p)
     inside = readings.states[
-        _lines(p[1] - readings.grid[1], high, readings.grid),
-        _lines(p[0] - readings.grid[0], wide, readings.grid),
+        _lines(y - top, high, pitch, side), _lines(x - left, wide, pitch, side)
     ]
     beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
     bare = readings.states.size - inside.size
@@ -102,10 +103,10 @@ def _half_extents(kind: int, p: Values) -> tuple[float, float]:
     return math.hypot(p[2] * cos, p[3] * sin), math.hypot(p[2] * sin, p[3] * cos)
 
 
-def _lines(middle: float, half: float, grid: Values) -> slice:
+def _lines(middle: float, half: float, pitch: float, side: float) -> slice:
     """Return the rows or columns of elements that a stretch touches."""
-    first = math.ceil((middle - half - grid[3]) / grid[2])
-    return slice(max(first, 0), max(math.floor((middle + half) / grid[2]) + 1, 0))
+    first = math.ceil((middle - half - side) / pitch)
+    return slice(max(first, 0), max(math.floor((middle + half) / pitch) + 1, 0))
 
 
 def variance_inflation(neighbours: float, touched: int) -> float:

@@ -82,9 +82,13 @@ class AnyPad:
 
     @cached_property
     def _fits(self) -> dict[str, Model]:
-        """By pressure, the models that estimate sigma and voids with the outline."""
+        """By pressure, the models that estimate sigma and voids with the outline.
+
+        Unless it must not, their search goes over the pad's edge as if there were none.
+        """
+        free = AnyPad(replace(self.told, whole=1.0 if self.told.whole >= 1.0 else 0.0))
         return {
-            name: self._with(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
+            name: free._with(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
             for name in PRESSURES
         }
 
@@ -93,9 +97,7 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        """Return the model with another noise; unless it must not, it searches beyond the pad."""
-        whole = 1.0 if self.told.whole >= 1.0 else 0.0
-        return replace(self.told, noise=replace(noise, estimated=estimated), whole=whole)
+        return replace(self.told, noise=replace(noise, estimated=estimated))
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
         """Return the posterior of the outline.
@@ -156,16 +158,18 @@ class AnyPad:
         for part, share in shares.items():
             if part != best and share > NEGLIGIBLE:
                 found[part] = self._normal(part, tops[part])
-        its = replace(found[best], pressures={best: 1.0})
+        its = found[best]
         if len(found) > 1:
             weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
-        its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
+        elif best != EVEN:
+            its = replace(its, pressures={best: 1.0})
         inflation = variance_inflation(its.neighbours, readings.touched)
         total = sum(shares.values())
         inflation *= 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
         pitch = float(readings.grid[2])
-        its = on_any_pad(its, inflation, self.told.noise.sigma, pitch)
+        evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        its = on_any_pad(its, evidence, inflation, self.told.noise.sigma * pitch**1.5)
         large = readings.states.size > LARGE_PAD
         return unexplained(its, pitch) if large and its.alike > PATTERN else its
 
@@ -203,7 +207,6 @@ class AnyPad:
             model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
             p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
             mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
-        model = replace(model, whole=self.told.whole)
         return model.posterior_around(readings, loosened(mode, readings))
 
 

@@ -25,6 +25,10 @@ EVENLY = 2.0
 more they are too far apart."""
 
 
+LEAST = 1e-6  # cm: a size that is none
+_FIELDS = [field.name for field in fields(Posterior)]
+
+
 @dataclass(frozen=True, eq=False)
 class AnyPadPosterior(Posterior):
     """A posterior on a pad that need not be the one that is told.
@@ -61,29 +65,28 @@ class AnyPadPosterior(Posterior):
 
 
 def on_any_pad(
-    found: Posterior, inflation: float, sigma: float, pitch_cm: float
+    found: Posterior, log_evidence: float, inflation: float, unevenness: float
 ) -> AnyPadPosterior:
-    """Return a posterior with its variance inflated and its usual deviation told.
+    """Return a posterior with another evidence, its variance inflated, its usual deviation told.
 
     Parameters
     ----------
     found : Posterior
+    log_evidence : float
     inflation : float
         Of its variance, at least 1.
-    sigma : float
-        Of ln gain, as told.
-    pitch_cm : float
+    unevenness : float
+        Standard deviation of ln gain, as told, times the pitch in cm to the power 3/2.
     """
-    size, usual = found.mean[2], USUAL
+    size, usual = float(found.mean[2]), USUAL
     if found.kind != DISC:
-        size, usual = math.sqrt(abs(found.mean[2] * found.mean[3])), ALONG * USUAL
-    usual *= sigma * pitch_cm * math.sqrt(pitch_cm / max(size, 0.5 * pitch_cm))
-    values = {field.name: getattr(found, field.name) for field in fields(Posterior)}
-    its = AnyPadPosterior(**values, usual_std_cm=usual)
-    if inflation <= 1.0:
-        return its
-    points = found.mean + math.sqrt(inflation) * (found.points - found.mean)
-    return replace(its, covariance=inflation * found.covariance, points=points)
+        size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
+    values = {name: getattr(found, name) for name in _FIELDS}
+    values["log_evidence"] = log_evidence
+    if inflation > 1.0:
+        values["covariance"] = inflation * found.covariance
+        values["points"] = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
 
 
 def unexplained(found: AnyPadPosterior, pitch_cm: float) -> AnyPadPosterior:

@@ -302,8 +302,7 @@ def _log_volume(kind: int, mode: Mode) -> float:
     """Return `sample.log_volume`, which is worth compiling for ovals alone."""
     if kind == OVAL:
         return log_volume.call(kind, mode.p, mode.root)
-    volumes = 0.5 * LN_TWO_PI - np.log(np.diag(mode.root))
-    return float(volumes.sum())
+    return sum(0.5 * LN_TWO_PI - math.log(width) for width in mode.root.diagonal().tolist())
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:
