@@ -75,7 +75,7 @@ class Locate:
         Raises
         ------
         ValueError
-            If the image's cells are not square.
+            If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """

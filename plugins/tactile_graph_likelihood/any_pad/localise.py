@@ -16,7 +16,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, unexplained
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
@@ -170,8 +170,11 @@ class AnyPad:
         pitch = float(readings.grid[2])
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         its = on_any_pad(its, evidence, inflation, self.told.noise.sigma * pitch**1.5)
-        large = readings.states.size > LARGE_PAD
-        return unexplained(its, pitch) if large and its.alike > PATTERN else its
+        if readings.states.size > LARGE_PAD and its.alike > PATTERN:
+            its = unexplained(its, pitch)
+        if readings.stretch == 1.0:
+            return its
+        return stretched(its, float(readings.grid[1]), readings.stretch)
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
         return self.told.normal_around(top, self._count + len(PRESSURES[part]))

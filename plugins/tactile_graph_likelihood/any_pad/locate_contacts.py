@@ -71,7 +71,7 @@ class LocateContacts:
         Raises
         ------
         ValueError
-            If the image's cells are not square.
+            If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise.
         """

@@ -29,6 +29,9 @@ ALIKE, FEWEST_ALIKE, SHARE_ALIKE = 0.04, 5, 0.15
 BEYOND, SHARE_BEYOND = 3, 0.03
 """Readings beyond them that may be strays."""
 
+NEARLY = 0.03
+"""Of a cell's width, by which its height may differ: sizes come out wrong by half of that."""
+
 MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
 
@@ -56,14 +59,14 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     Raises
     ------
     ValueError
-        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
-        beyond 1e100.
+        If the cells are not nearly square, the gap leaves no element, or a valid cell is not finite
+        or beyond 1e100.
     Degenerate
         If nothing shows.
     """
     across, down = image.pitch_cm
-    if abs(across - down) > 1e-9 * across:
-        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if abs(across - down) > NEARLY * across:
+        raise ValueError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     if not gap_cm < across:
@@ -88,7 +91,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
-    return Readings(grid, logs, states, touched)
+    return Readings(grid, logs, states, touched, down / across)
 
 
 def _loads(

@@ -95,3 +95,14 @@ def unexplained(found: AnyPadPosterior, pitch_cm: float) -> AnyPadPosterior:
     covariance = found.covariance.copy()
     covariance[range(lengths), range(lengths)] += (HIDDEN * pitch_cm) ** 2
     return replace(found, covariance=covariance)
+
+
+def stretched(found: AnyPadPosterior, top_cm: float, stretch: float) -> AnyPadPosterior:
+    """Return a posterior whose places lie so many times further below the top."""
+    mean, points, likeliest = found.mean.copy(), found.points.copy(), found.most_likely.copy()
+    covariance = found.covariance.copy()
+    for y in (mean[1:2], points[:, 1], likeliest[1:2]):
+        y += (stretch - 1.0) * (y - top_cm)
+    covariance[1] *= stretch
+    covariance[:, 1] *= stretch
+    return replace(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)

@@ -118,6 +118,18 @@ def test_readings_need_no_quantity_and_no_scale():
     assert found.radius_cm == pytest.approx(5.0, abs=0.5)
 
 
+def test_cells_that_are_nearly_square_lie_where_they_lie():
+    rng = np.random.default_rng(8)
+    y, x = np.mgrid[0:30, 0:20] + 0.5
+    near = np.hypot(x - 8.0, y - 24.0) < 4.0
+    counts = 5.0 * rng.standard_normal(x.shape) + near * rng.uniform(150.0, 250.0, x.shape)
+    square = LocateDisc()(Image(counts, (0.5, 0.5), (0.0, 0.0), "counts"))
+    lower = LocateDisc()(Image(counts, (0.5, 0.49), (0.0, 0.0), "counts"))
+    assert lower.x_cm == pytest.approx(square.x_cm)
+    assert lower.y_cm == pytest.approx(0.98 * square.y_cm)
+    assert lower.posterior.contains(Circle(4.0, 24.0 * 0.49, 2.0))
+
+
 def test_a_start_of_its_own_shape_is_taken():
     frame = next(iter(Bench(BASE, np.random.default_rng(2)).frames(1)))
     plain = LocateDisc()(frame.image)

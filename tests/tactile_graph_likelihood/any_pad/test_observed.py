@@ -97,7 +97,12 @@ def test_elements_have_no_gap_where_the_pitch_is_not_the_pads():
 @pytest.mark.parametrize(
     ("image", "gap_cm", "error", "said"),
     [
-        (Image(np.ones((4, 4)), (1.0, 2.0), (0.0, 0.0), "raw"), None, ValueError, "square cells"),
+        (
+            Image(np.ones((4, 4)), (1.0, 2.0), (0.0, 0.0), "raw"),
+            None,
+            ValueError,
+            "nearly square cells",
+        ),
         (image_of(np.ones((4, 4))), 1.3, ValueError, "gap_cm: must be below the pitch"),
         (image_of(np.full((4, 4), 1e101)), None, ValueError, "must be finite and at most"),
         (image_of(np.full((4, 4), np.nan)), None, ValueError, "must be finite and at most"),
