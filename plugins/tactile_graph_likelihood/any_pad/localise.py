@@ -82,13 +82,9 @@ class AnyPad:
 
     @cached_property
     def _fits(self) -> dict[str, Model]:
-        """By pressure, the models that estimate sigma and voids with the outline.
-
-        Unless it must not, their search goes over the pad's edge as if there were none.
-        """
-        free = AnyPad(replace(self.told, whole=1.0 if self.told.whole >= 1.0 else 0.0))
+        """By pressure, the models that estimate sigma and voids with the outline."""
         return {
-            name: free._with(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
+            name: self._search(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
             for name in PRESSURES
         }
 
@@ -98,6 +94,14 @@ class AnyPad:
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
         return replace(self.told, noise=replace(noise, estimated=estimated))
+
+    def _search(self, noise: Noise, *estimated: str) -> Model:
+        """Return a model that goes over the pad's edge, unless it must not, as if there were none.
+
+        Where the edge makes a step in the prior, a search would be caught before it.
+        """
+        whole = 1.0 if self.told.whole >= 1.0 else 0.0
+        return replace(self._with(noise, *estimated), whole=whole)
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
         """Return the posterior of the outline.
@@ -121,7 +125,7 @@ class AnyPad:
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
         large = readings.states.size > LARGE_PAD
-        model = self._with(self.told.noise) if large else self._fits[EVEN]
+        model = self._search(self.told.noise) if large else self._fits[EVEN]
         its, even = self, model.likeliest(readings, start=start)
         if even.unsure:
             even = model.likeliest(readings, before=even)
@@ -205,7 +209,7 @@ class AnyPad:
         if part == EVEN and not large:
             model = self._with(noise, "contrast")
             begin = np.append(point[: self._count], noise.contrast)
-            mode = model.likeliest_near(readings, begin).mode
+            mode = self._search(noise, "contrast").likeliest_near(readings, begin).mode
         else:
             model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
             p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])

@@ -21,7 +21,7 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
-QUICK = FootprintSettings(precision=0.3, most_points=384, on_pad="mostly")
+QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
 
 
