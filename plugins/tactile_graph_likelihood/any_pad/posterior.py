@@ -59,9 +59,12 @@ class AnyPadPosterior(Posterior):
         """Whether the readings place the outline about as well as they should.
 
         They do not where they are less likely than the model's own, whatever is estimated with the
-        outline, or where the centre's deviation is two and a half times the usual one.
+        outline; where strays on a bare pad explain them as well; or where the centre's deviation is
+        two and a half times the usual one.
         """
-        return self.surprise > UNLIKELY and self.centre_std_cm < VAGUE * self.usual_std_cm
+        if self.surprise <= UNLIKELY or self.log_evidence <= 0.0:
+            return False
+        return self.centre_std_cm < VAGUE * self.usual_std_cm
 
 
 def on_any_pad(
