@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_pads.learning.silent import inside
+from tactile_graph_pads.learning.silent import between
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-LEAST_PAIRS = 3.0
+LEAST_PAIRS = 8.0
 """Comparisons with neighbours from which on an element's gain is told at all, in each half."""
-LEAST_ALIKE = 0.3
+LEAST_ELEMENTS = 10
+LEAST_ALIKE = 0.6
 """Correlation of the gains of two halves of the frames below which they are chance."""
 
 
@@ -59,37 +60,38 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
     """
     # Neighbours in time are alike: halves of whole blocks, not every second frame.
     half = (np.arange(len(readings)) * 8 // max(len(readings), 1)) % 2
-    within = _within(touched, inside(touched), good)
+    within = _within(touched, touched | between(touched), good)
     logs = np.log(np.where(touched & (readings > 0.0), readings, 1.0))
     n = good.size
     sums = [_compare(logs[half == h], within[half == h], n) for h in (0, 1)]
     pairs = sums[0].laplacian + sums[1].laplacian
     number = sums[0].number + sums[1].number
     comparisons = pairs.diagonal().reshape(good.shape)
-    none = np.full(good.shape, np.nan)
-    if number < good.size:
-        return Gains(np.ones(good.shape), comparisons, 0.0, np.nan, 0.0, (none, none))
-    first, second = (_solved(s.laplacian, s.sums, 1e-2) for s in sums)
     told = np.minimum(sums[0].laplacian.diagonal(), sums[1].laplacian.diagonal()) >= LEAST_PAIRS
-    within_squares = float(sums[0].squares + sums[1].squares) / number
-    if told.sum() < 10:
-        return Gains(
-            np.ones(good.shape), comparisons, 0.0, np.sqrt(0.5 * within_squares), 0.0, (none, none)
-        )
+    if number < good.size or told.sum() < LEAST_ELEMENTS:
+        return _untold(comparisons, np.nan)
+    one_comparison = float(sums[0].squares + sums[1].squares) / number
+    first, second = (_solved(s.laplacian, s.sums, 1e-2) for s in sums)
     covariance = np.cov(first[told], second[told])
-    between = float(covariance[0, 1])
-    alike = between / float(np.sqrt(covariance[0, 0] * covariance[1, 1]))
-    placement = max(0.5 * within_squares - max(between, 0.0), 1e-12)
-    halves = tuple(np.where(told, v, np.nan).reshape(good.shape) for v in (first, second))
-    fixed = max(between, 0.0) / (max(between, 0.0) + placement)
-    if between <= 0.0 or alike < LEAST_ALIKE:
+    lasting = max(float(covariance[0, 1]), 0.0)
+    if lasting == 0.0:
+        return _untold(comparisons, float(np.sqrt(0.5 * one_comparison)))
+    alike = lasting / float(np.sqrt(covariance[0, 0] * covariance[1, 1]))
+    placement = max(0.5 * one_comparison - lasting, 1e-12)
+    logs_of = _solved(pairs, sums[0].sums + sums[1].sums, 2.0 * placement / lasting)
+    logs_of -= np.median(logs_of[told])
+    gain = np.where(comparisons > 0.0, np.exp(logs_of).reshape(good.shape), 1.0)
+    halves = [np.where(told, v, np.nan).reshape(good.shape) for v in (first, second)]
+    sigma, fixed = float(np.sqrt(placement + lasting)), lasting / (placement + lasting)
+    if alike < LEAST_ALIKE:
         gain, fixed = np.ones(good.shape), 0.0
-    else:
-        logs_of = _solved(pairs, sums[0].sums + sums[1].sums, 2.0 * placement / between)
-        logs_of -= np.median(logs_of[told])
-        gain = np.where(comparisons > 0.0, np.exp(logs_of).reshape(good.shape), 1.0)
-    sigma = float(np.sqrt(placement + max(between, 0.0)))
     return Gains(gain, comparisons, alike, sigma, fixed, (halves[0], halves[1]))
+
+
+def _untold(comparisons: Array, sigma: float) -> Gains:
+    """Return no gains; ``sigma`` is NaN where too little was compared to tell even that."""
+    none = np.full(comparisons.shape, np.nan)
+    return Gains(np.ones(comparisons.shape), comparisons, 0.0, sigma, 0.0, (none, none))
 
 
 class _Sums(NamedTuple):

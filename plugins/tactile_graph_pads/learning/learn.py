@@ -39,6 +39,8 @@ SATURATED = 10
 """Readings equal to the largest one from which on that is full scale and no chance."""
 LEAST_LEVELS = 50
 """Steps below the largest reading; coarser ones repeat by themselves."""
+PRESSED = 3.0
+"""Times the least reading that shows: between two such elements there is no valley of silence."""
 DRIFTS = 3.0
 """Noises that the empty pad may move before it is said."""
 
@@ -198,7 +200,7 @@ def _of_objects(objects: Stack, rest: Resting, known: _KnownPad, notes: list[str
     shows_from = least_level(rest.usual_noise, rest.step, bare)
     touched = bare >= shows_from
     _refuse_untouched(touched, objects)
-    silent = silence(touched, rest.good)
+    silent = silence(touched, bare >= PRESSED * shows_from, rest.good)
     good = rest.good & ~silent.dead
     recorded = np.where(np.isnan(objects.values), rest.offset, objects.values)
     loads = known.load_of(recorded, touched)

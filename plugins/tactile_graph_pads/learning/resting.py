@@ -218,7 +218,7 @@ def _odd(offset: Array, noise: Array, missing: Flags, step: float) -> tuple[Flag
     stuck = read & (np.abs(offset - middle) > far)
     floor = max(usual, step / np.sqrt(12.0))
     noisy = read & ~stuck & (noise > 4.0 * floor) if floor > 0.0 else np.zeros_like(read)
-    still = read & ~stuck & (noise == 0.0) & (usual > step)
+    still = read & ~stuck & (noise <= 1e-9 * usual) & (usual > step)
     return stuck, still, noisy
 
 

@@ -13,7 +13,7 @@ SILENT = 0.9
 """Share of its chances that a dead element lets pass at least; the rest is noise."""
 BY_CHANCE = 1e-3
 """Probability that any element or line of a pad is called dead though it lives."""
-LEAST_VOIDS = 0.05
+LEAST_VOIDS = 0.1
 REACHES = ((1, 1), (1, 2), (2, 1))
 """How far on either side a touched element may lie: gaps of one and of two elements."""
 
@@ -32,25 +32,28 @@ class Silence(NamedTuple):
     voids: float
 
 
-def silence(touched: Flags, good: Flags) -> Silence:
+def silence(touched: Flags, pressed: Flags, good: Flags) -> Silence:
     """Return which elements and lines never answer though their neighbours do.
 
     Parameters
     ----------
     touched : ndarray of bool, shape (frames, rows, columns)
         Which elements read more than noise.
+    pressed : ndarray of bool, same shape
+        Which read far more than that, so that what lies between them should read something.
     good : ndarray of bool, shape (rows, columns)
         Those that are judged.
 
     Notes
     -----
-    An element has a chance in a frame where it is touched, or where elements on both sides of it,
-    in its row or in its column, are. With a share v of voids, k chances pass in silence by chance
-    with the probability v**k; dead is what has at least a share `SILENT` of silent chances and
-    v**k below `BY_CHANCE` over the number of elements. A line is dead where its elements together
-    are. Elements at the rim have chances along the rim only: a dead line there stays unseen.
+    An element has a chance in a frame where elements on both sides of it, in its row or in its
+    column, are pressed, whatever it does itself. With a share v of voids, k chances pass in silence
+    by chance with the probability v**k. Dead is what has at least a share `SILENT` of silent
+    chances, and v**k below `BY_CHANCE` over the number of elements. A line is dead where its
+    elements together are. Elements at the rim have chances along the rim only: a dead line there
+    stays unseen.
     """
-    chance = inside(touched)
+    chance = between(pressed)
     chances = chance.sum(axis=0).astype(np.float64)
     silent = (chance & ~touched).sum(axis=0).astype(np.float64)
     voids = _voids(chances, silent, good)
@@ -66,12 +69,12 @@ def silence(touched: Flags, good: Flags) -> Silence:
     return Silence(chances, silent, dead, rows, columns, share)
 
 
-def inside(touched: Flags) -> Flags:
-    """Return what is touched, and what lies between touched elements of its row or column."""
-    found = touched.copy()
+def between(on: Flags) -> Flags:
+    """Return which elements lie between such of their row or column, at most two away."""
+    found = np.zeros_like(on)
     for axis in (1, 2):
         for before, after in REACHES:
-            found |= _moved(touched, before, axis) & _moved(touched, -after, axis)
+            found |= _moved(on, before, axis) & _moved(on, -after, axis)
     return found
 
 

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from tactile_graph_pads.learned import Reading, TurnOn
 
 Array = NDArray[np.float64]
-WIDTH = 1.5
+WIDTH = 1.2
 """Readings are counted within this factor above and below a candidate."""
 LEAST_READINGS = 60
 LEAST_CONTRAST = 6.0
 """Standard deviations by which the two counts must differ."""
 LEAST_RATIO = 5.0
-LEAST_ROOM = 0.3
+LEAST_ROOM = 0.5
 """Of that factor's logarithm, between a candidate and the noise; what is missing is made up for."""
 
 
@@ -32,7 +32,7 @@ def turn_on_of(readings: Array, shows_from: float, of: Reading) -> TurnOn | None
 
     Notes
     -----
-    With a the number of readings from x up to 1.5 x and b that from x / 1.5 up to x, chosen is
+    With a the number of readings from x up to 1.2 x and b that from x / 1.2 up to x, chosen is
     the x of the largest (a - b) / sqrt(a + b) with a > 5 b. An element that turns on suddenly
     leaves a gap below; one that comes on slowly leaves none, and then nothing is said.
     """
