@@ -13,7 +13,10 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 LEAST_PAIRS = 8.0
 """Comparisons with neighbours from which on an element's gain is told at all, in each half."""
-LEAST_ELEMENTS = 10
+LEAST_PLACEMENTS, LEAST_ELEMENTS = 20, 10
+LEAST_SPREAD = 0.3
+"""Of the objects' centres over the width of what they touch: less, and each element always lies
+under the same part of them."""
 LEAST_ALIKE = 0.6
 """Correlation of the gains of two halves of the frames below which they are chance."""
 
@@ -45,7 +48,7 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
 
     Parameters
     ----------
-    readings : ndarray, shape (frames, rows, columns)
+    readings : ndarray, shape (placements, rows, columns)
         Above the offset; loads where they are known.
     touched : ndarray of bool, same shape
     good : ndarray of bool, shape (rows, columns)
@@ -68,7 +71,9 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
     number = sums[0].number + sums[1].number
     comparisons = pairs.diagonal().reshape(good.shape)
     told = np.minimum(sums[0].laplacian.diagonal(), sums[1].laplacian.diagonal()) >= LEAST_PAIRS
-    if number < good.size or told.sum() < LEAST_ELEMENTS:
+    seen = np.where(touched & good, readings, 0.0)
+    moved = len(seen) >= LEAST_PLACEMENTS and spread(seen) >= LEAST_SPREAD
+    if not moved or told.sum() < LEAST_ELEMENTS:
         return _untold(comparisons, np.nan)
     one_comparison = float(sums[0].squares + sums[1].squares) / number
     first, second = (_solved(s.laplacian, s.sums, 1e-2) for s in sums)
@@ -86,6 +91,30 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
     if alike < LEAST_ALIKE:
         gain, fixed = np.ones(good.shape), 0.0
     return Gains(gain, comparisons, alike, sigma, fixed, (halves[0], halves[1]))
+
+
+def spread(readings: Array) -> float:
+    """Return how far the centres of placements scatter, over how far readings lie around them.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (placements, rows, columns)
+
+    Returns
+    -------
+    float
+        The smaller of both axes' ratios of standard deviations; of one axis on a single line.
+    """
+    total = np.maximum(readings.sum(axis=(1, 2)), 1e-300)
+    ratios = []
+    for axis, n in ((2, readings.shape[1]), (1, readings.shape[2])):
+        if n < 2:
+            continue
+        profile = readings.sum(axis=axis) / total[:, None]
+        centre = profile @ np.arange(n)
+        square = np.maximum(profile @ np.arange(n) ** 2 - centre**2, 1e-12)
+        ratios.append(float(np.std(centre) / np.sqrt(np.mean(square))))
+    return min(ratios, default=0.0)
 
 
 def _untold(comparisons: Array, sigma: float) -> Gains:

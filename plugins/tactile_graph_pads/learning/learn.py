@@ -13,7 +13,7 @@ from tactile_graph.errors import DataError
 from tactile_graph_pads.defects import Defects
 from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
 from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
-from tactile_graph_pads.learning.gains import Gains, gains
+from tactile_graph_pads.learning.gains import LEAST_PLACEMENTS, Gains, gains
 from tactile_graph_pads.learning.place_fit import (
     LEAST_GROUPS,
     LEAST_PLACES,
@@ -29,7 +29,7 @@ from tactile_graph_pads.learning.resting import (
     step_of,
 )
 from tactile_graph_pads.learning.silent import Silence, silence
-from tactile_graph_pads.learning.touching import best_level, filled, least_level
+from tactile_graph_pads.learning.touching import best_level, filled, least_level, placements
 from tactile_graph_pads.learning.turn_on import turn_on_of
 from tactile_graph_pads.pad import Pad
 
@@ -41,6 +41,8 @@ LEAST_LEVELS = 50
 """Steps below the largest reading; coarser ones repeat by themselves."""
 PRESSED = 3.0
 """Times the least reading that shows: between two such elements there is no valley of silence."""
+STEPS = 8.0
+"""Of the converter, below which single steps pass for where readings begin."""
 DRIFTS = 3.0
 """Noises that the empty pad may move before it is said."""
 
@@ -111,13 +113,14 @@ def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = Non
             f"has {base.geometry.rows} x {base.geometry.columns} elements, the recordings have "
             f"{stack.shape[0]} x {stack.shape[1]}",
         )
-    rest = rest.stepped(step_of(stack.values))
-    known = _known_pad(base, stack, rest)
-    bare = _bare(stack, rest)
+    bare, step = _bare(stack, rest), step_of(stack.values)
+    shows_from = least_level(rest.noise[rest.good], max(step, rest.step), bare)
+    rest = rest.stepped(step)
     if objects is None:
         notes.append("No objects were recorded: dead elements, gains and all else are not known.")
-        return _of_empty(stack, rest, bare, notes)
-    return _of_objects(objects, rest, known, notes)
+        return _of_empty(stack, rest, shows_from, notes)
+    known = _known_pad(base, stack, rest)
+    return _of_objects(objects, bare, shows_from, known, notes)
 
 
 def _known_pad(base: Pad | None, stack: Stack, rest: Resting) -> _KnownPad:
@@ -186,8 +189,7 @@ def _bare(stack: Stack, rest: Resting) -> Array:
     return np.where(np.isnan(above), 0.0, above)
 
 
-def _of_empty(stack: Stack, rest: Resting, bare: Array, notes: list[str]) -> LearnedPad:
-    level = least_level(rest.usual_noise, rest.step, bare)
+def _of_empty(stack: Stack, rest: Resting, level: float, notes: list[str]) -> LearnedPad:
     elements = _elements(rest, None, np.ones(stack.shape))
     return LearnedPad(
         _record(stack, rest, level), elements, rest, loads=stack.image.quantity,  # type: ignore[arg-type]
@@ -195,28 +197,27 @@ def _of_empty(stack: Stack, rest: Resting, bare: Array, notes: list[str]) -> Lea
     )  # fmt: skip
 
 
-def _of_objects(objects: Stack, rest: Resting, known: _KnownPad, notes: list[str]) -> LearnedPad:
-    bare = _bare(objects, rest)
-    shows_from = least_level(rest.usual_noise, rest.step, bare)
+def _of_objects(
+    objects: Stack, bare: Array, shows_from: float, known: _KnownPad, notes: list[str]
+) -> LearnedPad:
+    rest = known.rest
     touched = bare >= shows_from
     _refuse_untouched(touched, objects)
-    silent = silence(touched, bare >= PRESSED * shows_from, rest.good)
+    new = placements(touched)
+    silent = silence(touched[new], bare[new] >= PRESSED * shows_from, rest.good)
     good = rest.good & ~silent.dead
-    recorded = np.where(np.isnan(objects.values), rest.offset, objects.values)
-    loads = known.load_of(recorded, touched)
-    gained = gains(loads, touched, good)
+    recorded = np.where(np.isnan(objects.values[new]), rest.offset, objects.values[new])
+    loads = known.load_of(recorded, touched[new])
+    gained = gains(loads, touched[new], good)
     if not gained.stand_out:
-        notes.append(_no_gains(gained))
+        notes.append(_no_gains(gained, len(new)))
     evened = bare / gained.gain if known.loads == objects.image.quantity else bare
     evened = filled(evened, good)
-    under = loads[touched & good]
-    turn_on = turn_on_of(under, known.least_load(shows_from), known.loads)
+    under = loads[touched[new] & good]
+    turn_on = turn_on_of(under, known.least_load(max(shows_from, STEPS * rest.step)), known.loads)
     curve = force_curve(evened[:, good], objects.weight_g, shows_from)
     places = _places(objects)
-    level, right = shows_from, None
-    if any(p is not None for p in places):
-        frames = [f for f, p in zip(evened, places, strict=True) if p is not None]
-        level, right = best_level(frames, [p for p in places if p is not None], shows_from)
+    level, right = _level(evened, places, shows_from)
     found = LearnedPad(
         replace(
             _record(objects, rest, level),
@@ -231,6 +232,16 @@ def _of_objects(objects: Stack, rest: Resting, known: _KnownPad, notes: list[str
     place = _place(objects, evened, places, found, good, notes)
     notes += _weights_note(objects, curve) + _turn_on_note(turn_on)
     return replace(found, place=place, notes=tuple(notes))
+
+
+def _level(
+    evened: Array, places: Sequence[Array | None], shows_from: float
+) -> tuple[float, float | None]:
+    """Return from where on contacts are to be looked for, and how often their number is right."""
+    told = [(f, p) for f, p in zip(evened, places, strict=True) if p is not None]
+    if not told:
+        return shows_from, None
+    return best_level([f for f, _ in told], [p for _, p in told], shows_from)
 
 
 def _refuse_untouched(touched: Flags, objects: Stack) -> None:
@@ -326,9 +337,12 @@ def _full_scale(values: Array, rest: Resting) -> float | None:
     return top if at_top.sum() >= SATURATED and at_top.any(axis=0).sum() > 1 else None
 
 
-def _no_gains(found: Gains) -> str:
-    least = "too few neighbouring elements were touched together"
-    alike = f"two halves of the frames agree on them by {found.alike:.2f} only"
+def _no_gains(found: Gains, n_placements: int) -> str:
+    alike = f"two halves of {n_placements} placements agree on them by {found.alike:.2f} only"
+    least = (
+        f"{n_placements} placements touch too few elements often enough, or always in one place; "
+        f"put objects down all over the pad, {LEAST_PLACEMENTS} times at least"
+    )
     return f"Gains are not told: {alike if found.alike else least}."
 
 

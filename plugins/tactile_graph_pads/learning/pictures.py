@@ -79,6 +79,8 @@ def _gains(found: LearnedPad) -> Picture:
     right.plot(np.exp(ends), np.exp(ends), color=BEFORE, lw=1, label="both alike")
     right.set(xscale="log", yscale="log", xlabel="gain from one half of the frames",
               ylabel="gain from the other half")  # fmt: skip
+    for axis in (right.xaxis, right.yaxis):
+        _plain_ticks(axis)
     right.legend()
     caption = (
         f"How strongly elements answer, in {UNITS[found.loads]}, compared with their neighbours "
@@ -205,6 +207,17 @@ def _map(
     axes.set(xlabel="column", ylabel="row")
     bar = axes.figure.colorbar(shown, ax=axes, shrink=0.9, extend="both")
     bar.set_label(label)
+    if limits is not None:
+        _plain_ticks(bar.ax.yaxis)
+
+
+def _plain_ticks(axis: Any) -> None:
+    """Write 0.7 and 1.5 on a logarithmic axis of less than a decade, not powers of ten."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _mark(axes: Axes, state: NDArray[np.str_]) -> None:

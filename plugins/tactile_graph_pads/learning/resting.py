@@ -106,7 +106,8 @@ def resting(values: Array, where: str) -> Resting:
     offset, noise, drift = _line(kept)
     step = step_of(kept)
     stuck, still, noisy = _odd(offset, noise, missing, step)
-    _refuse_object(offset, stuck, missing, where)
+    _refuse_object(offset, stuck, missing, where, "all the time; take off what lies there, or "
+                   "give this recording as one of objects")  # fmt: skip
     return Resting(
         offset,
         noise,
@@ -133,7 +134,7 @@ def resting_among_objects(values: Array, where: str) -> Resting:
     Raises
     ------
     DataError
-        If there are too few frames.
+        If there are too few frames, or something lies in one place in more than half of them.
 
     Notes
     -----
@@ -156,7 +157,10 @@ def resting_among_objects(values: Array, where: str) -> Resting:
     with np.errstate(invalid="ignore"):
         squares = np.nansum(below**2, axis=0) / np.maximum((~np.isnan(below)).sum(axis=0), 1)
     noise, step = np.sqrt(squares), step_of(held)
-    stuck, still, noisy = _odd(offset, noise, missing, step)
+    stuck, still, _ = _odd(offset, noise, missing, step)
+    _refuse_object(offset, stuck, missing, where, "in more than half of the frames, so that the "
+                   "empty pad cannot be told; record it and give it by --empty")  # fmt: skip
+    noisy = np.zeros_like(stuck)  # what lies below the median is not all noise
     return Resting(offset, noise, stuck, still, noisy, missing, 0.0, step, len(held), 0, False)
 
 
@@ -222,7 +226,8 @@ def _odd(offset: Array, noise: Array, missing: Flags, step: float) -> tuple[Flag
     return stuck, still, noisy
 
 
-def _refuse_object(offset: Array, stuck: Flags, missing: Flags, where: str) -> None:
+def _refuse_object(offset: Array, stuck: Flags, missing: Flags, where: str, rest: str) -> None:
+    """Raise where neighbouring elements stand out together; ``rest`` ends the message."""
     from scipy import ndimage
 
     middle = float(np.median(offset[~missing]))
@@ -233,5 +238,5 @@ def _refuse_object(offset: Array, stuck: Flags, missing: Flags, where: str) -> N
                 where,
                 f"not empty: {int(part.sum())} neighbouring elements around row {row}, column "
                 f"{column} read {float(np.median(offset[part]) - middle):.4g} above the others "
-                "all the time; take off what lies there, or give this recording as one of objects",
+                f"{rest}",
             )

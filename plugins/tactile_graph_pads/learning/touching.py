@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SHOWS = 6.0
 """Standard deviations of noise from which a reading is one: once in a billion by chance."""
+SAME = 0.7
+"""Share of what two frames touch that both do, from which on they show one placement."""
+MOST_FRAMES = 3000
 LEAST_RIGHT = 0.5
 """Share of the frames that must be right for a level to be chosen by that."""
 LEVELS = 32
@@ -50,6 +53,34 @@ def contacts_of(values: Array, level: float) -> Found:
     return Found(np.column_stack([x, y]), cells, peaks)
 
 
+def placements(touched: Flags) -> NDArray[np.int64]:
+    """Return the numbers of frames that show objects put down anew, not a placement seen before.
+
+    Parameters
+    ----------
+    touched : ndarray of bool, shape (frames, rows, columns)
+
+    Notes
+    -----
+    A placement has been seen if, of what either of two frames touches, both touch more than
+    `SAME`. Frames of an object at rest say the same thing again and again: taken as many, they
+    would make its own unevenness the pad's. At most `MOST_FRAMES` frames are looked at.
+    """
+    flat = touched.reshape(len(touched), -1)
+    sizes = flat.sum(axis=1)
+    looked = np.flatnonzero(sizes)
+    looked = looked[:: max(1, -(-len(looked) // MOST_FRAMES))]
+    kept = np.empty((len(looked), flat.shape[1]), np.float32)
+    chosen: list[int] = []
+    for n in looked.tolist():
+        both = kept[: len(chosen)] @ flat[n].astype(np.float32)
+        either = sizes[chosen] + sizes[n] - both
+        if not (both > SAME * either).any():
+            kept[len(chosen)] = flat[n]
+            chosen.append(n)
+    return np.array(chosen, np.int64)
+
+
 def filled(values: Array, good: Flags) -> Array:
     """Return frames whose bad elements read as the good ones around them do on average.
 
@@ -71,22 +102,29 @@ def filled(values: Array, good: Flags) -> Array:
     return out
 
 
-def least_level(noise: float, step: float, values: Array) -> float:
+def least_level(noise: Array, step: float, values: Array) -> float:
     """Return the level from which a reading is more than noise.
 
     Parameters
     ----------
-    noise : float
-        Standard deviation of a reading.
+    noise : ndarray
+        Standard deviation of each good element's readings.
     step : float
         Smallest difference of readings; a converter's own.
     values : ndarray
         Some readings above the offset: a thousandth of the largest is the level where neither
         noise nor step is known.
+
+    Notes
+    -----
+    Where the noise is lost between two steps of the converter, one step is a reading; elements
+    that rest between two steps flicker, and the level is above them too.
     """
-    level = max(SHOWS * noise, 1.5 * step)
-    if level > 0.0:
-        return level
+    if noise.size:
+        usual, highest = np.quantile(noise, [0.5, 0.99])
+        level = max(SHOWS * usual, 0.5 * SHOWS * highest, 0.75 * step)
+        if level > 0.0:
+            return float(level)
     top = float(np.nanmax(values, initial=0.0))
     return 1e-3 * top if top > 0.0 else 1.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tactile_graph_pads.learning.gains import gains
+from tactile_graph_pads.learning.gains import gains, spread
 
 SHAPE = (10, 13)
 
@@ -61,3 +61,16 @@ def test_nothing_touched_tells_nothing():
     found = gains(np.zeros((5, *SHAPE)), np.zeros((5, *SHAPE), bool), np.ones(SHAPE, bool))
     assert not found.stand_out
     assert (found.gain == 1.0).all()
+
+
+def test_objects_that_always_lie_in_one_place_tell_no_gains():
+    """A foot presses its insole alike at every step: that is the foot's, not the insole's."""
+    rng = np.random.default_rng(8)
+    row, column = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    foot = np.exp(0.5 * rng.standard_normal(SHAPE)) * (np.hypot(row - 5, column - 6) < 4.2)
+    readings = (
+        foot * rng.uniform(1.0, 4.0, (80, 1, 1)) * np.exp(0.1 * rng.standard_normal((80, *SHAPE)))
+    )
+    found = gains(readings, readings > 0.0, np.ones(SHAPE, bool))
+    assert not found.stand_out
+    assert spread(readings) < 0.1 < spread(presses(np.zeros(SHAPE))[0])

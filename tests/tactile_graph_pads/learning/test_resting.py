@@ -100,3 +100,10 @@ def test_the_step_of_readings_is_their_smallest_difference():
     rng = np.random.default_rng(5)
     assert step_of(rng.standard_normal((40, 9, 9))) == 0.0
     assert step_of(0.25 * rng.integers(0, 30, (40, 9, 9))) == 0.25
+
+
+def test_what_lies_in_one_place_most_of_the_time_is_not_taken_for_the_empty_pad():
+    _, values = still_pad()
+    values[:60, 3:5, 5:8] += 100.0
+    with pytest.raises(DataError, match=r"in more than half of the frames.*give it by --empty"):
+        resting_among_objects(values, "it")

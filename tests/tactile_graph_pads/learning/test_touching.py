@@ -11,6 +11,7 @@ from tactile_graph_pads.learning.touching import (
     filled,
     least_level,
     paired,
+    placements,
 )
 
 
@@ -55,12 +56,14 @@ def test_without_a_better_one_the_lowest_level_stays():
     assert best_level(frames, hopeless, 2.0) == (2.0, 0.0)
 
 
-def test_the_least_level_is_above_noise_and_step():
-    some = np.array([[0.0, 50.0]])
-    assert least_level(2.0, 1.0, some) == 12.0
-    assert least_level(0.0, 1.0, some) == 1.5
-    assert least_level(0.0, 0.0, some) == pytest.approx(0.05)
-    assert least_level(0.0, 0.0, 0.0 * some) > 0.0
+def test_the_least_level_is_above_noise_flicker_and_rounding():
+    some, quiet = np.array([[0.0, 50.0]]), np.full(200, 2.0)
+    assert least_level(quiet, 1.0, some) == 12.0
+    assert least_level(0.0 * quiet, 1.0, some) == 0.75
+    flicker = np.where(np.arange(200) < 10, 0.5, 0.0)
+    assert least_level(flicker, 1.0, some) == 1.5
+    assert least_level(0.0 * quiet, 0.0, some) == pytest.approx(0.05)
+    assert least_level(quiet[:0], 0.0, 0.0 * some) > 0.0
 
 
 def test_bad_elements_read_as_those_around_them():
@@ -72,3 +75,10 @@ def test_bad_elements_read_as_those_around_them():
     assert there[1:-1, 4] == pytest.approx(plane[1:-1, 4])
     none = filled(plane[None], np.zeros_like(good))
     assert not none.any()
+
+
+def test_frames_of_one_placement_count_once():
+    at = [(5.0, 5.0)] * 4 + [(5.2, 5.0)] + [(15.0, 12.0)] * 3 + [(5.0, 5.0)]
+    touched = np.array([bumps(c) > 20.0 for c in at])
+    assert placements(touched).tolist() == [0, 5]
+    assert placements(np.zeros((3, 4, 4), bool)).tolist() == []
