@@ -14,7 +14,7 @@ Flags = NDArray[np.bool_]
 LEAST_PAIRS = 8.0
 """Comparisons with neighbours from which on an element's gain is told at all, in each half."""
 LEAST_PLACEMENTS, LEAST_ELEMENTS = 20, 10
-LEAST_SPREAD = 0.3
+LEAST_SPREAD = 0.2
 """Of the objects' centres over the width of what they touch: less, and each element always lies
 under the same part of them."""
 LEAST_ALIKE = 0.6
