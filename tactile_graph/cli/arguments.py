@@ -121,6 +121,8 @@ def open_pipeline(
 ) -> Pipeline:
     """Return the pipeline a command line names, with its source and settings.
 
+    Should kernels have to be compiled then, another process helps while the command lasts.
+
     Raises
     ------
     UsageError
@@ -137,7 +139,21 @@ def open_pipeline(
     pipeline = load(name, found)
     if settings:
         pipeline = pipeline.with_settings(dict(assignment("--set", s) for s in settings))
+    _help_preparing(name, recordings, settings)
     return sourced(pipeline, recordings, source, source_settings, span or Span())
+
+
+def _help_preparing(name: str, recordings: Sequence[str], settings: Sequence[str]) -> None:
+    """Let another process help, while the command lasts, when kernels have to be compiled.
+
+    It runs the pipeline over the recordings or its own source: a device is opened only once.
+    """
+    command = click.get_current_context(silent=True)
+    if command is not None:
+        from tactile_graph.compiled import Work, prepared_beside
+
+        work = Work((name,), tuple(settings), tuple(recordings), registry.selected())
+        command.with_resource(prepared_beside(work))
 
 
 def offered() -> str:

@@ -1,6 +1,6 @@
 """Hot loops written in plain Python and compiled to machine code, kept on disk."""
 
-from tactile_graph.compiled.beside import prepared_beside
+from tactile_graph.compiled.beside import Work, prepared_beside
 from tactile_graph.compiled.kernel import (
     SWITCH_AFTER_CALLS,
     SWITCH_AFTER_ELEMENTS,
@@ -9,6 +9,7 @@ from tactile_graph.compiled.kernel import (
     compiled_later,
     compiled_twin_of,
     mode,
+    plain_and_noted,
     warm_up,
 )
 
@@ -16,10 +17,12 @@ __all__ = [
     "SWITCH_AFTER_CALLS",
     "SWITCH_AFTER_ELEMENTS",
     "Kernel",
+    "Work",
     "compiled_as_is",
     "compiled_later",
     "compiled_twin_of",
     "mode",
+    "plain_and_noted",
     "prepared_beside",
     "warm_up",
 ]

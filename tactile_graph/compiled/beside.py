@@ -1,57 +1,76 @@
-"""While one process waits for the compiler, another prepares what will be needed next."""
+"""While one process waits for the compiler, another compiles what will be needed next."""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from tactile_graph.compiled.kernel import is_warm
 from tactile_graph.compiled.preparing import preparing
 
 if TYPE_CHECKING:
     import subprocess
 
+AHEAD = "tactile_graph.cli.ahead"
+"""The program of the other process."""
 
-@contextmanager
-def prepared_beside(files: Sequence[str], plugins: str = "") -> Iterator[None]:
-    """Let a process of its own prepare pipelines as soon as this one has to compile a kernel.
 
-    When all is on disk none is started. It is stopped on leaving: it may slow nobody down later,
-    and whatever it has finished is kept.
+class Work(NamedTuple):
+    """What both processes do, in words that a command line can hold.
 
-    Parameters
+    Attributes
     ----------
-    files : sequence of str
-        Of pipelines; what is no file is left out.
-    plugins : str, optional
+    pipelines : tuple of str
+        Names or files.
+    settings : tuple of str
+        Of every pipeline, as ``node.setting=value``.
+    recordings : tuple of str
+        What they run over in place of their own sources.
+    plugins : str
         The selection of plugins that may load.
     """
-    found = [file for file in files if Path(file).is_file()]
+
+    pipelines: tuple[str, ...]
+    settings: tuple[str, ...] = ()
+    recordings: tuple[str, ...] = ()
+    plugins: str = ""
+
+
+@contextmanager
+def prepared_beside(work: Work) -> Iterator[None]:
+    """Let a process of its own help as soon as this one has to compile a kernel.
+
+    It takes the first frames through plain code, which tells what kernels they call and with what
+    types, and compiles those by which this process gains most. When all is on disk none is
+    started. It is stopped on leaving: it may slow nobody down later, and whatever it has
+    finished is kept.
+    """
     started: list[subprocess.Popen[bytes]] = []
 
     def start() -> None:
-        started.append(_preparing_process(found, plugins))
-        preparing.beside = ", ".join(Path(file).stem for file in found)
+        started.append(_process(work))
+        preparing.helped = True
 
-    preparing.on_first = start if found and (os.cpu_count() or 1) > 1 else None
+    preparing.on_first = start if work.pipelines and (os.cpu_count() or 1) > 1 else None
     try:
         yield
     finally:
         preparing.on_first = None
-        preparing.beside = ""
+        preparing.helped = False
         for process in started:
             process.terminate()
             process.wait()
 
 
-def _preparing_process(files: Sequence[str], plugins: str) -> subprocess.Popen[bytes]:
+def _process(work: Work) -> subprocess.Popen[bytes]:
     import subprocess
 
-    command = ["-m", "tactile_graph", "prepare", "--jobs", "1", f"--plugins={plugins}", "--"]
     nowhere = subprocess.DEVNULL
+    said = json.dumps({**work._asdict(), "warm": is_warm()})
     return subprocess.Popen(
-        [sys.executable, "-P", *command, *files], stdin=nowhere, stdout=nowhere, stderr=nowhere
+        [sys.executable, "-P", "-m", AHEAD, said], stdin=nowhere, stdout=nowhere, stderr=nowhere
     )

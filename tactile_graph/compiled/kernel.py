@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable
-from typing import Any, Generic, ParamSpec, TypeVar, cast
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Generic, ParamSpec, TypeAlias, TypeVar, cast
 
 from tactile_graph.errors import UsageError, did_you_mean
 
@@ -27,6 +28,7 @@ at most; loops that take much longer have a reference beside them, see `compiled
 
 P = ParamSpec("P")
 R = TypeVar("R")
+Note: TypeAlias = "Callable[[Kernel[Any, Any], tuple[Any, ...]], None]"
 
 
 class _Running(threading.local):
@@ -38,6 +40,7 @@ class _Running(threading.local):
 _running = _Running()
 _kernels: list[Kernel[Any, Any]] = []
 _warm = False
+_notes: list[Note] = []
 
 
 def mode() -> str:
@@ -99,18 +102,29 @@ class Kernel(Generic[P, R]):
         wanted = mode()
         self._calls_left = SWITCH_AFTER_CALLS
         self._elements_left = SWITCH_AFTER_ELEMENTS
-        if wanted == "plain":
-            self.call: Callable[..., R] = self._plain
+        if _notes:
+            self.call: Callable[..., R] = self._noted
+        elif wanted == "plain":
+            self.call = self._plain
         elif wanted == "compiled" or _warm or not self.plain_first:
             self.call = self._first_compiled
         else:
             self.call = self._counted
 
     def _counted(self, *args: Any) -> R:
+        return self._first_compiled(*args) if self._enough_to_do(args) else self._plain(*args)
+
+    def _enough_to_do(self, args: tuple[Any, ...]) -> bool:
+        """Count a call; return whether it is time for machine code."""
         self._calls_left -= 1
         self._elements_left -= sum(getattr(a, "size", 1) for a in args)
-        if self._calls_left < 0 or self._elements_left < 0:
-            return self._first_compiled(*args)
+        return self._calls_left < 0 or self._elements_left < 0
+
+    def _noted(self, *args: Any) -> R:
+        """Answer by plain code, and note the call if machine code would have answered it."""
+        asked = not _running.plain_loops
+        if asked and (_warm or not self.plain_first or self._enough_to_do(args)):
+            _notes[-1](self, args)
         return self._plain(*args)
 
     def _plain(self, *args: Any) -> R:
@@ -190,10 +204,37 @@ def compiled_twin_of(reference: Callable[P, R]) -> Callable[[Callable[..., R]], 
     return pair
 
 
+@contextmanager
+def plain_and_noted(note: Note) -> Iterator[None]:
+    """Let plain code answer everything, and tell what machine code would have answered.
+
+    Parameters
+    ----------
+    note : callable
+        Takes the kernel and the call's arguments.
+    """
+    _notes.append(note)
+    try:
+        _reset_all()
+        yield
+    finally:
+        _notes.pop()
+        _reset_all()
+
+
+def is_warm() -> bool:
+    """Return whether `warm_up` was called."""
+    return _warm
+
+
 def warm_up() -> None:
     """Use machine code from the next call on: for live sources and long runs."""
     global _warm
     if not _warm:
         _warm = True
-        for kernel in _kernels:
-            kernel.reset()
+        _reset_all()
+
+
+def _reset_all() -> None:
+    for kernel in _kernels:
+        kernel.reset()

@@ -36,6 +36,16 @@ def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
     return entry_of(loops)
 
 
+def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> None:
+    """Make the machine code of ``loops`` for types of arguments, unless another process does."""
+    if whole():
+        from tactile_graph.compiled.whole import entry_of
+
+        entry_of(loops).compile_unless_claimed(arguments)
+    else:
+        numba.njit(cache=True, error_model="numpy")(loops).compile(arguments)
+
+
 class Callee:
     """``loops`` as other compiled code calls them.
 

@@ -65,13 +65,13 @@ class Preparing:
     ----------
     on_first : callable or None
         Called once, when the next kernel is about to be compiled.
-    beside : str
-        What another process prepares meanwhile.
+    helped : bool
+        Whether another process compiles meanwhile.
     """
 
     def __init__(self) -> None:
         self.on_first: Callable[[], None] | None = None
-        self.beside = ""
+        self.helped = False
         self._name = ""
         self._total = 0
         self._done: set[int] = set()
@@ -103,6 +103,25 @@ class Preparing:
         n = min(len(self._done), self._total)
         self._say(f"{n} of {self._total} kernels")
 
+    @contextmanager
+    def elsewhere(self, name: str) -> Iterator[Callable[[], None]]:
+        """Give what says, again and again, that another process compiles the kernel ``name``."""
+        since = time.monotonic()
+
+        def tell() -> None:
+            spent_s = self._spent_s + time.monotonic() - since
+            if _tellers and spent_s > WORTH_A_LINE_S:
+                _tellers[-1](
+                    f"another process compiles {name}, once on this machine, {spent_s:.0f} s"
+                )
+
+        try:
+            yield tell
+        finally:
+            self._spent_s += time.monotonic() - since
+            if _tellers:
+                _tellers[-1](None)
+
     def all_together(self) -> None:
         """Note that the code of all is optimised and made into machine code."""
         self._say(f"{self._total} kernels into one")
@@ -110,7 +129,7 @@ class Preparing:
     def _say(self, what: str) -> None:
         spent_s = self._spent_s + time.monotonic() - self._since
         if _tellers and spent_s > WORTH_A_LINE_S:
-            beside = f"; meanwhile {self.beside}" if self.beside else ""
+            beside = "; another process compiles what comes later" if self.helped else ""
             _tellers[-1](
                 f"compiling {self._name}, once on this machine: {what}, {spent_s:.0f} s{beside}"
             )

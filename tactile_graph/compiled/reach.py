@@ -17,24 +17,23 @@ class Reach:
 
     Attributes
     ----------
-    n_kernels : int
-        Functions of the project among them, the loops counted.
+    sizes : dict of object to int
+        Bytes of Python's code of each function, the loops first.
     digest : str
         Changes with the code and the place of any of them and with any constant they read, and with
         nothing else: neither comments nor other functions of their files matter.
     """
 
     def __init__(self, loops: Callable[..., Any]) -> None:
-        self._seen: set[int] = set()
+        self.sizes: dict[Callable[..., Any], int] = {}
         self._hash = sha256()
         self._function(loops)
-        self.n_kernels = len(self._seen)
         self.digest = self._hash.hexdigest()
 
     def _function(self, function: Any) -> None:
-        if id(function) in self._seen:
+        if function in self.sizes:
             return
-        self._seen.add(id(function))
+        self.sizes[function] = sum(len(code.co_code) for code in _codes(function.__code__))
         # What is kept on disk names the modules its functions came from.
         self._add(f"{function.__module__}.{function.__qualname__}".encode())
         self._code(function.__code__)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import gc
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
-from numba import njit
 from numba.core import sigutils
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import CodeLibrary, JITCodeLibrary
@@ -17,10 +18,17 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.runtime import rtsys
 
+from tactile_graph.compiled.numbas_own import made_parts
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
+from tactile_graph.locks import Lock
+
+OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
+POLL_S = 0.02
+"""Between two looks whether another process has finished."""
 
 _entries = 0
+_taken_in = False
 
 
 def entry_under_way() -> bool:
@@ -40,7 +48,8 @@ def _under_way() -> Iterator[None]:
     gc.disable()
     _entries += 1
     try:
-        yield
+        with made_parts(into_part, offered):
+            yield
     finally:
         _entries -= 1
         if collecting:
@@ -64,8 +73,26 @@ class Part(JITCodeLibrary):
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
+        """Return the code; for a library of numba's own, which knows of no parts, with callees."""
         self._ensure_finalized()
-        return self._final_module
+        if _taken_in:
+            return self._final_module
+        module = self._final_module.clone()
+        with _taking_in():
+            for library in callers_first([self])[1:]:
+                module.link_in(library._get_module_for_linking(), True)
+        return module
+
+
+@contextmanager
+def _taking_in() -> Iterator[None]:
+    """Note that parts are linked by who finds their callees itself."""
+    global _taken_in
+    before, _taken_in = _taken_in, True
+    try:
+        yield
+    finally:
+        _taken_in = before
 
 
 class Entry(JITCodeLibrary):
@@ -77,7 +104,8 @@ class Entry(JITCodeLibrary):
         """Take all code below in, optimise and emit it."""
         preparing.all_together()
         self._linking_libraries = callers_first(self._linking_libraries)
-        super().finalize()
+        with _taking_in():
+            super().finalize()
 
 
 def callers_first(libraries: Iterable[CodeLibrary]) -> list[CodeLibrary]:
@@ -99,8 +127,13 @@ def callers_first(libraries: Iterable[CodeLibrary]) -> list[CodeLibrary]:
     return list(reversed(callees_first))
 
 
-class _Key:
-    """What numba's table of callable functions knows a part by."""
+def _key() -> Callable[..., Any]:
+    """Return what numba's table of callable functions knows a part by.
+
+    Its dispatchers take only what C wrote; any such function of an object of its own will do, since
+    nobody calls it.
+    """
+    return object().__dir__
 
 
 class PartCompiler(Compiler):
@@ -108,18 +141,27 @@ class PartCompiler(Compiler):
 
     def define_pipelines(self) -> Any:
         """Return numba's own passes; their last finds a library of ours, and orders to stop."""
-        _into(self.state, Part)
-        self.state.flags.no_cpython_wrapper = True
-        self.state.flags.no_compile = True
+        into_part(self.state)
         return super().define_pipelines()
 
     def compile_extra(self, func: Callable[..., Any]) -> CompileResult:
         """Compile, and offer the part to those that call it."""
         preparing.at(func)
-        result = super().compile_extra(func)
-        key = _Key()
-        result.target_context.insert_user_function(key, result.fndesc, [result.library])
-        return result._replace(entry_point=key)
+        return offered(super().compile_extra(func))
+
+
+def into_part(state: Any) -> None:
+    """Let a compiler make a part, and stop before machine code."""
+    _into(state, Part)
+    state.flags.no_cpython_wrapper = True
+    state.flags.no_compile = True
+
+
+def offered(result: CompileResult) -> CompileResult:
+    """Return a part as compiled code finds it."""
+    key = _key()
+    result.target_context.insert_user_function(key, result.fndesc, [result.library])
+    return result._replace(entry_point=key)
 
 
 class EntryCompiler(Compiler):
@@ -132,7 +174,7 @@ class EntryCompiler(Compiler):
 
     def compile_extra(self, func: Callable[..., Any]) -> CompileResult:
         """Compile with all below, and hand the code the objects it raises errors with."""
-        with _under_way(), preparing.of(func.__name__, Reach(func).n_kernels):
+        with _under_way(), preparing.of(func.__name__, len(Reach(func).sizes)):
             preparing.at(func)
             result = super().compile_extra(func)
         for environment in result._find_referenced_environments():
@@ -149,14 +191,18 @@ def _into(state: Any, kind: type[JITCodeLibrary]) -> None:
 class PartDispatcher(CPUDispatcher):
     """The parts made of one kernel, by the types of its arguments; never called from Python."""
 
-    def compile(self, sig: Any) -> _Key:
+    def compile(self, sig: Any) -> Callable[..., Any]:
         """Return the key of the part for a signature."""
         args, return_type = sigutils.normalize_signature(sig)
         with global_compiler_lock, self._compiling_counter:
             if args not in self.overloads:
                 self.overloads[args] = self._compiler.compile(args, return_type)
-        key: _Key = self.overloads[args].entry_point
+        key: Callable[..., Any] = self.overloads[args].entry_point
         return key
+
+
+class ClaimedError(Exception):
+    """Another process makes this machine code just now."""
 
 
 class EntryCache(FunctionCache):
@@ -164,12 +210,16 @@ class EntryCache(FunctionCache):
 
     def __init__(self, loops: Callable[..., Any]) -> None:
         super().__init__(loops)
-        self._cache_file = IndexDataCacheFile(
-            self.cache_path, f"{self._impl.filename_base}.whole", Reach(loops).digest
-        )
+        name = f"{self._impl.filename_base}.whole"
+        self._cache_file = IndexDataCacheFile(self.cache_path, name, Reach(loops).digest)
+        self._name = loops.__name__
+        self.waits = True
+        self._claim = Lock(Path(self.cache_path, f"{name}.lock"))
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
-        """Return what is on disk for a signature, None if nothing is.
+        """Return what is on disk for a signature, None if nothing is and it is ours to make.
+
+        While another process makes the machine code of these loops, its end is waited for.
 
         numba alone gets ready to compile first: it imports how each function is lowered, and
         scipy's linear algebra, which takes longer than to load the code. The compiler does so
@@ -178,20 +228,74 @@ class EntryCache(FunctionCache):
         """
         import_module("numba.cpython.hashing")
         rtsys.initialize(target_context)
+        found = self._on_disk(sig, target_context)
+        if found is None and self._claimed():
+            return self._on_disk(sig, target_context)  # another may have made it just now
+        return found
+
+    def _on_disk(self, sig: Any, target_context: Any) -> CompileResult | None:
         with self._guard_against_spurious_io_errors():
             found: CompileResult | None = self._load_overload(sig, target_context)
         return found
 
+    def _claimed(self) -> bool:
+        """Wait until no other process makes these loops; return whether others now wait for us.
 
-def entry_of(loops: Callable[..., Any]) -> Callable[..., Any]:
+        Where the folder knows no locks, two may make the same, as numba alone would.
+
+        Raises
+        ------
+        ClaimedError
+            In place of waiting, where `waits` is False.
+        """
+        try:
+            if self._claim.take():
+                return True
+            if not self.waits:
+                raise ClaimedError
+            with preparing.elsewhere(self._name) as tell:
+                while not self._claim.take():
+                    time.sleep(POLL_S)
+                    tell()
+        except OSError:
+            return False
+        return True
+
+    def let_go(self) -> None:
+        """Say that these loops are made, or could not be."""
+        self._claim.release()
+
+
+class EntryDispatcher(CPUDispatcher):
+    """The machine code of an entry by the types of its arguments."""
+
+    _cache: EntryCache
+
+    def compile(self, sig: Any) -> Any:
+        """Return the machine code for a signature, from disk if it is there or comes there."""
+        try:
+            return super().compile(sig)
+        finally:
+            self._cache.let_go()
+
+    def compile_unless_claimed(self, sig: Any) -> None:
+        """Make the machine code for a signature, unless another process is at these loops."""
+        self._cache.waits = False
+        try:
+            self.compile(sig)
+        except ClaimedError:
+            pass
+        finally:
+            self._cache.waits = True
+
+
+def entry_of(loops: Callable[..., Any]) -> EntryDispatcher:
     """Return what runs the machine code of ``loops``."""
-    dispatcher: Any = njit(pipeline_class=EntryCompiler, error_model="numpy")(loops)
+    dispatcher = EntryDispatcher(loops, targetoptions=OPTIONS, pipeline_class=EntryCompiler)
     dispatcher._cache = EntryCache(loops)
-    called: Callable[..., Any] = dispatcher
-    return called
+    return dispatcher
 
 
 def part_of(loops: Callable[..., Any]) -> PartDispatcher:
     """Return what makes parts of ``loops``."""
-    options = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
-    return PartDispatcher(loops, targetoptions=options, pipeline_class=PartCompiler)
+    return PartDispatcher(loops, targetoptions=OPTIONS, pipeline_class=PartCompiler)

@@ -80,18 +80,18 @@ class Session:
     def warm_up(self, frames: Sequence[Frame]) -> None:
         """Run some frames through a copy, so that what is compiled or made once is not timed.
 
-        While kernels of the first variant are compiled, those of the others are too. Sinks would
+        While the first kernels are compiled, another process compiles others. Sinks would
         write twice: with one among the nodes, nothing is run.
         """
-        from tactile_graph.compiled import prepared_beside, warm_up
+        from tactile_graph.compiled import Work, prepared_beside, warm_up
 
         warm_up()
         if any(i.node is not None and i.node.is_sink for i in self.plan.nodes):
             return
         copy = self.merged.pipeline.runner(seed=self.seed)
-        _, *others = dict.fromkeys(p.pipeline.file for p in self.prepared)
+        files = tuple(dict.fromkeys(p.pipeline.file for p in self.prepared))
         until = time.perf_counter() + WARM_S
-        with prepared_beside(others, selected()):
+        with prepared_beside(Work(files, plugins=selected())):
             for frame in frames[:WARM_FRAMES]:
                 self._check(frame)
                 copy(frame)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,6 @@ def ellipse_of(a: Values, grid: Values, p: Values) -> None:
     outline_of_moments(ELLIPSE, 0, found, 0.0, THINNEST, p)
 
 
-@compiled_as_is
 def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, float]:
     """Propose cuts of a piece: at each of 12 angles the fullest halves, and the narrowest neck.
 
@@ -64,9 +64,39 @@ def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, floa
         What the two ellipses with the halves' moments add to the log likelihood, shape (24,), -inf
         where there is no cut; and what the piece's one ellipse does.
     """
-    piece, grid, logs = problem.states, problem.grid, problem.logs
-    rows, cols = piece.shape
-    r, c = np.nonzero(piece == ON)
+    r, c = np.nonzero(problem.states == ON)
+    angles = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
+    along = np.cos(angles)[:, None] * c + np.sin(angles)[:, None] * r
+    across = Across(r, c, along, np.argsort(along, axis=1, kind="stable"))
+    return cuts_across.call(problem, across, least, sides)
+
+
+class Across(NamedTuple):
+    """The touched elements of a piece in order at each angle.
+
+    Parameters
+    ----------
+    row, column : ndarray of int64, shape (N,)
+    along : ndarray, shape (ANGLES, N)
+        How far each lies along the angle's direction, in pitches.
+    order : ndarray of int64, shape (ANGLES, N)
+        Which comes first, second, …; sorted by numpy, since a sort compiles for a second.
+    """
+
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    along: Values
+    order: NDArray[np.int64]
+
+
+@compiled_as_is
+def cuts_across(
+    problem: JointProblem, across: Across, least: int, sides: States
+) -> tuple[Values, float]:
+    """Return what `cuts` returns."""
+    grid, logs = problem.grid, problem.logs
+    rows, cols = problem.states.shape
+    r, c = across.row, across.column
     n = r.shape[0]
     index = np.full((rows + 2, cols + 2), -1, np.int64)
     for i in range(n):
@@ -77,9 +107,7 @@ def cuts(problem: JointProblem, least: int, sides: States) -> tuple[Values, floa
     points = np.zeros((2, WIDTH))
     halves = Outlines(kinds, corners, points)
     for t in range(ANGLES):
-        angle = math.pi * (t + 0.5) / ANGLES
-        along = c * math.cos(angle) + r * math.sin(angle)
-        order = np.argsort(along)
+        along, order = across.along[t], across.order[t]
         for i in range(n):
             at = order[i]
             place[at] = i

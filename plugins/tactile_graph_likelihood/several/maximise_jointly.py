@@ -174,6 +174,20 @@ def laplace_evidence(problem: JointProblem, outlines: Outlines, matrix: Values) 
 
 
 @compiled_as_is
+def settle(
+    problem: JointProblem, outlines: Outlines, most: int, enough: float, matrix: Values
+) -> float:
+    """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
+
+    With no rounds they stay where they are; otherwise as in `maximise_jointly`. The information is
+    written to ``matrix``.
+    """
+    if most > 0:
+        maximise_jointly(problem, outlines, most, enough)
+    return laplace_evidence(problem, outlines, matrix)
+
+
+@compiled_as_is
 def _log_of_part(fall: float) -> float:
     """Return the log of what a bound leaves of a normal density's mass, its top at the bound.
 

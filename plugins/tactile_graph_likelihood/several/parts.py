@@ -74,7 +74,7 @@ class Parts(Scene):
             return []
         piece = self.problem._replace(states=self.labelled(mask))
         sides = np.zeros((2 * ANGLES, *mask.shape), np.uint8)
-        good, whole = cuts.call(piece, LEAST_PIECE, sides)
+        good, whole = cuts(piece, LEAST_PIECE, sides)
         out: list[tuple[Places, Places]] = []
         least = max(good.max() - WORSE, whole - NO_GAIN)
         for t in np.argsort(-good, kind="stable"):

@@ -12,7 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, FREE, Values, packed, unknowns
 from tactile_graph_likelihood.several.joint_posterior import MIDDLE, WIDTH, JointProblem
-from tactile_graph_likelihood.several.maximise_jointly import laplace_evidence
+from tactile_graph_likelihood.several.maximise_jointly import settle
 from tactile_graph_likelihood.several.scene import Configuration, Scene
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
@@ -107,7 +107,7 @@ def posteriors(scene: Scene, found: Configuration) -> tuple[list[Posterior], flo
     counts = [unknowns.call(int(k), int(n)) + 1 for k, n, _ in zip(*found.outlines, strict=True)]
     surprise, alike = goodness_of_load.call(scene.beside(found, ()), sum(counts))
     matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
-    laplace_evidence.call(scene.problem, found.outlines, matrix)
+    settle.call(scene.problem, found.outlines, 0, 0.0, matrix)
     together = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     out = []
     for k, n in enumerate(counts):

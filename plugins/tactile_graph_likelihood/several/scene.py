@@ -15,11 +15,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     Outlines,
     add_outline,
 )
-from tactile_graph_likelihood.several.maximise_jointly import (
-    fit_piece,
-    laplace_evidence,
-    maximise_jointly,
-)
+from tactile_graph_likelihood.several.maximise_jointly import fit_piece, settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON, States
 from tactile_graph_likelihood.single.even_points import even_points
@@ -131,9 +127,14 @@ class Scene:
 
     def weighed(self, outlines: Outlines, beside: JointProblem | None = None) -> Configuration:
         """Return outlines with their log evidence beside others, where they are."""
+        return self._evident(outlines, beside or self.problem, 0, 0.0)
+
+    def _evident(
+        self, outlines: Outlines, beside: JointProblem, most: int, enough: float
+    ) -> Configuration:
         count = len(outlines.kinds)
         matrix = np.empty((count * WIDTH, count * WIDTH))
-        log = laplace_evidence.call(beside or self.problem, outlines, matrix)
+        log = settle.call(beside, outlines, most, enough, matrix)
         log += math.lgamma(count + 1.0) + count * (self.more - math.log(len(self.kinds)))
         return Configuration(*outlines, log)
 
@@ -142,8 +143,7 @@ class Scene:
     ) -> Configuration:
         """Return outlines brought to their joint mode beside others, with their own evidence."""
         outlines = found.outlines._replace(points=found.points.copy())
-        maximise_jointly.call(beside, outlines, most, enough)
-        return self.weighed(outlines, beside)
+        return self._evident(outlines, beside, most, enough)
 
     def maximised(self, found: Configuration, enough: float = 0.1) -> Configuration:
         """Return all outlines brought to their joint mode."""
@@ -156,14 +156,14 @@ class Scene:
         outline = Outlines(np.array([kind]), np.array([corners]), p[None])
         if top == -math.inf:
             return Configuration(*outline, top)
-        log = laplace_evidence.call(beside, outline, np.empty((WIDTH, WIDTH)))
+        log = settle.call(beside, outline, 0, 0.0, np.empty((WIDTH, WIDTH)))
         return Configuration(*outline, log + self.more - math.log(len(self.kinds)))
 
     def sampled(self, found: Configuration, k: int) -> Sampled:
         """Return the posterior of one outline beside the others, and its evidence."""
         beside, outline = self.beside(found, (k,)), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
-        log = laplace_evidence.call(beside, outline, matrix)
+        log = settle.call(beside, outline, 0, 0.0, matrix)
         n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
         plan = Plan(_table(n), BLOCK, WORTH)
         points, weights = np.empty((POINTS, n)), np.empty(POINTS)

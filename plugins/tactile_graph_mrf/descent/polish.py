@@ -89,8 +89,9 @@ def polish_all(
 def chain_rounds(potentials: Potentials, observed: Any, state: State, trace: Any) -> int:
     """Move rows and columns until none changes, or ``trace`` is full of energies; count those."""
     for t in range(len(trace)):
-        changed = move_chains(potentials, observed, state, True)
-        changed += move_chains(potentials, observed, state, False)
+        changed = 0
+        for i in range(2):  # of one call: two would be compiled twice
+            changed += move_chains(potentials, observed, state, i == 0)
         if not changed:
             return t
         trace[t] = total(potentials, state.labels, state.across, state.down)

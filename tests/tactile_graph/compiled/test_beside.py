@@ -1,29 +1,32 @@
-"""Another process prepares pipelines while this one compiles, and at no other time."""
+"""Another process helps while this one compiles, and at no other time."""
 
 from __future__ import annotations
 
 import io
 import subprocess
-from collections.abc import Sequence
-from pathlib import Path
+from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
-from tactile_graph.compiled import beside, prepared_beside
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.cli import cli
+from tactile_graph.compiled import Work, beside, prepared_beside
 from tactile_graph.compiled import preparing as preparing_module
 from tactile_graph.compiled.preparing import Line, preparing, told_by
-from tactile_graph.plugins.registry import installed
+
+MINE = Work(("mine.yaml",), settings=("a.b=1",))
 
 
 class Started:
     """Notes what would have been started, and whether it was stopped."""
 
     def __init__(self) -> None:
-        self.files: list[Sequence[str]] = []
+        self.works: list[Work] = []
         self.calls: list[str] = []
 
-    def __call__(self, files: Sequence[str], plugins: str) -> Started:
-        self.files.append(files)
+    def __call__(self, work: Work) -> Started:
+        self.works.append(work)
         return self
 
     def terminate(self) -> None:
@@ -36,16 +39,9 @@ class Started:
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> Started:
     noted = Started()
-    monkeypatch.setattr(beside, "_preparing_process", noted)
+    monkeypatch.setattr(beside, "_process", noted)
     monkeypatch.setattr(beside.os, "cpu_count", lambda: 2)
     return noted
-
-
-@pytest.fixture
-def pipeline(tmp_path: Path) -> str:
-    file = tmp_path / "mine.yaml"
-    file.touch()
-    return str(file)
 
 
 def compile_one(name: str = "fit") -> None:
@@ -53,46 +49,58 @@ def compile_one(name: str = "fit") -> None:
         preparing.at(compile_one)
 
 
-def test_none_is_started_when_nothing_is_compiled(started: Started, pipeline: str) -> None:
-    with prepared_beside([pipeline]):
+def test_none_is_started_when_nothing_is_compiled(started: Started) -> None:
+    with prepared_beside(MINE):
         pass
     compile_one()
-    assert started.files == []
+    assert started.works == []
 
 
-def test_the_first_kernel_starts_one_and_leaving_stops_it(started: Started, pipeline: str) -> None:
-    with prepared_beside([pipeline, "<text>"]):
+def test_the_first_kernel_starts_one_and_leaving_stops_it(started: Started) -> None:
+    with prepared_beside(MINE):
         compile_one()
         compile_one()
         assert started.calls == []
-    assert (started.files, started.calls) == ([[pipeline]], ["terminate", "wait"])
+    assert (started.works, started.calls) == ([MINE], ["terminate", "wait"])
 
 
-def test_none_is_started_for_no_file_nor_on_one_processor(
-    started: Started, pipeline: str, monkeypatch: pytest.MonkeyPatch
+def test_none_is_started_for_no_pipeline_nor_on_one_processor(
+    started: Started, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with prepared_beside(["<text>"]):
+    with prepared_beside(Work(())):
         compile_one()
     monkeypatch.setattr(beside.os, "cpu_count", lambda: 1)
-    with prepared_beside([pipeline]):
+    with prepared_beside(MINE):
         compile_one()
-    assert started.files == []
+    assert started.works == []
 
 
 @pytest.mark.usefixtures("started")
-def test_the_line_names_what_is_prepared_meanwhile(
-    pipeline: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_line_says_that_another_helps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(preparing_module, "WORTH_A_LINE_S", -1.0)
     said = io.StringIO()
-    with told_by(Line(said)), prepared_beside([pipeline]):
+    with told_by(Line(said)), prepared_beside(MINE):
         compile_one()
-    assert said.getvalue().rstrip().endswith("; meanwhile mine")
+    assert said.getvalue().rstrip().endswith("; another process compiles what comes later")
 
 
-def test_the_process_prepares(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    file = installed().load("pipelines", "contacts")
-    process: subprocess.Popen[bytes] = beside._preparing_process([str(file)], "")
+def test_the_process_runs_to_its_end() -> None:
+    process: subprocess.Popen[bytes] = beside._process(Work(("contacts", "no such pipeline")))
     assert process.wait() == 0
-    assert [*tmp_path.rglob("*.nbc")]
+
+
+def test_a_command_has_help_while_it_compiles(
+    monkeypatch: pytest.MonkeyPatch, started: Started
+) -> None:
+    runner = Pipeline.runner
+
+    def compiling(self: Pipeline, *args: Any) -> Any:
+        compile_one()
+        return runner(self, *args)
+
+    monkeypatch.setattr(Pipeline, "runner", compiling)
+    said = ["run", "circle-3", "--frames", "1", "--set", "footprint.level_v=0.02"]
+    done = CliRunner().invoke(cli, said)
+    assert done.exit_code == 0, done.output
+    assert started.works == [Work(("circle-3",), settings=("footprint.level_v=0.02",))]
+    assert started.calls == ["terminate", "wait"]

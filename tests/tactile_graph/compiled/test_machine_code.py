@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +17,9 @@ import pytest
 from numba.core import config
 
 import helpers_kernels
-from tactile_graph.compiled import Kernel, machine_code
+from tactile_graph import locks
+from tactile_graph.compiled import Kernel, compiled_as_is, machine_code, preparing, whole
+from tactile_graph.compiled.preparing import told_by
 
 VALUES = np.array([3.0, 1.0, 4.0, 1.0, 5.0])
 KERNELS = ("doubled", "summed", "spread", "total")
@@ -76,6 +81,7 @@ def test_the_next_run_loads_what_was_kept_and_can_raise(fresh: Any) -> None:
         again(np.ones(helpers_kernels.MOST + 2))
 
 
+@pytest.mark.slow
 def test_what_was_kept_runs_without_the_compiler(tmp_path: Path) -> None:
     """A process of its own: this one has loaded the compiler long since."""
     code = """
@@ -121,3 +127,81 @@ def test_a_function_that_numba_alone_compiles_may_call_kernels(fresh: Any) -> No
     assert twice(VALUES) == 62.0
     with pytest.raises(ValueError, match="too many values"):
         twice(np.ones(helpers_kernels.MOST + 2))
+
+
+def test_what_another_process_makes_is_waited_for_and_loaded(
+    fresh: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(preparing, "WORTH_A_LINE_S", -1.0)
+    theirs = whole.entry_of(fresh().spread.loops)
+    mine = whole.entry_of(helpers_kernels.spread.loops)
+    assert theirs._cache._claim.take()
+    made: list[float] = []
+    with told_by(preparing.Line()):
+        waiting = threading.Thread(target=lambda: made.append(mine(VALUES)))
+        waiting.start()
+        while "another process compiles spread" not in capsys.readouterr().err:
+            time.sleep(0.01)
+        assert not made
+        theirs._cache._claim.release()
+        waiting.join()
+    assert made == [3.0]
+
+
+def test_who_finds_it_made_meanwhile_does_not_make_it_again(fresh: Any) -> None:
+    first, second = (whole.entry_of(fresh().spread.loops) for _ in range(2))
+    assert first(VALUES) == second(VALUES) == 3.0
+    assert [sum(d.stats.cache_hits.values()) for d in (first, second)] == [0, 1]
+
+
+def test_what_another_process_makes_is_not_made_ahead(fresh: Any, tmp_path: Path) -> None:
+    loops, types = fresh().spread.loops, (numba.typeof(VALUES),)
+    other = whole.entry_of(loops)
+    assert other._cache._claim.take()
+    machine_code.make_ahead(loops, types)
+    assert kept(tmp_path) == set()
+    other._cache.let_go()
+    machine_code.make_ahead(loops, types)
+    assert kept(tmp_path) == {"helpers_kernels.spread"}
+
+
+def test_loops_that_cannot_be_compiled_leave_no_claim(fresh: Any) -> None:
+    entry = whole.entry_of(fresh().spread.loops)
+    for _ in range(2):
+        with pytest.raises(numba.TypingError):
+            entry("no array")
+    assert not entry._cache._claim.held
+
+
+def test_a_folder_without_locks_serves(fresh: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_locks(file: object) -> None:
+        raise OSError(errno.ENOLCK, "no locks available")
+
+    monkeypatch.setattr(locks, "_lock", no_locks)
+    assert fresh().spread.compiled(VALUES) == 3.0
+
+
+@compiled_as_is
+def assigned(values: Any, n: int) -> float:
+    """Sort a copy and write it over another: functions and an error of numba's own."""
+    copy = np.zeros(n)
+    copy[:] = np.sort(values)
+    return float(copy[0])
+
+
+@pytest.mark.slow
+def test_numbas_own_functions_serve_entries_and_others_alike() -> None:
+    entry = whole.entry_of(assigned.loops)
+    assert entry(VALUES, 5) == 1.0
+    with pytest.raises(ValueError, match="cannot assign to a slice what has another shape"):
+        entry(VALUES, 4)
+
+    @numba.njit
+    def alone(values: Any) -> float:
+        copy = np.zeros(5)
+        copy[:] = np.sort(values)
+        return float(copy[-1])
+
+    assert alone(VALUES) == 5.0
+    with pytest.raises(ValueError, match=r"shape \(5,\) from input of shape \(3,\)"):
+        alone(VALUES[:3])

@@ -90,4 +90,4 @@ def test_comments_and_other_functions_do_not_count() -> None:
 def test_kernels_beneath_are_counted_once() -> None:
     from helpers_kernels import spread
 
-    assert Reach(spread.loops).n_kernels == 3
+    assert len(Reach(spread.loops).sizes) == 3

@@ -1,0 +1,75 @@
+"""Let one process at a time do what only one may; the system frees the lock of one that dies."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import IO
+
+Name = str | os.PathLike[str]
+
+
+class Lock:
+    """A lock on a file of its own, held by one process, and within it by one holder, at a time.
+
+    Parameters
+    ----------
+    name : path
+        Of the lock's file. It is made when the lock is first taken, and stays: were it removed,
+        a second process could lock a new file of the same name beside the first.
+    """
+
+    def __init__(self, name: Name) -> None:
+        self.path = Path(name)
+        self._file: IO[bytes] | None = None
+
+    @property
+    def held(self) -> bool:
+        """Whether this holder has it."""
+        return self._file is not None
+
+    def take(self) -> bool:
+        """Take the lock if nobody holds it; return whether it is held now.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be made, or its file system knows no locks.
+        """
+        if self._file is None:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            file = self.path.open("ab")
+            try:
+                _lock(file)
+            except BlockingIOError:
+                file.close()
+            except BaseException:
+                file.close()
+                raise
+            else:
+                self._file = file
+        return self.held
+
+    def release(self) -> None:
+        """Let the next one take it; nothing if it is not held."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(file: IO[bytes]) -> None:
+        file.seek(0)
+        try:
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        except PermissionError as error:
+            raise BlockingIOError(*error.args) from error
+
+else:
+    import fcntl
+
+    def _lock(file: IO[bytes]) -> None:
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,0 +1,43 @@
+"""One holder at a time, among processes too, and a process that dies leaves the lock free."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from tactile_graph.locks import Lock
+
+HOLDER = """
+import sys
+from tactile_graph.locks import Lock
+lock = Lock(sys.argv[1])
+print(lock.take(), flush=True)
+sys.stdin.read()
+"""
+
+
+def test_one_holder_at_a_time(tmp_path: Path) -> None:
+    first, second = Lock(tmp_path / "in" / "a.lock"), Lock(tmp_path / "in" / "a.lock")
+    assert first.take()
+    assert first.take()
+    assert not second.take()
+    first.release()
+    first.release()
+    assert second.take()
+    assert (first.held, second.held) == (False, True)
+    second.release()
+
+
+def test_a_process_that_dies_leaves_it_free(tmp_path: Path) -> None:
+    name = tmp_path / "a.lock"
+    lock = Lock(name)
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(name)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline().strip() == b"True"
+        assert not lock.take()
+        holder.kill()
+    assert lock.take()
+    lock.release()
