@@ -171,7 +171,7 @@ def step(name: str, reads: Any, **settings: Any) -> Node:
     )
 
 
-def fitted(name: str, volts: str, pad: str, evened: bool) -> dict[str, Node]:
+def fitted(name: str, volts: str, pad: str) -> dict[str, Node]:
     """Return what the pipeline of that name does behind its node ``footprint``.
 
     Parameters
@@ -180,9 +180,7 @@ def fitted(name: str, volts: str, pad: str, evened: bool) -> dict[str, Node]:
     volts : str
         The node whose volts are localised.
     pad : str
-        What the likelihood takes for the pad.
-    evened : bool
-        Whether that pad knows gains of the loads.
+        What the likelihood takes for the pad; evened by it where it was learned.
     """
     if name == "circle-3":
         return {
@@ -196,35 +194,31 @@ def fitted(name: str, volts: str, pad: str, evened: bool) -> dict[str, Node]:
     if name == "circle-by-order":
         ports = {"image": volts, "touched": "footprint"}
         return {"circle": step("footprint_by_order", ports, pad="thesis", on_pad="whole")}
-    even = {"even": step("correct_readings", "grams", pad=pad)} if evened else {}
+    learned = pad != "thesis"
+    even = {"even": step("correct_readings", "grams", pad=pad)} if learned else {}
+    reads = "even" if learned else "grams"
     return {
         "siemens": step("decouple", volts, pad="thesis"),
         "grams": step("force", "siemens", pad=pad),
         **even,
-        "circle": step(
-            "footprint_disc", "even" if evened else "grams", pad=pad, on_pad="whole", precision=0.2
-        ),
+        "circle": step("footprint_disc", reads, pad=pad, on_pad="whole", precision=0.2),
     }
 
 
 def localisers(pad: Path) -> dict[str, Pipeline]:
     """Return each localiser as shipped, and behind what the learned pad corrects."""
-    learned = load_pad(pad).learned
-    assert learned is not None
     shipped: dict[str, Node] = {"footprint": step("threshold", "frame", level_v=0.01)}
     corrected = {
         "readings": step("correct_readings", "frame", pad=str(pad)),
         "filled": step("inpaint", "readings"),
         "footprint": step("threshold_learned", "filled", pad=str(pad)),
+        "volts": step("correct_readings", "frame", pad=str(pad), keep_stuck=True),
     }
     found = {}
     for name in LOCALISERS:
         both = {
-            "shipped": {**shipped, **fitted(name, "frame", "thesis", False)},
-            "learned": {
-                **corrected,
-                **fitted(name, "readings", str(pad), learned.gain_of == "gram"),
-            },
+            "shipped": {**shipped, **fitted(name, "frame", "thesis")},
+            "learned": {**corrected, **fitted(name, "volts", str(pad))},
         }
         for how, nodes in both.items():
             text = {
@@ -282,37 +276,36 @@ def recovered(bench: Recorder, pad: Path) -> dict[str, str]:
     }  # fmt: skip
 
 
-def of_kind(kind: Kind, n_scenes: int, rng: np.random.Generator, folder: Path) -> list[str]:
-    """Learn a pad of a kind from recordings, and return the cells of its row."""
+def of_kind(
+    kind: Kind, n_scenes: int, rng: np.random.Generator, folder: Path
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Learn a pad of a kind from recordings; return what came back, and the localisers' errors."""
     bench = Recorder(kind, rng)
     files = folder / "empty.npz", folder / "discs.npz"
     write_npz(files[0], bench.empty(100))
     write_npz(files[1], bench.frames(N_DISCS))
     pad = folder / "pad.yaml"
     learn("--empty", files[0], files[1], "--pad", "thesis", "-o", pad)
-    row = list(recovered(bench, pad).values())
-    frames = list(bench.frames(n_scenes))
-    for pipeline in localisers(pad).values():
+    frames, errors = list(bench.frames(n_scenes)), {}
+    for name, pipeline in localisers(pad).items():
         centre, radius, unanswered = off_cm(pipeline, frames)
-        row.append(f"{centre:.3f} / {radius:.3f}" + (f", {unanswered} none" if unanswered else ""))
-    return row
+        errors[name] = f"{centre:.3f} / {radius:.3f}" + (f", {unanswered} none" * bool(unanswered))
+    return recovered(bench, pad), errors
 
 
 def pads(kinds: Sequence[str], n_scenes: int, seed: int) -> None:
-    """Print a row for each kind of pad."""
-    head = ["pad", "noise / mV", "offset off by / mV", "dead", "stuck", "gains alike",
-            "turn-on / g", "sigma, voids", *localisers_named()]  # fmt: skip
-    print("| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|")
+    """Print what came back of each kind of pad, and then what the localisers make of it."""
+    rows: list[tuple[dict[str, str], dict[str, str]]] = []
     for name in kinds:
         rng = np.random.default_rng([seed, *name.encode()])
         with tempfile.TemporaryDirectory() as folder:
             row = of_kind(LEARNED_KINDS[name], n_scenes, rng, Path(folder))
-        print("| " + " | ".join([name, *row]) + " |", flush=True)
-
-
-def localisers_named() -> list[str]:
-    """Return the heads of the localisers' columns."""
-    return [f"{name}, {how} / cm" for name in LOCALISERS for how in ("shipped", "learned")]
+        rows.append(({"pad": name, **row[0]}, {"pad": name, **row[1]}))
+    for which in (0, 1):
+        head = list(rows[0][which])
+        print("\n| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|")
+        for both in rows:
+            print("| " + " | ".join(both[which].values()) + " |")
 
 
 def main() -> None:

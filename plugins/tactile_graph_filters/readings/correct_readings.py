@@ -19,6 +19,10 @@ class CorrectReadings:
     ----------
     pad : str or mapping
         A file that ``tactile-graph learn-pad`` has written.
+    keep_stuck : bool
+        Whether stuck elements keep what they read: before ``decouple`` or a localiser that
+        decouples, as they pull on their column whether anybody believes them or not. The step
+        once more behind ``force`` makes them invalid.
 
     Raises
     ------
@@ -31,20 +35,25 @@ class CorrectReadings:
     -----
     Offsets belong to images of the quantity that was recorded, gains to that or to grams, as the
     file says; an image gets what belongs to its quantity. Dead, stuck, noisy and missing elements
-    become invalid; readings below the offset stay negative.
+    become invalid in either, and in siemens and grams made of volts or counts. Readings below the
+    offset stay negative.
     """
 
     stateless = True
 
-    def __init__(self, *, pad: str | dict[str, Any]) -> None:
+    def __init__(self, *, pad: str | dict[str, Any], keep_stuck: bool = False) -> None:
         from tactile_graph_pads.pad import learned_of
 
         learned = learned_of(pad)
         table = learned.table
         self._reading, self._gain_of = learned.reading, learned.gain_of
-        self._good: NDArray[np.bool_] = table.good
-        self._all_good = bool(table.good.all())
-        self._offset, self._gain = table.offset, table.gain
+        stuck = table.state == "stuck"
+        self._good: NDArray[np.bool_] = table.good | stuck if keep_stuck else table.good
+        self._all_good = bool(self._good.all())
+        self._offset, self._gain = np.where(stuck, 0.0, table.offset), table.gain
+        self._known = {self._reading, self._gain_of}
+        if self._reading in ("volt", "counts"):
+            self._known |= {"siemens", "gram"}
 
     def __call__(
         self, image: Image
@@ -61,7 +70,7 @@ class CorrectReadings:
         if image.shape != self._good.shape:
             rows, columns = self._good.shape
             raise ValueError(f"the pad has {rows} x {columns} elements, got {image.shape}")
-        if image.quantity not in (self._reading, self._gain_of):
+        if image.quantity not in self._known:
             raise ValueError(
                 f"the pad was learned from {self._reading}, got {image.quantity}: put this step "
                 "before what converts"

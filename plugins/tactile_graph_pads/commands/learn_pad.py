@@ -62,7 +62,7 @@ def learn_pad(
     if plots is not None:
         from tactile_graph_pads.learning.page import write_page
 
-        write_page(plots, found, making)
+        write_page(plots, found, making, "my-pad.yaml" if output is None else output.name)
         click.echo(f"wrote {plots}")
 
 

@@ -28,7 +28,7 @@ li { margin: 2px 0 }
 """
 
 
-def write_page(path: Path, found: LearnedPad, making: Making) -> None:
+def write_page(path: Path, found: LearnedPad, making: Making, pad: str) -> None:
     """Write the page, whole or not at all.
 
     Parameters
@@ -36,11 +36,13 @@ def write_page(path: Path, found: LearnedPad, making: Making) -> None:
     path : Path
     found : LearnedPad
     making : Making
+    pad : str
+        The pad file's name, for the nodes of a pipeline.
     """
-    write_whole(path, page(found, making))
+    write_whole(path, page(found, making, pad))
 
 
-def page(found: LearnedPad, making: Making) -> str:
+def page(found: LearnedPad, making: Making, pad: str) -> str:
     """Return the page as HTML."""
     rows = "".join(
         f"<tr><th scope=row>{escape(name)}</th><td>{escape(text)}</td></tr>"
@@ -52,7 +54,7 @@ def page(found: LearnedPad, making: Making) -> str:
         f"<table>{rows}</table>",
         f"<h2>What could not be told, and what to mind</h2><ul>{notes}</ul>" if notes else "",
         *(_figure(picture) for picture in pictures(found)),
-        f"<h2>In a pipeline</h2><pre>{escape(nodes(found, 'my-pad.yaml'))}</pre>",
+        f"<h2>In a pipeline</h2><pre>{escape(nodes(found, pad))}</pre>",
         f"</main><footer><p>{escape(making.made_by)}, {escape(making.made_at)}: "
         f"{len(making.recordings)} recordings.</p><pre>{escape(making.command)}</pre></footer>",
     ]

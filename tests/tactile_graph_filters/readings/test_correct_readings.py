@@ -69,8 +69,8 @@ def test_other_shapes_quantities_and_numbers_are_refused(pad: str) -> None:
     step = CorrectReadings(pad=pad)
     with pytest.raises(ValueError, match=r"the pad has 4 x 5 elements, got \(3, 3\)"):
         step(image(np.zeros((3, 3))))
-    with pytest.raises(ValueError, match="was learned from volt, got gram"):
-        step(image(np.zeros(SHAPE), "gram"))
+    with pytest.raises(ValueError, match="was learned from volt, got counts"):
+        step(image(np.zeros(SHAPE), "counts"))
     values = np.zeros(SHAPE)
     values[2, 3] = np.nan
     with pytest.raises(DataError, match="row 2, column 3"):
@@ -86,3 +86,18 @@ def test_the_level_is_the_learned_one(pad: str) -> None:
     assert ThresholdLearned(pad=pad, times=2.0)(image(values)).count == 1
     with pytest.raises(ValueError, match="was learned from volt, got raw"):
         ThresholdLearned(pad=pad)(image(values, "raw"))
+
+
+def test_a_stuck_element_may_be_kept_for_the_circuit_and_goes_behind_it(pad: str) -> None:
+    table = Path(pad).parent / "table.csv"
+    table.write_text(table.read_text().replace("2,1,11,1,1,good", "2,1,11,1,1,stuck"))
+    volts = image(np.full(SHAPE, 30.0))
+    kept = CorrectReadings(pad=pad, keep_stuck=True)(volts)
+    assert kept.valid is not None
+    assert kept.valid[2, 1]
+    assert kept.values[2, 1] == 30.0  # as it reads: its rest is no offset
+    assert np.argwhere(~kept.valid).tolist() == [[1, 2]]
+    behind = CorrectReadings(pad=pad)(image(np.full(SHAPE, 5.0), "siemens"))
+    assert behind.valid is not None
+    assert np.argwhere(~behind.valid).tolist() == [[1, 2], [2, 1]]
+    assert behind.values[0].tolist() == [5.0] * 5
