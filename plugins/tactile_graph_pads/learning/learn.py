@@ -197,41 +197,58 @@ def _of_empty(stack: Stack, rest: Resting, level: float, notes: list[str]) -> Le
     )  # fmt: skip
 
 
-def _of_objects(
-    objects: Stack, bare: Array, shows_from: float, known: _KnownPad, notes: list[str]
-) -> LearnedPad:
-    rest = known.rest
-    touched = bare >= shows_from
+class _Pressed(NamedTuple):
+    """What objects say of the elements, and all frames with that taken into account."""
+
+    silence: Silence
+    gains: Gains
+    good: Flags
+    under: Array
+    turn_on: TurnOn | None
+    evened: Array
+    placements: int
+
+
+def _pressed(objects: Stack, bare: Array, shows_from: float, known: _KnownPad) -> _Pressed:
+    rest, touched = known.rest, bare >= shows_from
     _refuse_untouched(touched, objects)
     new = placements(touched)
     silent = silence(touched[new], bare[new] >= PRESSED * shows_from, rest.good)
     good = rest.good & ~silent.dead
     recorded = np.where(np.isnan(objects.values[new]), rest.offset, objects.values[new])
     loads = known.load_of(recorded, touched[new])
-    gained = gains(loads, touched[new], good)
-    if not gained.stand_out:
-        notes.append(_no_gains(gained, len(new)))
-    evened = bare / gained.gain if known.loads == objects.image.quantity else bare
-    evened = filled(evened, good)
+    found = gains(loads, touched[new], good)
     under = loads[touched[new] & good]
-    turn_on = turn_on_of(under, known.least_load(max(shows_from, STEPS * rest.step)), known.loads)
-    curve = force_curve(evened[:, good], objects.weight_g, shows_from)
-    places = _places(objects)
-    level, right = _level(evened, places, shows_from)
-    found = LearnedPad(
-        replace(
-            _record(objects, rest, level),
-            gain_of=known.loads if gained.stand_out else None,
-            turn_on=turn_on,
-            curve=() if curve is None else curve.points,
-            saturated_from=_full_scale(objects.values, rest),
-        ),
-        _elements(rest, silent, gained.gain),
-        rest, silent, gained, known.loads, under, curve, None, right,
+    begins = known.least_load(max(shows_from, STEPS * rest.step))
+    evened = bare / found.gain if known.loads == objects.image.quantity else bare
+    return _Pressed(
+        silent, found, good, under, turn_on_of(under, begins, known.loads), filled(evened, good),
+        len(new),
     )  # fmt: skip
-    place = _place(objects, evened, places, found, good, notes)
-    notes += _weights_note(objects, curve) + _turn_on_note(turn_on)
-    return replace(found, place=place, notes=tuple(notes))
+
+
+def _of_objects(
+    objects: Stack, bare: Array, shows_from: float, known: _KnownPad, notes: list[str]
+) -> LearnedPad:
+    rest, seen = known.rest, _pressed(objects, bare, shows_from, known)
+    if not seen.gains.stand_out:
+        notes.append(_no_gains(seen.gains, seen.placements))
+    curve = force_curve(seen.evened[:, seen.good], objects.weight_g, shows_from)
+    places = _places(objects)
+    level, right = _level(seen.evened, places, shows_from)
+    learned = replace(
+        _record(objects, rest, level),
+        gain_of=known.loads if seen.gains.stand_out else None,
+        turn_on=seen.turn_on,
+        curve=() if curve is None else curve.points,
+        saturated_from=_full_scale(objects.values, rest),
+    )
+    place = _place(objects, seen, places, learned.touched_from, notes)
+    notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
+    return LearnedPad(
+        learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
+        known.loads, seen.under, curve, place, right, tuple(notes),
+    )  # fmt: skip
 
 
 def _level(
@@ -254,17 +271,18 @@ def _refuse_untouched(touched: Flags, objects: Stack) -> None:
 
 
 def _place(
-    objects: Stack, evened: Array, places: Sequence[Array | None], found: LearnedPad, good: Flags,
-    notes: list[str],
-) -> LearnedPlace | None:  # fmt: skip
+    objects: Stack, seen: _Pressed, places: Sequence[Array | None], level: float, notes: list[str]
+) -> LearnedPlace | None:
     told = [k for k, p in enumerate(places) if p is not None]
     if not told:
         notes.append("No places are known: no correction of place.")
         return None
     known = known_contacts(
-        [evened[k] for k in told], [p for p in places if p is not None],
-        _groups(objects.recording)[told], found.learned.touched_from,
-    )  # fmt: skip
+        [seen.evened[k] for k in told],
+        [p for p in places if p is not None],
+        _groups(objects.recording)[told],
+        level,
+    )
     n, n_groups = len(known.true), len(np.unique(known.group))
     if n < LEAST_PLACES or n_groups < LEAST_GROUPS:
         notes.append(
@@ -272,7 +290,7 @@ def _place(
             f"{LEAST_PLACES} in {LEAST_GROUPS} are needed for a correction of place."
         )
         return None
-    learned = learned_place(known, np.ones_like(good))  # the bad ones are filled
+    learned = learned_place(known, np.ones_like(seen.good))  # the bad ones are filled
     if not learned.helps:
         notes.append(
             "A correction of place would not help: recordings held out come out "

@@ -94,14 +94,7 @@ def resting(values: Array, where: str) -> Resting:
         raise DataError(where, "no element was ever read")
     held = np.where(np.isnan(values), np.nanmedian(np.where(missing, 0.0, values), axis=0), values)
     touched = _touched_frames(held)
-    if touched.mean() > MOST_TOUCHED:
-        first = int(np.flatnonzero(touched)[0])
-        raise DataError(
-            where,
-            f"not empty: in {touched.sum()} of {len(held)} frames, first in frame {first}, "
-            "neighbouring elements read far more than in the others; record the pad with nothing "
-            "on it, or give this recording as one of objects",
-        )
+    _refuse_touched(touched, where)
     kept = held[~touched]
     offset, noise, drift = _line(kept)
     step = step_of(kept)
@@ -224,6 +217,18 @@ def _odd(offset: Array, noise: Array, missing: Flags, step: float) -> tuple[Flag
     noisy = read & ~stuck & (noise > 4.0 * floor) if floor > 0.0 else np.zeros_like(read)
     still = read & ~stuck & (noise <= 1e-9 * usual) & (usual > step)
     return stuck, still, noisy
+
+
+def _refuse_touched(touched: Flags, where: str) -> None:
+    if touched.mean() <= MOST_TOUCHED:
+        return
+    first = int(np.flatnonzero(touched)[0])
+    raise DataError(
+        where,
+        f"not empty: in {touched.sum()} of {len(touched)} frames, first in frame {first}, "
+        "neighbouring elements read far more than in the others; record the pad with nothing on "
+        "it, or give this recording as one of objects",
+    )
 
 
 def _refuse_object(offset: Array, stuck: Flags, missing: Flags, where: str, rest: str) -> None:
