@@ -25,8 +25,9 @@ def test_an_empty_bench_reads_its_offsets_and_noise() -> None:
 def test_offsets_that_spoil_localisers_spoil_none_behind_a_learned_pad(tmp_path: Path) -> None:
     rng, kind = np.random.default_rng(3), learned_pad.LEARNED_KINDS["offsets 50 mV"]
     told, errors = learned_pad.of_kind(kind, 12, rng, tmp_path)
-    assert told["noise / mV"] == "1.00 (1.00)"
-    for name in ("circle-3", "circle-by-order"):
-        shipped, learned = (float(errors[f"{name}, {how}"].split()[0]) for how in
-                            ("shipped", "learned"))  # fmt: skip
-        assert learned < 0.4 * shipped
+    assert float(told["noise / mV"].split()[0]) == pytest.approx(1.0, rel=0.05)
+    shipped, learned = (
+        float(errors[f"circle-by-order, {how}"].split()[0]) for how in ("shipped", "learned")
+    )
+    assert learned < 0.2
+    assert learned < 0.4 * shipped

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Image
-from tactile_graph_filters.contacts.contacts import Contact, Contacts
+from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_filters.nan import require_finite
 
 
@@ -36,6 +36,13 @@ class PlacedContact(Contact):
         "load",
         "peak",
     )
+
+
+class PlacedContacts(NamedTuple):
+    """The contacts of an image, each with the deviation of its centre, and how many there are."""
+
+    contacts: tuple[PlacedContact, ...]
+    count: int  # type: ignore[assignment]
 
 
 class CorrectPlace:
@@ -75,8 +82,8 @@ class CorrectPlace:
             )
         self._place, self._reading = read_place(Path(learned.place)), learned.reading
 
-    def __call__(self, image: Image, contacts: Sequence[Contact]) -> Contacts:
-        """Return the contacts, each a `PlacedContact`; all but the centre as it was.
+    def __call__(self, image: Image, contacts: Sequence[Contact]) -> PlacedContacts:
+        """Return the contacts; all but the centre as it was.
 
         Raises
         ------
@@ -104,7 +111,7 @@ class CorrectPlace:
             _placed(c, *place, *std)
             for c, place, std in zip(contacts, places.tolist(), stds.tolist(), strict=True)
         ]
-        return Contacts(tuple(placed), len(placed))
+        return PlacedContacts(tuple(placed), len(placed))
 
 
 def _placed(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tactile_graph import Frame, loads
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import contacts
@@ -71,3 +72,20 @@ def test_a_pad_without_a_correction_or_another_image_is_refused(pad: str, tmp_pa
     step = CorrectPlace(pad=pad)
     with pytest.raises(ValueError, match="of raw on 12 x 16 elements, got raw on 4 x 4"):
         step(Image(np.zeros((4, 4)), (1.0, 1.0), (0.0, 0.0), "raw"), ())
+
+
+def test_what_takes_contacts_takes_placed_ones_and_guards_know_their_deviation(pad: str) -> None:
+    pipeline = loads(f"""
+pipeline: p
+source: {{step: sample, with: {{name: discs}}}}
+nodes:
+  touched: {{step: threshold, in: frame, with: {{level: 6.0}}}}
+  contacts: {{step: contacts, in: [frame, touched]}}
+  placed: {{step: correct_place, in: [frame, contacts.contacts], with: {{pad: {pad}}}}}
+  moved: {{step: align_contacts, in: placed.contacts, with: {{shift_cm: [1, 0]}}}}
+  tracks: {{step: track, in: placed.contacts}}
+outputs: [moved, tracks]
+""")
+    result = pipeline.run(Frame(two_spots()))
+    assert result["moved"].contacts[0].x_std_cm == pytest.approx(0.05)
+    assert len(result["tracks"].tracks) == 2
