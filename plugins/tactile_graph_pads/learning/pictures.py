@@ -49,8 +49,10 @@ def pictures(found: LearnedPad) -> Iterator[Picture]:
 def _empty_pad(found: LearnedPad) -> Picture:
     elements, unit = found.elements, UNITS[found.learned.reading]
     figure, (left, right) = _pair(_map_height(found))
-    _map(left, elements.noise, f"noise / {unit} (one standard deviation)", "viridis")
-    _map(right, elements.offset, f"offset / {unit}", "cividis")
+    _map(left, elements.noise, f"noise / {unit} (one standard deviation)", "viridis",
+         _middle(elements.noise[elements.good]))  # fmt: skip
+    _map(right, elements.offset, f"offset / {unit}", "cividis",
+         _middle(elements.offset[elements.good]))  # fmt: skip
     for axes in (left, right):
         _mark(axes, elements.state)
     handles, labels = left.get_legend_handles_labels()
@@ -71,7 +73,7 @@ def _gains(found: LearnedPad) -> Picture:
     good = found.elements.good
     span = max(float(np.quantile(np.abs(np.log(found.elements.gain[good])), 0.98)), 0.02)
     limits = (float(np.exp(-span)), float(np.exp(span)))
-    _map(left, found.elements.gain, "gain, relative to the median", "RdBu_r", limits)
+    _map(left, found.elements.gain, "gain, relative to the median", "RdBu_r", limits, True)
     _mark(left, found.elements.state)
     first, second = (half.ravel() for half in found.gains.halves)
     right.plot(np.exp(first), np.exp(second), ".", color=AFTER, ms=4, label="element")
@@ -195,20 +197,24 @@ def _map_height(found: LearnedPad) -> float:
 
 
 def _map(
-    axes: Axes, values: Array, label: str, colours: str, limits: tuple[float, float] | None = None
-) -> None:
-    low, high = limits or (float(v) for v in np.quantile(values, [0.01, 0.99]))
-    scale: dict[str, Any] = {"vmin": low, "vmax": high}
-    if limits is not None:
-        from matplotlib.colors import LogNorm
+    axes: Axes, values: Array, label: str, colours: str, limits: tuple[float, float],
+    logarithmic: bool = False,
+) -> None:  # fmt: skip
+    from matplotlib.colors import LogNorm, Normalize
 
-        scale = {"norm": LogNorm(low, high)}
-    shown = axes.imshow(values, cmap=colours, interpolation="nearest", aspect="equal", **scale)
+    scale = LogNorm(*limits) if logarithmic else Normalize(*limits)
+    shown = axes.imshow(values, cmap=colours, interpolation="nearest", aspect="equal", norm=scale)
     axes.set(xlabel="column", ylabel="row")
     bar = axes.figure.colorbar(shown, ax=axes, shrink=0.9, extend="both")
     bar.set_label(label)
-    if limits is not None:
+    if logarithmic:
         _plain_ticks(bar.ax.yaxis)
+
+
+def _middle(values: Array) -> tuple[float, float]:
+    """Return what 1 and 99 % of values lie below."""
+    low, high = np.quantile(values, [0.01, 0.99]) if values.size else (0.0, 1.0)
+    return float(low), float(high)
 
 
 def _plain_ticks(axis: Any) -> None:
