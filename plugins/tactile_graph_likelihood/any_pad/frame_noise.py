@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def told_noise(pad: Pad, quantity: str, shape: tuple[int, ...]) -> Values | None
     shape : (int, int)
         Of the image.
     """
-    learned: Any = getattr(pad, "learned", None)
+    learned = pad.learned
     if learned is None or learned.reading != quantity or (learned.rows, learned.columns) != shape:
         return None
     return np.asarray(np.hypot(learned.table.noise, learned.drift))
