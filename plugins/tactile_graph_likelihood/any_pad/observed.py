@@ -11,6 +11,7 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import risen
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_pads.pad import Pad
 
@@ -54,7 +55,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     -------
     Readings
         Elements whose reading is no more than noise are `UNDER` the load that would have shown in
-        their column.
+        their column; of more than 1024 elements, all show from the same.
 
     Raises
     ------
@@ -91,7 +92,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
-    return Readings(grid, logs, states, touched, down / across)
+    found = Readings(grid, logs, states, touched, down / across, edge)
+    return uniform(found) if states.size > LARGE_PAD else found
 
 
 def _loads(
@@ -169,9 +171,9 @@ def ceiling_of(logs: Values) -> float:
     return float(values[at]) - 0.5 * ALIKE if ends else math.inf
 
 
-def uniform(readings: Readings) -> tuple[Readings, float]:
-    """Return readings whose elements all show from the same load, and that load."""
+def uniform(readings: Readings) -> Readings:
+    """Return readings whose elements all show from the same load: what large pads' kernels take."""
     under = readings.states == UNDER
-    least = float(np.median(readings.logs[under])) if under.any() else -math.inf
+    least_log = float(np.median(readings.logs[under])) if under.any() else readings.least_log
     states = np.where(under, OFF, np.where(readings.states == OVER, ON, readings.states))
-    return readings._replace(states=states.astype(np.uint8)), math.exp(least)
+    return readings._replace(states=states.astype(np.uint8), least_log=least_log)

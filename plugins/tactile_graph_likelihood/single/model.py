@@ -214,6 +214,9 @@ class Model:
 
     def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
+        if readings.least_log is not None:
+            noise = noise.copy()
+            noise[LEAST] = readings.least_log
         kind, n = self.kind, unknowns.call(self.kind, self.corners)
         if kind == ELLIPSE and belief is None:
             kind = OVAL

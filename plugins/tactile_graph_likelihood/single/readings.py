@@ -29,7 +29,8 @@ class Readings(NamedTuple):
 
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
     zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`. ``stretch`` is the
-    height of a cell over its width, where it is nearly 1 and was taken for that.
+    height of a cell over its width, where it is nearly 1 and was taken for that; ``least_log`` the
+    logarithm of the least load that shows, where the readings themselves say it.
     """
 
     grid: Values
@@ -37,6 +38,7 @@ class Readings(NamedTuple):
     states: States
     touched: int
     stretch: float = 1.0
+    least_log: float | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:

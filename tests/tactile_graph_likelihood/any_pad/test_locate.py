@@ -116,6 +116,7 @@ def test_readings_need_no_quantity_and_no_scale():
     found = LocateDisc()(Image(counts, (1.3, 1.3), (-0.15, -0.15), "counts"))
     assert math.hypot(found.x_cm - 9.0, found.y_cm - 11.0) < 0.35
     assert found.radius_cm == pytest.approx(5.0, abs=0.5)
+    assert found.fits
 
 
 def test_cells_that_are_nearly_square_lie_where_they_lie():

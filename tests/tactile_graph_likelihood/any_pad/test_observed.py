@@ -141,13 +141,15 @@ def test_alike_readings_with_many_above_are_no_end():
     assert ceiling_of(logs) == math.inf
 
 
-def test_one_least_load_stands_for_all():
+def test_on_a_large_pad_one_least_load_stands_for_all():
     values, _ = volts(np.random.default_rng(8))
     readings = observed(image_of(values), PAD)
-    found, least = uniform(readings)
+    found = uniform(readings)
     assert set(np.unique(found.states)) == {OFF, ON}
     under = readings.logs[readings.states == UNDER]
-    assert under.min() <= math.log(least) <= under.max()
+    assert under.min() <= found.least_log <= under.max()
+    large = observed(image_of(np.pad(values, 20, "reflect")), PAD)
+    assert UNDER not in large.states
 
 
 def test_the_footprint_is_what_rises_above_the_noise():
