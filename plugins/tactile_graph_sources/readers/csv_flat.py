@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph.wires.image import QUANTITIES
-from tactile_graph_sources.readers.csv_layout import Layout, is_blank, is_comment
+from tactile_graph_sources.readers.csv_layout import Layout
+from tactile_graph_sources.readers.csv_table import is_blank, is_comment
+from tactile_graph_sources.readers.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.stamps import Stamps
 from tactile_graph_sources.readers.told import Told
 
 NAME = "table, one frame a line"
@@ -25,14 +29,12 @@ _OWN = re.compile(
 
 
 class _Lines(NamedTuple):
-    """How a line becomes a frame.
-
-    ``lead`` counts the columns before the values; ``own`` is what the table says of itself.
-    """
+    """How a line becomes a frame; ``own`` is what a table of the project's own says of itself."""
 
     layout: Layout
     shape: tuple[int, int]
-    lead: int
+    pick: Callable[[list[str]], Sequence[str]]
+    stamps: Stamps
     own: Told
 
 
@@ -52,24 +54,29 @@ def read(reading: Reading) -> Iterator[Frame]:
     layout = reading.head.layout or Layout("unclear")
     if layout.trouble:
         raise DataError(str(reading.path), layout.trouble)
-    lead = max(layout.columns.values(), default=-1) + 1
-    own = _own_word(reading.head, layout.width - lead)
-    lines = _Lines(layout, _shape(reading, own, layout.width - lead), lead, own)
+    own = _own_word(reading.head, len(layout.cells))
+    shape = _shape(reading, layout, own)
+    lines = _Lines(layout, shape, _picker(layout.cells), Stamps(reading, layout), own)
+    reading.recognised(layout.why, layout.assumed)
     reading.report.expect(reading.count_bytes(b"\n"))
-    header = layout.header
     for number, line in reading.text():
         if is_blank(line) or is_comment(line):
             continue
-        try:
-            row = layout.dialect.row(line, layout.width)
-        except ValueError as error:
-            if not header:
-                reading.damaged(number, str(error))
-            header = False
+        if number < layout.first_line:
+            if is_row(line) and len(fields := layout.dialect.fields(line)) != layout.width:
+                reading.damaged(number, f"{len(fields)} values, not {layout.width}")
             continue
-        frame = _frame(reading, lines, number, row)
+        frame = _frame(reading, lines, number, line)
         if frame is not None:
             yield frame
+
+
+def _picker(cells: tuple[int, ...]) -> Callable[[list[str]], Sequence[str]]:
+    """Return what takes a line's cells out of its fields: a slice where they stand together."""
+    first, last = cells[0], cells[-1] + 1
+    if cells == tuple(range(first, last)):
+        return lambda fields: fields[first:last]
+    return lambda fields: [fields[k] for k in cells]
 
 
 def _own_word(head: Head, n_values: int) -> Told:
@@ -88,31 +95,47 @@ def _own_word(head: Head, n_values: int) -> Told:
     return Told(rows, columns, (x, y), (left, top), quantity)
 
 
-def _shape(reading: Reading, own: Told, n_values: int) -> tuple[int, int]:
-    told = reading.told
+def _shape(reading: Reading, layout: Layout, own: Told) -> tuple[int, int]:
+    shape = layout.shape
     if own.rows is not None and own.columns is not None:
-        told.agree(str(reading.path), own.rows, own.columns)
-        return own.rows, own.columns
-    return told.shape_of(str(reading.path), n_values)
+        shape = own.rows, own.columns
+    if shape is not None:
+        reading.told.agree(str(reading.path), *shape)
+        return shape
+    return reading.told.shape_of(str(reading.path), len(layout.cells))
 
 
-def _frame(reading: Reading, lines: _Lines, number: int, row: list[float]) -> Frame | None:
-    """Return the frame of one line; None where its number was there before."""
-    layout, shape, lead, own = lines
-    if "frame" in layout.columns:
-        index = row[layout.columns["frame"]]
-        if reading.is_repeat(number, index, f"frame {index:g}"):
-            return None
-    time_s = None
-    if "time" in layout.columns:
-        time_s = row[layout.columns["time"]] * layout.time_factor
-        if not np.isfinite(time_s):
-            reading.damaged(number, "the time is no number")
-            return None
+def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | None:
+    """Return the frame of one line; None where it is damaged or was there before."""
+    layout, shape, pick, stamps, own = lines
+    try:
+        fields = layout.dialect.texts(line, layout.width)
+        texts = pick(fields)
+        if "_" in line:
+            refuse_underscore(" ".join(texts))
+        cells = np.array(floats(texts))
+        index, time_s = stamps.of(fields)
+    except ValueError as error:
+        reading.damaged(number, str(error))
+        return None
+    if index is not None and reading.is_repeat(number, index, f"frame {index:g}"):
+        return None
+    said = layout.said
     return reading.frame(
-        np.array(row[lead:]).reshape(shape),
-        pitch_cm=own.pitch_cm,
+        _matrix(reading.told, layout, cells, shape),
+        pitch_cm=own.pitch_cm or said.pitch_cm,
         origin_cm=own.origin_cm,
-        quantity=own.quantity or "raw",
+        quantity=own.quantity or said.quantity,
+        factor=1.0 if own.quantity else said.factor,
         time_s=time_s,
     )
+
+
+def _matrix(
+    told: Told, layout: Layout, cells: NDArray[Any], shape: tuple[int, int]
+) -> NDArray[Any]:
+    if not layout.places:
+        return told.laid_out(cells, *shape)
+    matrix = np.full(shape[0] * shape[1], np.nan)
+    matrix[list(layout.places)] = cells
+    return matrix.reshape(shape)

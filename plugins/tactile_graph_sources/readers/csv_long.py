@@ -8,12 +8,16 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.csv_layout import Layout, is_blank, is_comment
+from tactile_graph_sources.readers.csv_layout import Layout
+from tactile_graph_sources.readers.csv_table import is_blank, is_comment
+from tactile_graph_sources.readers.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.stamps import Stamps
 
-NAME = "table, one cell a line (frame, row, col, value)"
+NAME = "table, one cell a line (row, column, value)"
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
 _BATCH = 4096
@@ -28,16 +32,26 @@ def read(reading: Reading) -> Iterator[Frame]:
     """Yield a frame for each frame number, in the order in which the numbers first appear.
 
     The cells may come in any order, so all are gathered first, as 48 bytes each. A cell the
-    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1.
+    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1. Without
+    a number, cells of one time are a frame, or those until the first place comes again.
+
+    Raises
+    ------
+    DataError
+        If nothing says where a frame ends.
     """
-    cells, lines = _gather(reading, reading.head.layout or Layout("long"))
+    layout = reading.head.layout or Layout("long")
+    cells, lines = _gather(reading, layout)
     if not len(cells):
         return
-    frame, row, column = cells[:, 0], cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
+    row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
     first = 0 if min(row.min(), column.min()) == 0 else 1
-    rows = reading.told.rows or int(row.max()) + 1 - first
-    columns = reading.told.columns or int(column.max()) + 1 - first
+    rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
+    columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
+    frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
+    reading.recognised(f"{layout.why}; {how}", layout.assumed)
+    said = layout.said
     numbers, starts, group = np.unique(frame, return_index=True, return_inverse=True)
     reading.report.expect(len(numbers))
     order = np.argsort(group, kind="stable")
@@ -51,8 +65,55 @@ def read(reading: Reading) -> Iterator[Frame]:
         values[place[kept]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]
         yield reading.frame(
-            values.reshape(rows, columns), time_s=None if np.isnan(time_s) else float(time_s)
+            values.reshape(rows, columns),
+            time_s=None if np.isnan(time_s) else float(time_s),
+            pitch_cm=said.pitch_cm,
+            quantity=said.quantity,
+            factor=said.factor,
         )
+
+
+def _frame_of_each(
+    reading: Reading, layout: Layout, cells: Cells, place: NDArray[np.intp]
+) -> tuple[Cells, str]:
+    """Return the number of each cell's frame, and how it was found, in words."""
+    if "frame" in layout.roles:
+        return cells[:, 0], "frames by their numbers"
+    scan = _scans(place)
+    if "time" not in layout.roles and "clock" not in layout.roles:
+        if scan is None:
+            raise DataError(
+                str(reading.path),
+                "cells come again in no steady order and no column numbers the frames; "
+                "give frame_column",
+            )
+        return scan, "a frame ends where its first place comes again"
+    _, by_time = np.unique(cells[:, 1], return_inverse=True)
+    sizes = np.bincount(by_time)
+    n_places = len(np.unique(place))
+    if np.median(sizes) == n_places or (scan is None and sizes.max() <= n_places):
+        return by_time.astype(np.float64), "cells of one time are a frame"
+    if scan is not None:
+        return scan, "a frame ends where its first place comes again"
+    raise DataError(
+        str(reading.path),
+        f"its times change after {np.median(sizes):g} cells, its {n_places} places come in no "
+        "steady order, and no column numbers the frames; give frame_column",
+    )
+
+
+def _scans(place: NDArray[np.intp]) -> Cells | None:
+    """Return the number of the scan each cell belongs to; None where the order is not steady.
+
+    A scan ends where the next cell stands no later than the last one in the order of the first.
+    """
+    _, first_seen, which = np.unique(place, return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first_seen))[which]
+    scan = np.concatenate([[0], np.cumsum(np.diff(rank) <= 0)])
+    sizes = np.bincount(scan)
+    # In no steady order scans break off everywhere: then they hold half of the places or fewer.
+    steady = np.median(sizes) > 0.5 * len(first_seen)
+    return scan.astype(np.float64) if steady else None
 
 
 def _first_of_each(
@@ -81,13 +142,13 @@ def _first_of_each(
 
 def _gather(reading: Reading, layout: Layout) -> tuple[Cells, NDArray[np.intp]]:
     """Return frame, time (s), row, column and value of each cell, shape (N, 5), and its line."""
-    text = reading.text()
-    next(_content(text), None)  # the header
+    text = (pair for pair in reading.text() if pair[0] >= layout.first_line)
+    stamps = Stamps(reading, layout)
     cells, numbers = [np.empty((0, 5))], [np.empty(0, dtype=np.intp)]
     while batch := list(islice(text, _BATCH)):
         found = _at_once(layout, [line for _, line in batch])
         if found is None:
-            found, kept = _one_by_one(reading, layout, batch)
+            found, kept = _one_by_one(reading, layout, stamps, batch)
         else:
             kept = [number for number, _ in batch]
         cells.append(found)
@@ -101,17 +162,19 @@ def _content(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
 
 def _chosen(layout: Layout, table: Cells) -> Cells | None:
     """Return a table's columns in our order; None where a row or column is no place on a pad."""
-    where = layout.columns
-    frame = where.get("frame", where.get("time"))
+    where = layout.roles
     chosen = np.empty((len(table), 5))
-    chosen[:, 0] = 0.0 if frame is None else table[:, frame]
+    chosen[:, 0] = table[:, where["frame"]] if "frame" in where else 0.0
     chosen[:, 1] = table[:, where["time"]] * layout.time_factor if "time" in where else np.nan
     chosen[:, 2:] = table[:, [where["row"], where["column"], where["value"]]]
-    places = chosen[:, 2:4]
-    sound = np.isfinite(chosen[:, 0]).all() and np.isfinite(places).all()
-    if not sound or not ((places >= 0) & (places < _LARGEST) & (places % 1 == 0)).all():
-        return None
-    return chosen
+    return chosen if _are_places(chosen) else None
+
+
+def _are_places(cells: Cells) -> bool:
+    places = cells[:, 2:4]
+    if not (np.isfinite(cells[:, 0]).all() and np.isfinite(places).all()):
+        return False
+    return bool(((places >= 0) & (places < _LARGEST) & (places % 1 == 0)).all())
 
 
 def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
@@ -121,6 +184,7 @@ def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
     if (
         separator is None
         or "_" in text
+        or "clock" in layout.roles
         or any(line.count(separator) != layout.width - 1 for line in lines)
     ):
         return None
@@ -134,18 +198,25 @@ def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
 
 
 def _one_by_one(
-    reading: Reading, layout: Layout, batch: list[tuple[int, str]]
+    reading: Reading, layout: Layout, stamps: Stamps, batch: list[tuple[int, str]]
 ) -> tuple[Cells, list[int]]:
     """Return the cells of the lines that are in order, and report the others."""
     cells, numbers = [np.empty((0, 5))], []
+    where = [layout.roles[role] for role in ("row", "column", "value")]
     for number, line in _content(batch):
         try:
-            row = layout.dialect.row(line, layout.width)
+            fields = layout.dialect.texts(line, layout.width)
+            texts = [fields[k] for k in where]
+            refuse_underscore(" ".join(texts))
+            values = floats(texts)
+            index = floats([fields[layout.roles["frame"]]])[0] if "frame" in layout.roles else 0.0
+            timed = "time" in layout.roles or "clock" in layout.roles
+            time_s = stamps.time_s(fields) if timed else None
         except ValueError as error:
             reading.damaged(number, f"no cell: {str(error)[:80]}")
             continue
-        cell = _chosen(layout, np.array([row]))
-        if cell is None:
+        cell = np.array([[index, np.nan if time_s is None else time_s, *values]])
+        if not _are_places(cell):
             reading.damaged(number, f"no cell: {line.strip()[:60]!r} names no place on a pad")
         else:
             cells.append(cell)

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.names import NOTHING_TOLD, ColumnsTold
 
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """The settings of a recording; None where the file is to be believed."""
+    """The settings of a recording; None where the file is to be believed.
+
+    ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
+    ``skip`` how many frames are left out in front.
+    """
 
     rows: int | None = None
     columns: int | None = None
@@ -19,6 +27,25 @@ class Told:
     origin_cm: tuple[float, float] | None = None
     quantity: str | None = None
     sensor: str = ""
+    of_columns: ColumnsTold = NOTHING_TOLD
+    order: str = "rows"
+    transpose: bool = False
+    flip: str = ""
+    skip: int = 0
+
+    def laid_out(self, cells: NDArray[Any], rows: int, columns: int) -> NDArray[Any]:
+        """Return cells in a row as a matrix, by the order in which they come."""
+        if self.order == "columns":
+            return cells.reshape(columns, rows).T
+        return cells.reshape(rows, columns)
+
+    def turned(self, matrix: NDArray[Any]) -> NDArray[Any]:
+        """Return a matrix as the pad is to be seen."""
+        if self.transpose:
+            matrix = matrix.T
+        if self.flip in ("rows", "both"):
+            matrix = matrix[::-1]
+        return matrix[:, ::-1] if self.flip in ("columns", "both") else matrix
 
     def agree(self, where: str, rows: int, columns: int) -> None:
         """Refuse a shape that is not the one told, or is none at all.
