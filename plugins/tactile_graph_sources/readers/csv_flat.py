@@ -102,7 +102,7 @@ def _shape(reading: Reading, layout: Layout, own: Told) -> tuple[int, int]:
     if shape is not None:
         reading.told.agree(str(reading.path), *shape)
         return shape
-    return reading.told.shape_of(str(reading.path), len(layout.cells))
+    raise DataError(str(reading.path), reading.told.misfit(len(layout.cells)))
 
 
 def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | None:

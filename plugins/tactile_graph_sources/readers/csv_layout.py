@@ -33,6 +33,7 @@ from tactile_graph_sources.readers.csv_evidence import (
 )
 from tactile_graph_sources.readers.csv_table import ENDLESS, Table, table_of
 from tactile_graph_sources.readers.dialect import Dialect
+from tactile_graph_sources.readers.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.names import ColumnsTold
 from tactile_graph_sources.readers.preamble import Described
 from tactile_graph_sources.readers.told import Told
@@ -134,7 +135,7 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
         return None
     if table.named.places:
         return _placed(base, table, told)
-    told = _with_said(told, table.said)
+    told = told.with_said(table.said.rows, table.said.columns)
     return _unplaced(base, table, told)
 
 
@@ -198,13 +199,13 @@ def _timed(base: Layout, table: Table) -> Layout:
     if table.named.time_factor is not None:
         return replace(base, time_factor=table.named.time_factor)
     times = table.rows[:, base.roles["time"]]
-    factor, unit = _unit_of(times[np.isfinite(times)])
+    factor, unit = unit_of(times[np.isfinite(times)])
     return replace(
         base, time_factor=factor, assumed=(*base.assumed, f"times assumed to be in {unit}")
     )
 
 
-def _unit_of(times: Numbers) -> tuple[float, str]:
+def unit_of(times: Numbers) -> tuple[float, str]:
     """Return the factor and the name of the unit that times are most likely in."""
     steps = np.diff(times)
     steps = steps[steps > 0]
@@ -280,20 +281,18 @@ def _ordered(base: Layout, table: Table, shape: tuple[int, int]) -> tuple[int, .
 # -- no names of cells: by settings, groups and the numbers themselves ------------------------
 
 
-def _with_said(told: Told, said: Described) -> Told:
-    return replace(told, rows=told.rows or said.rows, columns=told.columns or said.columns)
-
-
 def _unplaced(base: Layout, table: Table, told: Told) -> Layout:
     base = _without_extra(base, table, told)
+    if told.rows is None and told.columns is None and _is_scan(table, base):
+        return replace(base, trouble=_scan_question())
     if base.trouble:
         return base
     width, (groups, run) = len(base.cells), table.groups
-    lead = bool(base.roles)
+    index = table.named.names[base.roles["frame"]] if "frame" in base.roles else "?"
+    # What pandas writes before each line numbers frames or the rows of one matrix alike.
+    lead = bool(base.roles) and not (table.named.names and not index and len(base.roles) == 1)
     kind, rows, why = _decide(table, base, told, lead)
     if kind == "stacked":
-        if _is_scan(table, base):
-            return replace(base, kind="unclear", trouble=_scan_question())
         return replace(
             base,
             kind=kind,
@@ -361,41 +360,17 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
 def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layout:
     """Return the layout of frames of ``width`` cells a line, their shape told, named or square."""
     base = replace(base, kind="flat", why=why)
-    if told.rows is not None or told.columns is not None:
-        shape = _told_shape(told, width)
-        if shape is None:
-            return base  # the error names the settings
-        return replace(base, shape=shape, places=_ordered(base, table, shape))
-    lengths = row_lengths(table.rows[:, base.cells])
-    side = isqrt(width)
-    likely = f"{lengths[0][0]} x {lengths[0][1]}" if lengths else ""
-    if side * side != width or width < 4:
-        asked = f"; as they lie they could be {likely}" if likely else ""
-        return replace(
-            base,
-            trouble=f"a frame is {width} values in a row, and nothing says its shape; give rows "
-            f"and columns whose product is that number{asked}",
-        )
-    clarity = row_length_clarity(table.rows[:, base.cells], side)
-    if lengths and lengths[0][1] != side and not clarity < CLEAR:
-        return replace(
-            base,
-            trouble=f"a frame is {width} values in a row: {side} x {side} by their number, "
-            f"{likely} by which cells lie together; give rows and columns",
-        )
-    assumed = () if clarity < CLEAR else (f"frames assumed to be square, {side} x {side}",)
+    if (told.rows or told.columns) and told.fits(width) is None:
+        return base  # the error names the settings
+    found = shape_of_cells(table.rows[:, base.cells], told)
+    if found.shape is None:
+        return replace(base, trouble=found.trouble)
     return replace(
         base,
-        shape=(side, side),
-        places=_ordered(base, table, (side, side)),
-        assumed=(*base.assumed, *assumed),
+        shape=found.shape,
+        places=_ordered(base, table, found.shape),
+        assumed=(*base.assumed, *found.assumed),
     )
-
-
-def _told_shape(told: Told, width: int) -> tuple[int, int] | None:
-    rows = told.rows or width // (told.columns or 1)
-    columns = told.columns or width // rows
-    return (rows, columns) if rows * columns == width else None
 
 
 def _without_extra(base: Layout, table: Table, told: Told) -> Layout:

@@ -22,6 +22,7 @@ _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
     r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?"
 )
+_DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 
 
@@ -46,7 +47,7 @@ def is_row(line: str) -> bool:
 def clock_s(text: str) -> float | None:
     """Return a date and time of day, or a time of day alone, in seconds; None where it is none.
 
-    Dates are counted from the year 1; only differences mean anything.
+    Only differences mean anything.
     """
     found = _CLOCK.fullmatch(text.strip().strip('"'))
     if found is None:
@@ -58,7 +59,7 @@ def clock_s(text: str) -> float | None:
             date = datetime.date(int(year or year2), int(month or month2), int(day or day2))
         except ValueError:
             return None
-        days = date.toordinal()
+        days = date.toordinal() - _DAY_0
     whole = days * 86400 + int(hour) * 3600 + int(minute) * 60 + int(second)
     return whole + (float(f"0.{part}") if part else 0.0)
 

@@ -13,8 +13,10 @@ from tactile_graph_sources.readers import (
     csv_long,
     csv_stacked,
     emed,
+    json_stack,
     npy,
     npz,
+    pictures,
     pliance,
     popu_bed,
     tekscan,
@@ -39,6 +41,7 @@ class Reader(Protocol):
 # The surest marks first; plain tables last, as any of the others could look like one.
 READERS: tuple[Reader, ...] = (
     npy,
+    pictures,
     npz,
     popu_bed,
     xsensor,
@@ -46,6 +49,7 @@ READERS: tuple[Reader, ...] = (
     pliance,
     emed,
     capfingerid,
+    json_stack,
     csv_long,
     csv_stacked,
     csv_flat,

@@ -48,6 +48,9 @@ _PAIRS = (
 _LETTER = re.compile(r"([a-z])(\d+)")
 _NUMBER = re.compile(r"\D*(\d{1,7})\D*")
 FEWEST_CELLS = 3
+MOST_NARROW = 8
+"""Columns of a table that may hold one cell a line, whatever else it holds."""
+_LETTERS = frozenset("nrycxijvzp")
 _RANGE = re.compile(r"(\d{1,7})\s*-\s*(\d{1,7})?|(\d{1,7})")
 
 
@@ -189,8 +192,8 @@ def named(header: Sequence[str]) -> Named:
         role = ROLES.get(name.lower()) or ROLES.get(base)
         if role is None or role in roles or k in cells:
             continue
-        if not name and k:
-            continue
+        if len(names) > MOST_NARROW and (role not in ("frame", "time") or name in _LETTERS):
+            continue  # of many columns called a, b, c, … none is the rows
         roles[role] = k
         if role == "time":
             factor = SECONDS.get(unit) or SECONDS.get(name.lower())
@@ -251,7 +254,7 @@ def _numbered(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...],
 
 
 def _from_zero(pairs: Sequence[tuple[int, int]]) -> Iterator[Place]:
-    """Yield places that count from 0 where they count from 1: 0 in any of them says so."""
-    first = 0 if any(0 in p for p in pairs) else 1
+    """Yield places that count from 0, where either of them counts from 1."""
+    row_0, column_0 = (min(1, *(p[k] for p in pairs)) for k in (0, 1))
     for row, column in pairs:
-        yield Place(row - first, column - first)
+        yield Place(row - row_0, column - column_0)

@@ -114,7 +114,10 @@ def _mat(reading: Reading, n_values: int) -> _Mat:
                 str(reading.path),
                 f"no table of corners says how its {n_values} cells lie; give rows and columns",
             )
-        rows, columns = told.shape_of(str(reading.path), n_values)
+        shape = told.fits(n_values)
+        if shape is None:
+            raise DataError(str(reading.path), told.misfit(n_values))
+        rows, columns = shape
         # The vendor counts down the columns.
         places = np.arange(n_values).reshape(rows, columns, order="F").argsort(axis=None)
         return _Mat((rows, columns), places, None)

@@ -68,7 +68,7 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
         side = isqrt(cells)
         square = side * side == cells and lines not in (1, cells)
         long = max(shape) > LONGEST_UNTOLD * min(shape)
-        if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or (long and lines > cells)):
+        if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
             as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
             raise DataError(
                 where,

@@ -66,7 +66,7 @@ class Stamps:
             self._days += _DAY_S
         self._last = at + self._days
         self._first = self._last if self._first is None else self._first
-        return round(self._last - self._first, 9)
+        return round(self._last - self._first, 6)
 
 
 def _by_format(text: str, given: str) -> float | None:
@@ -74,4 +74,4 @@ def _by_format(text: str, given: str) -> float | None:
         at = datetime.strptime(text.strip().strip('"'), given)
     except ValueError:
         return None
-    return (at.replace(tzinfo=None) - datetime(1900, 1, 1)).total_seconds()
+    return (at.replace(tzinfo=None) - datetime(2000, 1, 1)).total_seconds()

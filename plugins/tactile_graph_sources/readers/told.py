@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from numpy.typing import NDArray
@@ -69,27 +69,22 @@ class Told:
                 f"rows={self.rows}, columns={self.columns}; leave them out",
             )
 
-    def shape_of(self, where: str, n_values: int) -> tuple[int, int]:
-        """Return rows and columns of a frame that comes as ``n_values`` in a row.
+    def with_said(self, rows: int | None, columns: int | None) -> Told:
+        """Return the settings with a shape that the file says where they say none."""
+        return replace(self, rows=self.rows or rows, columns=self.columns or columns)
 
-        Raises
-        ------
-        DataError
-            If the settings do not fit, or nothing is told and the number is no square.
-        """
-        rows, columns = self.rows, self.columns
-        side = round(n_values**0.5)
-        if rows is None and columns is None and side * side == n_values:
-            rows = columns = side
-        elif rows is None and columns is not None:
-            rows = n_values // columns
-        elif columns is None and rows is not None:
-            columns = n_values // rows
-        if rows is None or columns is None or rows * columns != n_values or n_values == 0:
-            said = f"rows={self.rows}, columns={self.columns}" if rows or columns else "nothing"
-            raise DataError(
-                where,
-                f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
-                "give rows and columns whose product is that number",
-            )
-        return rows, columns
+    def fits(self, n_values: int) -> tuple[int, int] | None:
+        """Return rows and columns of so many values, by either or both; None where none fit."""
+        rows = self.rows or n_values // (self.columns or 1)
+        columns = self.columns or (n_values // rows if rows else 0)
+        return (rows, columns) if rows * columns == n_values > 0 else None
+
+    def misfit(self, n_values: int) -> str:
+        """Return what to say of values in a row that the told shape does not fit."""
+        said = (
+            f"rows={self.rows}, columns={self.columns}" if self.rows or self.columns else "nothing"
+        )
+        return (
+            f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
+            "give rows and columns whose product is that number"
+        )
