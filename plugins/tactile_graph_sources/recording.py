@@ -103,10 +103,18 @@ def recording(
         raise ValueError("path is an empty list; give at least one file")
     for one in paths:
         _check_file(one)
-    pitch = (pitch_cm, pitch_cm) if isinstance(pitch_cm, int | float) else pitch_cm
-    names = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
-    told = Told(
-        rows, columns, pitch, origin_cm, quantity, sensor, names, order, transpose, flip, skip
+    told = Told.of(
+        ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format),
+        rows=rows,
+        columns=columns,
+        pitch_cm=pitch_cm,
+        origin_cm=origin_cm,
+        quantity=quantity,
+        sensor=sensor,
+        order=order,
+        transpose=transpose,
+        flip=flip,
+        skip=skip,
     )
     index = 0
     for one in paths:
@@ -151,7 +159,7 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     reading = Reading(head, told, report, 0, label)
     found = islice(_frames(reading, reader), told.skip, None)
     frames = without_garbage(found, report, str(path))
-    return Opened(reader.NAME, lambda: reading.why, frames)
+    return Opened(reader.NAME, lambda: reading.why or "by its first lines", frames)
 
 
 def _check_file(path: Path) -> None:

@@ -33,6 +33,14 @@ class Told:
     flip: str = ""
     skip: int = 0
 
+    @classmethod
+    def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:
+        """Return what settings say, by their names; a pitch may be one number."""
+        pitch = settings.get("pitch_cm")
+        if isinstance(pitch, int | float):
+            settings["pitch_cm"] = (float(pitch), float(pitch))
+        return cls(of_columns=columns_told, **settings)
+
     def laid_out(self, cells: NDArray[Any], rows: int, columns: int) -> NDArray[Any]:
         """Return cells in a row as a matrix, by the order in which they come."""
         if self.order == "columns":
