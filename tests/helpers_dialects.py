@@ -5,12 +5,17 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph.steps import Report
+from tactile_graph_sources.recording import recording
 
 Array = NDArray[np.float64]
 
@@ -376,3 +381,73 @@ def dialects(pictures: bool = True) -> list[Dialect]:
     """Return all files; those of pictures take imageio."""
     plain = [_serial, _named, _longs, _spreadsheets, _matrices, _arrays]
     return [d for part in [*plain, *([_pictures] if pictures else [])] for d in part()]
+
+
+# -- what became of them -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Became:
+    """What reading a file came to: ``read``, ``refused`` or ``WRONG``, and in words."""
+
+    outcome: str
+    words: str
+    report: Report
+
+    def fits(self, dialect: Dialect) -> bool:
+        """Return whether that is what was to come of the file."""
+        if dialect.refused:
+            return self.outcome == "refused" and dialect.refused in self.words
+        return self.outcome == "read"
+
+
+def became(dialect: Dialect, folder: Path, told: Mapping[str, Any] | None = None) -> Became:
+    """Return what comes of reading a file, with the settings ``told``, against what it holds."""
+    path = folder / "recording"
+    path.write_bytes(dialect.content)
+    report = Report()
+    try:
+        frames = list(recording(path=path, report=report, **(told or {})))
+    except DataError as error:
+        return Became("refused", error.what, report)
+    values = [f.image.filled(np.nan) for f in frames]
+    if len(values) != len(dialect.values) or values[0].shape != dialect.values[0].shape:
+        return Became("WRONG", f"{len(values)} frames of {values[0].shape}", report)
+    if not np.allclose(values, dialect.values, equal_nan=True):
+        return Became("WRONG", "other values", report)
+    image = frames[0].image
+    pitch = tuple(round(p, 9) for p in image.pitch_cm)
+    if (image.quantity, pitch) != (dialect.quantity, dialect.pitch_cm or (1.0, 1.0)):
+        return Became("WRONG", f"{image.quantity}, pitch {pitch} cm", report)
+    times = [np.nan if f.time_s is None else f.time_s for f in frames]
+    truth = dialect.times_s
+    if truth is not None and not np.allclose(np.subtract(times, times[0]), truth - truth[0]):
+        return Became("WRONG", f"times {times[:3]} …", report)
+    return Became("read", "; ".join(report.counts), report)
+
+
+def mutated(content: bytes, rng: np.random.Generator) -> bytes:
+    """Return a file with one to six places of it changed, lost, doubled or cut off."""
+    data = bytearray(content)
+    for _ in range(int(rng.integers(1, 7))):
+        if not data:
+            break
+        at = int(rng.integers(len(data)))
+        length = int(rng.integers(1, 40))
+        kind = int(rng.integers(7))
+        if kind == 0:
+            data[at] = int(rng.integers(256))
+        elif kind == 1:
+            data[at] = int(rng.choice(list(b'-]0129BeE,;.\n\r\t "\x00\xff|[{:')))
+        elif kind == 2:
+            del data[at : at + length]
+        elif kind == 3:
+            data[at:at] = data[at : at + length]
+        elif kind == 4:
+            data[at:at] = bytes(rng.integers(0, 256, length, dtype=np.uint8))
+        elif kind == 5:
+            del data[at:]
+        else:
+            line_end = data.find(b"\n", at)
+            del data[at : line_end if line_end > 0 else len(data)]
+    return bytes(data)

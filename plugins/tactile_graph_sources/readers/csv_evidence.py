@@ -90,8 +90,13 @@ def _difference(cells: Numbers, lag: int) -> float:
 
 
 def _sound(cells: Numbers) -> Numbers:
-    """Return the cells with 0 for what is missing or too large to reckon with."""
-    return np.where(np.abs(cells) < 1e30, cells, 0.0)
+    """Return the cells with 0 for what is missing or too large to reckon with.
+
+    Each frame is scaled to its own spread: one of garbage must not drown the others.
+    """
+    cells = np.where(np.abs(cells) < 1e30, cells, 0.0)
+    spread = np.abs(cells - np.median(cells, axis=1, keepdims=True)).mean(axis=1, keepdims=True)
+    return np.divide(cells, spread, out=np.zeros_like(cells), where=spread > 0.0)
 
 
 def as_numbers(rows: Any) -> Numbers:

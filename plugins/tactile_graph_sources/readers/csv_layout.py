@@ -118,7 +118,7 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
         return None
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
     roles = _roles(table, told.of_columns)
-    trouble = _unnamed_value(table, roles) or _strange_column(table)
+    trouble = _unnamed_value(table, roles) or _strange_column(table, roles)
     if trouble:
         return replace(base, trouble=trouble)
     if table.named.is_long:
@@ -173,8 +173,8 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
     )
 
 
-def _strange_column(table: Table) -> str:
-    known = {*table.clocks, *table.labels}
+def _strange_column(table: Table, roles: dict[str, int]) -> str:
+    known = {*table.clocks, *table.labels, *roles.values()}
     words = [k for k in table.words if k not in known and k not in table.named.others]
     if not words:
         return ""

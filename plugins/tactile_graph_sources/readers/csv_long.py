@@ -91,7 +91,8 @@ def _frame_of_each(
     _, by_time = np.unique(cells[:, 1], return_inverse=True)
     sizes = np.bincount(by_time)
     n_places = len(np.unique(place))
-    if np.median(sizes) == n_places or (scan is None and sizes.max() <= n_places):
+    most = np.median(sizes) > 0.5 * n_places and sizes.max() <= n_places
+    if np.median(sizes) == n_places or (scan is None and most):
         return by_time.astype(np.float64), "cells of one time are a frame"
     if scan is not None:
         return scan, "a frame ends where its first place comes again"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import warnings
 import zipfile
@@ -87,9 +88,10 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
-            for page in iio.imiter(content):
-                yield _grey(where, np.asarray(page))
-                n += 1
+            for page in iio.imiter(content, plugin=_plugin(content)):
+                for matrix in _matrices(np.asarray(page)):
+                    yield _grey(where, matrix)
+                    n += 1
         except DataError:
             raise
         except Exception as error:  # every library below imageio has errors of its own
@@ -97,6 +99,24 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
                 text = str(error).partition("\n")[0][:120]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
             reading.damaged(f"page {n}", "cannot be read; the pages before it are kept")
+
+
+def _plugin(content: bytes) -> str:
+    """Return who reads a picture: left to itself imageio asks OpenCV too, which prints."""
+    if content[:2] not in (b"II", b"MM"):
+        return "pillow"
+    logger = logging.getLogger("tifffile")
+    if not logger.handlers:
+        logger.addHandler(logging.NullHandler())  # what is wrong comes as an exception as well
+    return "tifffile"
+
+
+def _matrices(page: NDArray[Any]) -> Iterator[NDArray[Any]]:
+    """Yield the pictures of what may be a stack of pages that TIFF holds together."""
+    if page.ndim == 4 or (page.ndim == 3 and page.shape[2] not in (3, 4)):
+        yield from page
+    else:
+        yield page
 
 
 def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:
