@@ -16,8 +16,8 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.formats import Reader, known, reader_of
 from tactile_graph_sources.readers.garbage import without_garbage
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.names import ColumnsTold
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.store import is_store, read_store
 

@@ -11,7 +11,7 @@ from typing import Any
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.measure import Measured, measure
-from tactile_graph_sources.readers.names import ColumnsTold
+from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.recording import opened
 

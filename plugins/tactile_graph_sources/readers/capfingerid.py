@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 
 NAME = "CapFingerId .txt"
 SHAPE = (27, 15)

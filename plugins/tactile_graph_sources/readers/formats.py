@@ -9,9 +9,6 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import (
     capfingerid,
-    csv_flat,
-    csv_long,
-    csv_stacked,
     emed,
     json_stack,
     npy,
@@ -24,6 +21,7 @@ from tactile_graph_sources.readers import (
 )
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables import flat, long, stacked
 
 
 class Reader(Protocol):
@@ -50,9 +48,9 @@ READERS: tuple[Reader, ...] = (
     emed,
     capfingerid,
     json_stack,
-    csv_long,
-    csv_stacked,
-    csv_flat,
+    long,
+    stacked,
+    flat,
 )
 
 

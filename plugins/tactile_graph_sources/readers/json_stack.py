@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, one_of
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.csv_layout import unit_of
-from tactile_graph_sources.readers.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.names import ROLES, named
-from tactile_graph_sources.readers.preamble import Described, described
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
+from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.names import ROLES, named
+from tactile_graph_sources.readers.tables.preamble import Described, described
 
 NAME = "JSON of frames"
 Cells = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph_sources.readers.names import NOTHING_TOLD, ColumnsTold
+from tactile_graph_sources.readers.tables.names import NOTHING_TOLD, ColumnsTold
 
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 

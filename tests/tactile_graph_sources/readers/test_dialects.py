@@ -143,9 +143,7 @@ def test_a_climbing_column_and_a_sum_behind_the_cells_are_no_cells(tmp_path: Pat
     assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(20)])
     np.testing.assert_array_equal([f.image.values for f in frames], SQUARE)
     path = text_of(tmp_path, "".join(f"{x},7\n" for x in lines))
-    with pytest.raises(
-        DataError, match="20 lines of 65 values could be one matrix or a frame a line"
-    ):
+    with pytest.raises(DataError, match="20 lines of 65 values could be one matrix"):
         frames_of(path)
     with pytest.raises(DataError, match="a line is 65 values, 64 of them cells by the settings"):
         frames_of(path, rows=8, columns=8)

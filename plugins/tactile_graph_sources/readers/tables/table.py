@@ -11,10 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-from tactile_graph_sources.readers.csv_evidence import Numbers, as_numbers, is_count
-from tactile_graph_sources.readers.dialect import MISSING, Dialect, clock_s, is_row
-from tactile_graph_sources.readers.names import ColumnsTold, Named, as_told, named
-from tactile_graph_sources.readers.preamble import Described, described
+from tactile_graph_sources.readers.tables.dialect import MISSING, Dialect, clock_s, is_row
+from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.tables.names import ColumnsTold, Named, as_told, named
+from tactile_graph_sources.readers.tables.preamble import Described, described
 
 FRAME_LINE = re.compile(
     r"\W*(?:frame|bild|image|trame|cuadro|scan|sample)\W*(\d{1,9})\b.{0,80}",

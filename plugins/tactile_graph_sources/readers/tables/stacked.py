@@ -9,11 +9,11 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.csv_layout import Layout
-from tactile_graph_sources.readers.csv_table import ENDLESS, FRAME_LINE, is_blank, is_comment
-from tactile_graph_sources.readers.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
+from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.tables.table import ENDLESS, FRAME_LINE, is_blank, is_comment
 
 NAME = "table of stacked matrices"
 

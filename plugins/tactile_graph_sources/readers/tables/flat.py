@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph.wires.image import QUANTITIES
-from tactile_graph_sources.readers.csv_layout import Layout
-from tactile_graph_sources.readers.csv_table import is_blank, is_comment
-from tactile_graph_sources.readers.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.stamps import Stamps
+from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
+from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.tables.stamps import Stamps
+from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.told import Told
 
 NAME = "table, one frame a line"

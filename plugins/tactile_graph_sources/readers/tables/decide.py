@@ -17,25 +17,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from math import isqrt
 
 import numpy as np
 
-from tactile_graph_sources.readers.csv_evidence import (
+from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
-    Numbers,
-    counts_up,
-    is_sum,
-    rises,
     row_length_clarity,
     row_lengths,
 )
-from tactile_graph_sources.readers.csv_table import ENDLESS, Table, table_of
-from tactile_graph_sources.readers.dialect import Dialect
-from tactile_graph_sources.readers.frame_shape import shape_of_cells
-from tactile_graph_sources.readers.names import ColumnsTold
-from tactile_graph_sources.readers.preamble import Described
+from tactile_graph_sources.readers.tables.extra import without_extra
+from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
+from tactile_graph_sources.readers.tables.layout import Layout, timed
+from tactile_graph_sources.readers.tables.names import ColumnsTold
+from tactile_graph_sources.readers.tables.table import ENDLESS, Table, table_of
 from tactile_graph_sources.readers.told import Told
 
 SMALLEST_SURE_SQUARE = 64
@@ -43,60 +39,6 @@ MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 LONGEST_UNTOLD = 4
 """Times its breadth: a matrix longer than that is more likely many frames."""
 _CLOCK = "clock"
-
-
-@dataclass(frozen=True)
-class Layout:
-    """What a table is; ``trouble`` says why it cannot be told.
-
-    Parameters
-    ----------
-    kind : str
-        ``long``, ``flat``, ``stacked`` or ``unclear``.
-    dialect : Dialect
-    width : int
-        Fields of a line.
-    first_line : int
-        Number of the first row, from 1.
-    roles : dict
-        Columns of frame, time (or clock), row, column and value.
-    cells : tuple of int
-        Columns that are cells.
-    shape : (int, int), optional
-        Rows and columns of a frame, where the table itself says so.
-    places : tuple of int
-        Where each cell lies in a frame, row by row; empty where that is the order of the columns.
-    rows : int
-        Of a stacked matrix.
-    blank_run : int
-        Blank lines that end a matrix.
-    time_factor : float
-        From the column of time to seconds.
-    time_format : str
-        Of the column of clock, where the settings say it.
-    said : Described
-        What the words before the table say.
-    why, assumed : str, tuple of str
-        How it was recognised, and what nobody said.
-    trouble : str
-    """
-
-    kind: str
-    dialect: Dialect = field(default_factory=Dialect)
-    width: int = 0
-    first_line: int = 1
-    roles: dict[str, int] = field(default_factory=dict)
-    cells: tuple[int, ...] = ()
-    shape: tuple[int, int] | None = None
-    places: tuple[int, ...] = ()
-    rows: int = 0
-    blank_run: int = 1
-    time_factor: float = 1.0
-    time_format: str = ""
-    said: Described = field(default_factory=Described)
-    why: str = ""
-    assumed: tuple[str, ...] = ()
-    trouble: str = ""
 
 
 def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
@@ -125,7 +67,7 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
         return _long(base, table)
     base = replace(base, roles=roles)
     if roles.get("time") is not None:
-        base = _timed(base, table)
+        base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format)
     cells = table.named.cells or tuple(
         k for k in range(table.width) if k not in roles.values() and k not in table.labels
@@ -194,34 +136,6 @@ def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tupl
     return (f"columns left out that are no cells ({', '.join(names[:6])})",) if names else ()
 
 
-def _timed(base: Layout, table: Table) -> Layout:
-    """Return the layout with the factor of its time; where nobody says the unit, it is assumed."""
-    if table.named.time_factor is not None:
-        return replace(base, time_factor=table.named.time_factor)
-    times = table.rows[:, base.roles["time"]]
-    factor, unit = unit_of(times[np.isfinite(times)])
-    return replace(
-        base, time_factor=factor, assumed=(*base.assumed, f"times assumed to be in {unit}")
-    )
-
-
-def unit_of(times: Numbers) -> tuple[float, str]:
-    """Return the factor and the name of the unit that times are most likely in."""
-    steps = np.diff(times)
-    steps = steps[steps > 0]
-    if len(times) and times[-1] > 1e17:
-        return 1e-9, "nanoseconds"
-    if len(times) and times[-1] > 1e14:
-        return 1e-6, "microseconds"
-    if len(times) and times[-1] > 1e11:
-        return 1e-3, "milliseconds"
-    if len(steps) and (times % 1 == 0).all() and np.median(steps) >= 5.0:
-        # Five seconds from frame to frame is no recording, five milliseconds is one.
-        late = np.median(steps) >= 5000.0
-        return (1e-6, "microseconds") if late else (1e-3, "milliseconds")
-    return 1.0, "seconds"
-
-
 # -- one cell a line ---------------------------------------------------------------------------
 
 
@@ -235,7 +149,7 @@ def _long(base: Layout, table: Table) -> Layout:
     if table.named.quantity != "raw":
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
     base = replace(base, kind="long", roles=roles, said=said)
-    base = _timed(base, table) if "time" in roles else base
+    base = timed(base, table) if "time" in roles else base
     return replace(
         base,
         why=f"its header names row ({names['row']!r}), column ({names['column']!r}) and value "
@@ -282,7 +196,7 @@ def _ordered(base: Layout, table: Table, shape: tuple[int, int]) -> tuple[int, .
 
 
 def _unplaced(base: Layout, table: Table, told: Told) -> Layout:
-    base = _without_extra(base, table, told)
+    base = without_extra(base, table, told)
     if told.rows is None and told.columns is None and _is_scan(table, base):
         return replace(base, trouble=_scan_question())
     if base.trouble:
@@ -371,96 +285,6 @@ def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layou
         places=_ordered(base, table, found.shape),
         assumed=(*base.assumed, *found.assumed),
     )
-
-
-def _without_extra(base: Layout, table: Table, told: Told) -> Layout:
-    """Return the layout without the columns before or behind the cells that nobody named.
-
-    They are found by what they hold: a number or a time climbs, a sum adds up.
-    """
-    if table.named.cells or base.roles or not base.cells:
-        return base
-    told_cells = (told.rows or 0) * (told.columns or 0)
-    cells, width = base.cells, len(base.cells)
-    if told_cells:
-        extra = width - told_cells
-        if extra <= 0 or extra > 2 or told.columns == width:
-            return base
-    elif told.columns is not None or told.rows is not None:
-        return base
-    else:
-        extra = 0 if _is_square(width) else 1 if _is_square(width - 1) and width > 9 else 0
-    if len(table.groups[0]) > 1:
-        return _row_numbers(base, table)
-    values = table.rows
-    first, last = values[:, cells[0]], values[:, cells[-1]]
-    if extra == 0:
-        return _doubted(base, table) if not told_cells and rises(first) else base
-    if extra == 2 and rises(first) and rises(values[:, cells[1]]):
-        return _timed_by(replace(base, cells=cells[2:]), table, cells[0], cells[1])
-    if extra == 1 and rises(first):
-        return _led(base, table, cells)
-    if extra == 1 and rises(last):
-        return _timed_by(replace(base, cells=cells[:-1]), table, None, cells[-1])
-    if extra == 1 and is_sum(last, values[:, cells[:-1]]):
-        note = "columns left out that are no cells (the last, a sum)"
-        return replace(base, cells=cells[:-1], assumed=(*base.assumed, note))
-    if told_cells:
-        return replace(base, trouble=_surplus(width, told_cells))
-    return base
-
-
-def _led(base: Layout, table: Table, cells: tuple[int, ...]) -> Layout:
-    """Return the layout of a table whose first column climbs."""
-    numbers = counts_up(table.rows[:, cells[0]])
-    if numbers and table.n_rows == len(cells) - 1:
-        n = table.n_rows
-        question = (
-            f"{n} lines of {n + 1} values could be one matrix behind the numbers of its rows, or "
-            "frames behind their numbers; give rows and columns, or a header"
-        )
-        return replace(base, trouble=question)
-    frame, time = (cells[0], None) if numbers else (None, cells[0])
-    return _timed_by(replace(base, cells=cells[1:]), table, frame, time)
-
-
-def _doubted(base: Layout, table: Table) -> Layout:
-    """Return the layout with the question whether a climbing first column is a cell at all."""
-    width = len(base.cells)
-    if width < 9 or not any((width - 1) % k == 0 for k in range(2, isqrt(width - 1) + 1)):
-        return base
-    side = isqrt(width)
-    square = f"{side} x {side} cells" if side * side == width else f"{width} cells"
-    question = (
-        f"{width} values a line: {square}, or a time or number (the first column climbs from line "
-        f"to line) and {width - 1} cells; give rows and columns, or a header"
-    )
-    return replace(base, trouble=question)
-
-
-def _row_numbers(base: Layout, table: Table) -> Layout:
-    """Return the layout of stacked matrices without a first column that numbers their rows."""
-    size = Counter(table.groups[0]).most_common(1)[0][0]
-    first = table.rows[: size * (len(table.rows) // size), base.cells[0]].reshape(-1, size)
-    if size < 3 or not len(first) or not all(counts_up(m) for m in first):
-        return base
-    if first[0][0] not in (0.0, 1.0):
-        return base
-    note = "columns left out that are no cells (the first, the numbers of rows)"
-    return replace(base, cells=base.cells[1:], assumed=(*base.assumed, note))
-
-
-def _surplus(width: int, n_cells: int) -> str:
-    return (
-        f"a line is {width} values, {n_cells} of them cells by the settings or the words before "
-        "the table, and nothing says which; give cells, such as cells='2-' for all but the first"
-    )
-
-
-def _timed_by(base: Layout, table: Table, frame: int | None, time: int | None) -> Layout:
-    roles = {k: v for k, v in (("frame", frame), ("time", time)) if v is not None}
-    base = replace(base, roles=roles)
-    return _timed(base, table) if time is not None else base
 
 
 def _is_scan(table: Table, base: Layout) -> bool:

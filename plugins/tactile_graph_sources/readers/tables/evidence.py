@@ -96,7 +96,8 @@ def _sound(cells: Numbers) -> Numbers:
     """
     cells = np.where(np.abs(cells) < 1e30, cells, 0.0)
     spread = np.abs(cells - np.median(cells, axis=1, keepdims=True)).mean(axis=1, keepdims=True)
-    return np.divide(cells, spread, out=np.zeros_like(cells), where=spread > 0.0)
+    scaled: Numbers = np.divide(cells, spread, out=np.zeros_like(cells), where=spread > 0.0)
+    return scaled
 
 
 def as_numbers(rows: Any) -> Numbers:

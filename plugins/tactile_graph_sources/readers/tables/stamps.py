@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from datetime import datetime
 
-from tactile_graph_sources.readers.csv_layout import Layout
-from tactile_graph_sources.readers.dialect import clock_s, floats
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import clock_s, floats
+from tactile_graph_sources.readers.tables.layout import Layout
 
 _DAY_S = 86400.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isqrt
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.csv_evidence import (
+from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
     Numbers,
     row_length_clarity,
