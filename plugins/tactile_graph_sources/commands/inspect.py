@@ -46,7 +46,7 @@ def inspect(
     offset, broken cells, contacts; what of it is assumed; a picture; commands ready to paste.
     """
     from tactile_graph.errors import TactileGraphError
-    from tactile_graph_sources.commands.reader_settings import reader_settings
+    from tactile_graph_sources.commands.any_source import reader_settings
     from tactile_graph_sources.inspection.look import look_into
     from tactile_graph_sources.inspection.picture import save_picture
     from tactile_graph_sources.inspection.words import data_of

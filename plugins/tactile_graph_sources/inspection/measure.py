@@ -13,6 +13,7 @@ from tactile_graph.wires import Frame
 Stack = NDArray[np.float64]
 MAD_TO_SD = 1.4826
 IDLE_QUANTILE = 0.1
+QUIET = 0.25
 FEWEST_FRAMES = 5
 """Frames from which on a cell that never changes says something."""
 TOUCHED = 0.2
@@ -47,8 +48,8 @@ class Measured:
     full_scale : int, optional
         Where readings are whole and reach the end of a converter's range.
     noise : float, optional
-        Standard deviation of a cell at rest from frame to frame, the median of the cells; None
-        with fewer than five frames.
+        Standard deviation of a cell at rest from frame to frame, that of the quieter quarter of
+        the cells: the others may be pressed all the time. None with fewer than five frames.
     offset, offset_spread : float
         Level of a cell at rest (its lowest tenth), the median of the cells and the distance of
         the tenth from the ninetieth percentile.
@@ -107,7 +108,9 @@ def measure(frames: Sequence[Frame]) -> Measured:
         sigma = _noise(filled)
         values = stack[np.isfinite(stack)]
         lowest, highest = _ends(values)
-        noise = None if sigma is None or not known.any() else float(np.median(sigma[known]))
+        noise = (
+            None if sigma is None or not known.any() else float(np.quantile(sigma[known], QUIET))
+        )
         offset = float(np.median(idle[known])) if known.any() else 0.0
         level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
         dead, stuck = _still(filled, idle, known, offset, highest)

@@ -134,7 +134,9 @@ def _noise(measured: Measured, unit: str) -> str:
         return "unknown: too few frames"
     if measured.noise == 0.0:
         return "0: readings at rest do not change"
-    return f"{_number(measured.noise)} {unit} from frame to frame (a cell at rest, the median)"
+    return (
+        f"{_number(measured.noise)} {unit} from frame to frame (the quieter quarter of the cells)"
+    )
 
 
 def _cells(cells: Cells) -> str:
