@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ Stack = NDArray[np.float64]
 MAD_TO_SD = 1.4826
 IDLE_QUANTILE = 0.1
 QUIET = 0.25
+FEWEST_CHANGES = 0.25
 FEWEST_FRAMES = 5
 """Frames from which on a cell that never changes says something."""
 TOUCHED = 0.2
@@ -97,25 +99,25 @@ def measure(frames: Sequence[Frame]) -> Measured:
     Notes
     -----
     Noise is taken from the median of each cell's differences from frame to frame, so that the
-    minority of frames in which it is being pressed or let go do not count. Where most readings
-    repeat it comes out as 0, which says only that it is below one step.
+    minority of frames in which it is being pressed or let go do not count. Where three in four
+    readings repeat it comes out as 0, which says only that it is far below one step.
     """
     stack = stack_of_frames(frames)
     with np.errstate(over="ignore", invalid="ignore"):
         known = np.asarray(np.isfinite(stack).any(axis=0))
         filled = np.where(np.isfinite(stack), stack, np.nan_to_num(_median(stack)))
         idle = _idle(filled, known)
-        sigma = _noise(filled)
         values = stack[np.isfinite(stack)]
+        step = _step(values)
+        sigma = _noise(filled, step or 0.0)
         lowest, highest = _ends(values)
         noise = (
             None if sigma is None or not known.any() else float(np.quantile(sigma[known], QUIET))
         )
         offset = float(np.median(idle[known])) if known.any() else 0.0
         level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
-        dead, stuck = _still(filled, idle, known, offset, highest)
+        dead, stuck = _still(filled, idle, known, _Levels(offset, highest, noise or 0.0))
         rate, jitter, duration = _rate(frames)
-        step = _step(values)
         spread = np.quantile(idle[known], [0.1, 0.9]) if known.any() else np.zeros(2)
         return Measured(
             len(frames),
@@ -160,12 +162,21 @@ def _idle(filled: Stack, known: NDArray[np.bool_]) -> Stack:
     return np.full(filled.shape[1:], level)
 
 
-def _noise(filled: Stack) -> Stack | None:
-    """Return each cell's standard deviation at rest; None with too few frames."""
+def _noise(filled: Stack, step: float) -> Stack | None:
+    """Return each cell's standard deviation at rest; None with too few frames.
+
+    Readings in steps are spread over their step at random, and what that adds is taken off again:
+    the median of whole numbers would be one itself. A cell of which three in four readings repeat
+    has none that could be measured.
+    """
     if len(filled) < FEWEST_FRAMES:
         return None
-    change = np.abs(np.diff(filled, axis=0))
-    return np.asarray(MAD_TO_SD * np.median(change, axis=0) / np.sqrt(2.0))
+    change = np.diff(filled, axis=0)
+    trembles = (change != 0.0).mean(axis=0) >= FEWEST_CHANGES
+    spread = change + step * np.random.default_rng(0).uniform(-0.5, 0.5, change.shape)
+    sigma = MAD_TO_SD * np.median(np.abs(spread), axis=0) / np.sqrt(2.0)
+    added = MAD_TO_SD * 0.25 * step / np.sqrt(2.0)
+    return np.where(trembles, np.sqrt(np.maximum(sigma**2 - added**2, 0.0)), 0.0)
 
 
 def _ends(values: Stack) -> tuple[float, float]:
@@ -189,20 +200,30 @@ def _full_scale(values: Stack, step: float | None, highest: float) -> int | None
     return int(highest) if whole and highest in FULL_SCALES else None
 
 
+class _Levels(NamedTuple):
+    """Levels of the whole pad."""
+
+    offset: float
+    highest: float
+    noise: float
+
+
 def _still(
-    filled: Stack, idle: Stack, known: NDArray[np.bool_], offset: float, highest: float
+    filled: Stack, idle: Stack, known: NDArray[np.bool_], levels: _Levels
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return which cells are dead and which are stuck: neither ever changes."""
-    none = np.zeros_like(known)
+    none, (offset, highest, noise) = np.zeros_like(known), levels
     if len(filled) < FEWEST_FRAMES or highest <= offset:
         return none, none
     still = known & (np.ptp(filled, axis=0) == 0.0)
     if still.all():
         return none, none
     raised = known & (idle - offset > STUCK * (highest - offset))
+    long = len(filled) >= FEWEST_TO_STICK
+    if noise > 0.0 and long:
+        return still & ~raised, still & raised  # where all tremble, such a cell is broken
     # What lies still on a pad without noise keeps its cells as they are: that sticks no cell.
-    telling = len(filled) >= FEWEST_TO_STICK and (still & raised).sum() < MOST_STUCK * raised.sum()
-    stuck = still & raised if telling else none
+    stuck = still & raised if long and (still & raised).sum() < MOST_STUCK * raised.sum() else none
     reached = filled.max(axis=0) - offset > TOUCHED * (highest - offset)
     pressed = reached & ~still
     sides, live = _beside(pressed), _beside(known & ~still)

@@ -133,7 +133,7 @@ def _noise(measured: Measured, unit: str) -> str:
     if measured.noise is None:
         return "unknown: too few frames"
     if measured.noise == 0.0:
-        return "0: readings at rest do not change"
+        return "0: readings at rest repeat, frame after frame"
     return (
         f"{_number(measured.noise)} {unit} from frame to frame (the quieter quarter of the cells)"
     )
