@@ -13,7 +13,8 @@ from annotated_types import Ge, Gt
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.formats import Reader, known, reader_of
+from tactile_graph_sources.readers import pictures
+from tactile_graph_sources.readers.formats import known, reader_of
 from tactile_graph_sources.readers.garbage import without_garbage
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
@@ -149,6 +150,10 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
         frames, start = read_store(path, report), told.skip
         kept = without_garbage(islice(frames, start, None), report, str(path))
         return Opened(name, lambda: why, kept)
+    if path.is_dir():
+        reading = Reading(Head(path, b"", told), told, report, 0, label)
+        found = islice(_frames(reading, pictures.NAME, pictures.read_folder), told.skip, None)
+        return Opened(pictures.NAME, lambda: reading.why, without_garbage(found, report, str(path)))
     try:
         with path.open("rb") as file:
             report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
@@ -157,13 +162,15 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     reading = Reading(head, told, report, 0, label)
-    found = islice(_frames(reading, reader), told.skip, None)
+    found = islice(_frames(reading, reader.NAME, reader.read), told.skip, None)
     frames = without_garbage(found, report, str(path))
     return Opened(reader.NAME, lambda: reading.why or "by its first lines", frames)
 
 
 def _check_file(path: Path) -> None:
     if path.is_file() or is_store(path):
+        return
+    if path.is_dir() and pictures.pictures_in(path):
         return
     if path.is_dir():
         held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
@@ -174,12 +181,14 @@ def _check_file(path: Path) -> None:
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
 
-def _frames(reading: Reading, reader: Reader) -> Iterator[Frame]:
+def _frames(
+    reading: Reading, name: str, read: Callable[[Reading], Iterator[Frame]]
+) -> Iterator[Frame]:
     """Yield the frames of one file; a file without any is an error."""
     path, told, report = reading.path, reading.told, reading.report
-    report.count(f"recordings read as {reader.NAME}")
+    report.count(f"recordings read as {name}")
     try:
-        yield from reader.read(reading)
+        yield from read(reading)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     if reading.index > reading.start:
@@ -192,6 +201,5 @@ def _frames(reading: Reading, reader: Reader) -> Iterator[Frame]:
     why = f" ({reading.first_damage})" if reading.first_damage else ""
     raise DataError(
         str(path),
-        f"it looks like {reader.NAME} but holds no whole frame{why}; "
-        f"formats that are read: {known()}",
+        f"it looks like {name} but holds no whole frame{why}; formats that are read: {known()}",
     )

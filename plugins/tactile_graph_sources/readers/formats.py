@@ -10,6 +10,7 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import (
     capfingerid,
     emed,
+    hdf5,
     json_stack,
     npy,
     npz,
@@ -41,6 +42,7 @@ READERS: tuple[Reader, ...] = (
     npy,
     pictures,
     npz,
+    hdf5,
     popu_bed,
     xsensor,
     tekscan,

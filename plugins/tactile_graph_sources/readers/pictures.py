@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import re
 import warnings
 import zipfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,6 +55,24 @@ def read(reading: Reading) -> Iterator[Frame]:
         raise DataError(str(reading.path), f"is a picture of more than {MOST_BYTES >> 20} MB")
     for matrix in _pages(reading, reading.path.read_bytes(), ""):
         yield reading.frame(matrix)
+
+
+def read_folder(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each picture of a folder, in the order of the numbers in their names."""
+    names = pictures_in(reading.path)
+    reading.recognised(f"a folder of {len(names)} pictures, in the order of their numbers")
+    reading.report.expect(len(names))
+    for name in names:
+        content = (reading.path / name).read_bytes()
+        reading.report.digest(str(reading.path / name), hashlib.sha256(content).hexdigest())
+        for matrix in _pages(reading, content, name):
+            yield reading.frame(matrix)
+
+
+def pictures_in(folder: Path) -> list[str]:
+    """Return the names of a folder's pictures in their order; none where it holds no picture."""
+    names = [p.name for p in folder.iterdir() if p.is_file() and p.suffix.lower() in NAMES]
+    return in_order(names)
 
 
 def in_order(names: list[str]) -> list[str]:

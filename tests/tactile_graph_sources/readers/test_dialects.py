@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers_dialects import Dialect, became, dialects, flat, long, mutated
+from helpers_dialects import Dialect, became, dialects, flat, long, mutated, picture
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
 
@@ -260,3 +260,54 @@ def test_a_picture_that_cannot_be_read_says_why(tmp_path: Path) -> None:
     content = next(d.content for d in FILES if d.name == "PNG of 16 bits")
     with pytest.raises(DataError, match="the picture cannot be read"):
         frames_of(write(tmp_path, content[:60]))
+
+
+def test_a_folder_of_pictures_is_read_in_the_order_of_their_numbers(tmp_path: Path) -> None:
+    folder = tmp_path / "film"
+    folder.mkdir()
+    for k, values in enumerate(OBLONG):
+        (folder / f"frame {k}.png").write_bytes(picture(values.astype(np.uint16), "png"))
+    (folder / "notes.txt").write_text("nothing")
+    frames, report = frames_of(folder)
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert len(report.digests) == 12
+
+
+# -- HDF5 --------------------------------------------------------------------------------------
+
+
+def hdf5(path: Path, **datasets: np.ndarray) -> Path:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    with h5py.File(path, "w") as file:
+        for name, values in datasets.items():
+            file[name] = values
+        file.attrs["unit"] = "kPa"
+        file.attrs["pitch"] = "5 mm"
+    return path
+
+
+def test_hdf5_gives_its_stack_with_times_and_attributes(tmp_path: Path) -> None:
+    path = hdf5(tmp_path / "a.h5", pressure=OBLONG, time_ms=20.0 * np.arange(12), n=np.int64(3))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(12)])
+    assert (frames[0].image.quantity, frames[0].image.pitch_cm) == ("kilopascal", (0.5, 0.5))
+    assert report.counts == {"recordings read as HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)": 1}
+
+
+def test_several_stacks_of_hdf5_are_asked_about(tmp_path: Path) -> None:
+    path = hdf5(tmp_path / "a.h5", left=OBLONG, right=OBLONG + 1)
+    with pytest.raises(DataError, match=r"several datasets could be it \(left \(12, 6, 10\)"):
+        frames_of(path)
+    np.testing.assert_array_equal(frames_of(path, sensor="right")[0][0].image.values, OBLONG[0] + 1)
+    with pytest.raises(DataError, match=r"no dataset 'rigth'.*did you mean 'right'"):
+        frames_of(path, sensor="rigth")
+    with pytest.raises(DataError, match="no matrix or stack of matrices in it; its datasets: a"):
+        frames_of(hdf5(tmp_path / "b.h5", a=np.arange(5)))
+
+
+def test_damaged_hdf5_says_so(tmp_path: Path) -> None:
+    path = hdf5(tmp_path / "a.h5", left=OBLONG)
+    path.write_bytes(path.read_bytes()[:900])
+    with pytest.raises(DataError, match="the HDF5 file cannot be read"):
+        frames_of(path)
