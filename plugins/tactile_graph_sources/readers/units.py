@@ -65,6 +65,12 @@ def value_unit(text: str) -> tuple[str, float]:
     return _VALUES.get(text.strip().lower(), pressure_unit(text))
 
 
+def length_unit(name: str) -> float | None:
+    """Return the centimetres of the unit a name ends with, as ``x_mm`` or ``y [cm]`` do."""
+    unit = re.split(r"[_\s(\[]+", name.strip().rstrip(")]").lower())[-1]
+    return _CENTIMETRES.get(unit)
+
+
 def length_cm(text: str, unit: str = "") -> float | None:
     """Return a length in cm, as ``"5.08 mm"`` gives 0.508; None where it is no positive length.
 

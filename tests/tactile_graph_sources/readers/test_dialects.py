@@ -311,3 +311,38 @@ def test_damaged_hdf5_says_so(tmp_path: Path) -> None:
     path.write_bytes(path.read_bytes()[:900])
     with pytest.raises(DataError, match="the HDF5 file cannot be read"):
         frames_of(path)
+
+
+# -- positions for rows and columns ------------------------------------------------------------
+
+
+def placed(header: str, x0: float, step: float) -> str:
+    lines = [
+        f"{k},{x0 + step * c:g},{x0 + 2 * step * r:g},{v:.0f}"
+        for (k, r, c), v in np.ndenumerate(OBLONG)
+    ]
+    return "\n".join([header, *lines]) + "\n"
+
+
+@pytest.mark.parametrize(("x0", "step"), [(0.0, 5.0), (2.5, 5.0), (-10.0, 0.8)])
+def test_positions_give_the_pitch(x0: float, step: float, tmp_path: Path) -> None:
+    frames, _ = frames_of(text_of(tmp_path, placed("frame,x_mm,y_mm,p", x0, step)))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert frames[0].image.pitch_cm == pytest.approx((step / 10, step / 5))
+
+
+def test_whole_numbers_without_a_unit_are_places_however_many_are_left_out(tmp_path: Path) -> None:
+    frames, _ = frames_of(text_of(tmp_path, "row,col,adc\n0,0,5\n0,4,6\n2,0,7\n2,4,8\n4,4,9\n"))
+    assert frames[0].image.shape == (5, 5)
+
+
+def test_x_and_y_that_lie_anywhere_are_no_places(tmp_path: Path) -> None:
+    lines = [f"{np.sin(k):.3f},{np.cos(k):.3f},9.81" for k in range(50)]
+    with pytest.raises(DataError, match="under 'y' are no places on a grid"):
+        frames_of(text_of(tmp_path, "\n".join(["x,y,z", *lines])))
+
+
+def test_an_empty_column_in_front_is_no_cell(tmp_path: Path) -> None:
+    text = "".join(f";{line.replace(',', ';')}\n" for line in flat(SQUARE).splitlines())
+    frames, _ = frames_of(text_of(tmp_path, text))
+    np.testing.assert_array_equal([f.image.values for f in frames], SQUARE)

@@ -26,6 +26,7 @@ from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
     row_length_clarity,
     row_lengths,
+    spacing,
 )
 from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
@@ -33,6 +34,7 @@ from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table, table_of
 from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.units import length_unit
 
 SMALLEST_SURE_SQUARE = 64
 MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
@@ -69,8 +71,12 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format)
+    n_told = (told.rows or 0) * (told.columns or 0)
+    empty = () if table.width in (n_told, told.columns) else table.empty
     cells = table.named.cells or tuple(
-        k for k in range(table.width) if k not in roles.values() and k not in table.labels
+        k
+        for k in range(table.width)
+        if k not in roles.values() and k not in table.labels and k not in empty
     )
     base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, roles, cells)))
     if not cells:
@@ -150,11 +156,33 @@ def _long(base: Layout, table: Table) -> Layout:
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
     base = replace(base, kind="long", roles=roles, said=said)
     base = timed(base, table) if "time" in roles else base
+    factors = {role: length_unit(names[role]) for role in ("row", "column")}
+    apart = [spacing(table.rows[:, roles[r]], bool(f)) for r, f in factors.items()]
+    if apart[0] is None or apart[1] is None:
+        role = "row" if apart[0] is None else "column"
+        what = (
+            f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
+            f"stands under {names[role]!r} are no places on a grid"
+        )
+        return replace(base, kind="unclear", trouble=what)
+    base = _spaced(base, table, (apart[0], apart[1]))
     return replace(
         base,
         why=f"its header names row ({names['row']!r}), column ({names['column']!r}) and value "
         f"({names['value']!r})",
     )
+
+
+def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:
+    """Return the layout of a long table whose places are so far apart, and the pitch they give."""
+    if apart == (1.0, 1.0):
+        return base
+    factors = [length_unit(table.named.names[base.roles[role]]) for role in ("row", "column")]
+    said = base.said
+    if factors[0] and factors[1] and said.pitch_cm is None:
+        said = replace(said, pitch_cm=(apart[1] * factors[1], apart[0] * factors[0]))
+    first = table.rows[0, base.roles["row"]], table.rows[0, base.roles["column"]]
+    return replace(base, spacing=apart, first=(float(first[0]), float(first[1])), said=said)
 
 
 # -- a frame a line by the names of its cells --------------------------------------------------

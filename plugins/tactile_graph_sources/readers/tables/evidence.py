@@ -40,6 +40,27 @@ def is_count(row: Numbers) -> bool:
     return len(row) >= 3 and first in (0.0, 1.0) and bool((np.diff(row) == 1.0).all())
 
 
+def spacing(places: Numbers, in_length: bool) -> float | None:
+    """Return the distance of neighbouring places along an axis; None where they lie anywhere.
+
+    Whole numbers are places one apart, however many they leave out, unless the axis is
+    ``in_length``.
+    """
+    found, n = np.unique(np.round(places[np.abs(places) < 1e9], 6), return_counts=True)
+    found = found[n >= 0.2 * np.median(n)] if len(found) else found  # a damaged line is no place
+    if not len(found):
+        return None
+    if not in_length and bool((found % 1 == 0).all()):
+        return 1.0
+    if len(found) < 2 or 2 * len(found) > len(places):
+        return None
+    step = float(np.diff(found).min())
+    on_grid = np.abs((found - found[0]) / step - np.rint((found - found[0]) / step)) < 1e-3
+    if on_grid.mean() < 0.9:
+        return None
+    return step
+
+
 def is_sum(total: Numbers, cells: Numbers) -> bool:
     """Return whether a column holds the sums of the others, shape (lines, cells)."""
     if not (np.abs(cells) < 1e30).all() or not np.isfinite(total).all() or not cells.any():

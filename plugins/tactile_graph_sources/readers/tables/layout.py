@@ -41,6 +41,10 @@ class Layout:
         From the column of time to seconds.
     time_format : str
         Of the column of clock, where the settings say it.
+    spacing : (float, float)
+        Distance of rows and of columns in the numbers of a long table: 1, or what positions have.
+    first : (float, float)
+        The first row's and the first column's position, where they are positions.
     said : Described
         What the words before the table say.
     why, assumed : str, tuple of str
@@ -60,6 +64,8 @@ class Layout:
     blank_run: int = 1
     time_factor: float = 1.0
     time_format: str = ""
+    spacing: tuple[float, float] = (1.0, 1.0)
+    first: tuple[float, float] = (0.0, 0.0)
     said: Described = field(default_factory=Described)
     why: str = ""
     assumed: tuple[str, ...] = ()

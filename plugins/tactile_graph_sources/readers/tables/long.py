@@ -44,6 +44,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     cells, lines = _gather(reading, layout)
     if not len(cells):
         return
+    if layout.spacing != (1.0, 1.0):
+        cells[:, 2:4] -= cells[:, 2:4].min(axis=0)  # positions count from the first cell
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
     first = 0 if min(row.min(), column.min()) == 0 else 1
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
@@ -168,13 +170,20 @@ def _chosen(layout: Layout, table: Cells) -> Cells | None:
     chosen[:, 0] = table[:, where["frame"]] if "frame" in where else 0.0
     chosen[:, 1] = table[:, where["time"]] * layout.time_factor if "time" in where else np.nan
     chosen[:, 2:] = table[:, [where["row"], where["column"], where["value"]]]
-    return chosen if _are_places(chosen) else None
+    return chosen if _are_places(layout, chosen) else None
 
 
-def _are_places(cells: Cells) -> bool:
+def _are_places(layout: Layout, cells: Cells) -> bool:
+    """Return whether all cells are places on a pad, positions made whole numbers in place."""
     places = cells[:, 2:4]
     if not (np.isfinite(cells[:, 0]).all() and np.isfinite(places).all()):
         return False
+    if layout.spacing != (1.0, 1.0):
+        steps = places / layout.spacing
+        # The first position need not be a multiple of the spacing: 2.5, 7.5, 12.5.
+        offset = np.array(layout.first) / layout.spacing
+        places[:] = np.rint(steps - offset)
+        return bool((np.abs(steps - offset - places) < 1e-2).all() and (places < _LARGEST).all())
     return bool(((places >= 0) & (places < _LARGEST) & (places % 1 == 0)).all())
 
 
@@ -217,7 +226,7 @@ def _one_by_one(
             reading.damaged(number, f"no cell: {str(error)[:80]}")
             continue
         cell = np.array([[index, np.nan if time_s is None else time_s, *values]])
-        if not _are_places(cell):
+        if not _are_places(layout, cell):
             reading.damaged(number, f"no cell: {line.strip()[:60]!r} names no place on a pad")
         else:
             cells.append(cell)

@@ -90,6 +90,14 @@ class Table:
         )
 
     @cached_property
+    def empty(self) -> tuple[int, ...]:
+        """Columns in front that hold nothing in any row, as spreadsheets leave them free."""
+        n = 0
+        while n < self.width and not any(row[n].strip() for row in self.texts):
+            n += 1
+        return tuple(range(n)) if len(self.texts) > 1 else ()
+
+    @cached_property
     def words(self) -> tuple[int, ...]:
         """Columns of which most fields are no numbers and not empty."""
         wrong = [
