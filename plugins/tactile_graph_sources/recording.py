@@ -121,7 +121,7 @@ def recording(
     for one in paths:
         label = one.name if len(paths) > 1 else ""
         for frame in opened(one, told, report, label).frames:
-            yield frame.with_index(index)
+            yield frame if frame.index == index else frame.with_index(index)
             index += 1
 
 

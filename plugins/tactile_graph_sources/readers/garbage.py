@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -42,34 +43,53 @@ def without_garbage(frames: Iterator[Frame], report: Report, where: str) -> Iter
         The file, for the report.
     """
     pending: deque[Frame] = deque()
-    ahead: dict[str, deque[Frame]] = {}
-    behind: dict[str, deque[Frame]] = {}
-    dropped: set[str] = set()
-
-    def settled(frame: Frame) -> Iterator[Frame]:
-        ahead[frame.label].popleft()
-        before = behind.setdefault(frame.label, deque(maxlen=NEIGHBOURS))
-        around = [*before, *list(ahead[frame.label])[:NEIGHBOURS]]
-        if frame.truth is None and is_garbage(frame, around):
-            report.count("frames of garbage left out")
-            report.trouble(
-                f"{where}: frame {frame.index}",
-                "is garbage by those around it (no patch of it lies together, "
-                "and none of them is like it) and is left out",
-            )
-            dropped.add(frame.label)
-            return
-        before.append(frame)
-        yield replace(frame, gap=True) if frame.label in dropped else frame
-        dropped.discard(frame.label)
-
+    films: dict[str, _Film] = {}
     for frame in frames:
         pending.append(frame)
-        ahead.setdefault(frame.label, deque()).append(frame)
-        while len(ahead[pending[0].label]) > NEIGHBOURS:
-            yield from settled(pending.popleft())
+        films.setdefault(frame.label, _Film()).add(frame)
+        while len(films[pending[0].label].ahead) > NEIGHBOURS:
+            yield from _settled(films[pending[0].label], pending.popleft(), report, where)
     while pending:
-        yield from settled(pending.popleft())
+        yield from _settled(films[pending[0].label], pending.popleft(), report, where)
+
+
+@dataclass(slots=True)
+class _Film:
+    """One sensor's frames around the one that is judged, each with its change from the last."""
+
+    ahead: deque[tuple[Frame, float]] = field(default_factory=deque)
+    behind: deque[tuple[Frame, float]] = field(default_factory=lambda: deque(maxlen=NEIGHBOURS))
+    last: NDArray[Any] | None = None
+    after_garbage: bool = False
+
+    def add(self, frame: Frame) -> None:
+        values = frame.image.values
+        alike = self.last is not None and self.last.shape == values.shape
+        change = _distance(values, self.last) if alike and self.last is not None else np.inf
+        self.ahead.append((frame, change))
+        self.last = values
+
+
+def _settled(film: _Film, frame: Frame, report: Report, where: str) -> Iterator[Frame]:
+    """Yield the frame, the first of those ahead, unless it is garbage."""
+    _, change = film.ahead.popleft()
+    around = [*film.behind, *film.ahead]
+    following = film.ahead[0][1] if film.ahead else np.inf
+    others = [*film.behind, *islice(film.ahead, 1, None)]
+    # Nearly all frames change about as much as the others do, and need not be looked at further.
+    jumps = min(change, following) > 2.0 * min((c for _, c in others), default=np.inf)
+    if jumps and frame.truth is None and is_garbage(frame, [f for f, _ in around]):
+        report.count("frames of garbage left out")
+        report.trouble(
+            f"{where}: frame {frame.index}",
+            "is garbage by those around it (no patch of it lies together, "
+            "and none of them is like it) and is left out",
+        )
+        film.after_garbage = True
+        return
+    film.behind.append((frame, change))
+    yield replace(frame, gap=True) if film.after_garbage else frame
+    film.after_garbage = False
 
 
 def is_garbage(frame: Frame, around: Sequence[Frame]) -> bool:
@@ -78,11 +98,9 @@ def is_garbage(frame: Frame, around: Sequence[Frame]) -> bool:
     others = [f.image.values for f in around if f.image.values.shape == values.shape]
     if len(others) < NEIGHBOURS or values.size < FEWEST_CELLS:
         return False
-    with np.errstate(over="ignore"):
-        nearest = min(_distance(values, v) for v in (others[0], others[-1]))
-        others_own = min(_distance(*others[:2]), _distance(*others[-2:]))
-    if nearest <= 2.0 * others_own or not 0.0 < nearest < 1e100:
-        return False  # so it is with all but a few frames, which need not be looked at further
+    nearest = min(_distance(values, v) for v in (others[0], others[-1]))
+    if not 0.0 < nearest < 1e100:
+        return False
     usual = np.median(others, axis=0)
     apart = np.median([_distance(v, usual) for v in others])
     change = values - usual
@@ -105,4 +123,5 @@ def coherence(values: Values) -> float:
 
 
 def _distance(a: Values, b: Values) -> float:
-    return float(np.abs(a - b).mean())
+    with np.errstate(over="ignore"):
+        return float(np.abs(a - b).sum()) / a.size

@@ -31,7 +31,7 @@ def is_numeric(line: str) -> bool:
     return (
         _NUMERIC.fullmatch(line) is not None
         and _DIGIT.search(line) is not None
-        and _WORDY.search(line) is None
+        and (line.lower() == line.upper() or _WORDY.search(line) is None)
     )
 
 

@@ -11,7 +11,7 @@ Numbers = NDArray[np.float64]
 CLEAR = 0.85
 """A lag at which cells differ by less than this share of those beside it is a row's length."""
 EVEN = 3.0
-MOST_CELLS = 1 << 14
+MOST_CELLS, MOST_FRAMES = 1 << 14, 100
 
 
 def rises(column: Numbers) -> bool:
@@ -85,9 +85,12 @@ def row_length_clarity(cells: Numbers, columns: int) -> float:
         clearly below 1 where rows are that long, about 1 where they are not, and NaN where the
         cells are all alike.
     """
+    return _clarity(_sound(cells), columns)
+
+
+def _clarity(cells: Numbers, columns: int) -> float:
     if columns < 3 or columns + 1 >= cells.shape[1]:
         return float("nan")
-    cells = _sound(cells)
     beside = min(_difference(cells, columns - 1), _difference(cells, columns + 1))
     return _difference(cells, columns) / beside if beside > 0.0 else float("nan")
 
@@ -99,7 +102,7 @@ def row_lengths(cells: Numbers) -> list[tuple[int, int]]:
         return []
     cells = _sound(cells)
     divisors = [c for c in range(3, n // 2 + 1) if n % c == 0]
-    clarity = {c: row_length_clarity(cells, c) for c in divisors}
+    clarity = {c: _clarity(cells, c) for c in divisors}
     clear = [c for c in divisors if clarity[c] < CLEAR]
     # Twice a row's length is a lag of likeness too, but one of less.
     clear.sort(key=lambda c: _difference(cells, c))
@@ -115,6 +118,7 @@ def _sound(cells: Numbers) -> Numbers:
 
     Each frame is scaled to its own spread: one of garbage must not drown the others.
     """
+    cells = cells[:MOST_FRAMES]
     cells = np.where(np.abs(cells) < 1e30, cells, 0.0)
     spread = np.abs(cells - np.median(cells, axis=1, keepdims=True)).mean(axis=1, keepdims=True)
     scaled: Numbers = np.divide(cells, spread, out=np.zeros_like(cells), where=spread > 0.0)

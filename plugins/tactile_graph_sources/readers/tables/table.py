@@ -22,7 +22,7 @@ FRAME_LINE = re.compile(
 )
 _BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*")
 _COMMENT = ("#", "%", "//")
-_SAMPLED = 400
+_LOOKED_AT, _SAMPLED = 4000, 400
 ENDLESS = 1 << 30
 """As a run of blank lines: none ends a matrix, only its last row does."""
 
@@ -74,7 +74,11 @@ class Table:
     @cached_property
     def n_rows(self) -> int:
         """How many rows the first lines hold."""
-        return sum(1 for line in self.lines if is_row(line))
+        return sum(self._are_rows)
+
+    @cached_property
+    def _are_rows(self) -> tuple[bool, ...]:
+        return tuple(map(is_row, self.lines))
 
     @cached_property
     def clocks(self) -> tuple[int, ...]:
@@ -117,7 +121,7 @@ class Table:
         """
         for run in (1, 2):
             groups, size, blanks = [], 0, 0
-            for line in self.lines:
+            for line, one in zip(self.lines, self._are_rows, strict=True):
                 if is_blank(line):
                     blanks += 1
                     continue
@@ -125,7 +129,7 @@ class Table:
                     groups.append(size)
                     size = 0
                 blanks = 0
-                size += is_row(line)
+                size += one
             groups = [g for g in [*groups, size] if g]
             if not groups or Counter(groups).most_common(1)[0][0] > 1:
                 return groups, run
@@ -150,7 +154,7 @@ def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | No
     """
     rows = [
         (k, line)
-        for k, line in enumerate(lines)
+        for k, line in enumerate(lines[:_LOOKED_AT])
         if not is_blank(line) and not is_comment(line) and is_row(line)
     ]
     if not rows:
@@ -162,7 +166,7 @@ def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | No
     if not width or not full:
         return None
     start = full[0][0]
-    content = sum(1 for x in lines[start:] if not is_blank(x) and not is_comment(x))
+    content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
     if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
         return None  # a text that holds a few numbers
     header = _header(dialect, lines[:start], width)
