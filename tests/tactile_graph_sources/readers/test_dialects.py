@@ -346,3 +346,13 @@ def test_an_empty_column_in_front_is_no_cell(tmp_path: Path) -> None:
     text = "".join(f";{line.replace(',', ';')}\n" for line in flat(SQUARE).splitlines())
     frames, _ = frames_of(text_of(tmp_path, text))
     np.testing.assert_array_equal([f.image.values for f in frames], SQUARE)
+
+
+def test_one_digit_too_many_in_a_row_does_not_blow_up_the_frames(tmp_path: Path) -> None:
+    lines = long(OBLONG, "frame,row,col,adc", "krcv").splitlines()
+    lines[100] = lines[100].replace(",", ",7", 1)
+    path = text_of(tmp_path, "\n".join(lines))
+    frames, report = frames_of(path)
+    assert {f.image.shape for f in frames} == {(6, 10)}
+    what = "no cell: its row or column is far beyond all others"
+    assert report.troubles == [(f"{path}:101", what)]

@@ -20,6 +20,9 @@ from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 NAME = "table, one cell a line (row, column, value)"
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
+STRAY, FAR = 0.1, 1.0
+"""Share of the usual number of cells of a row that makes it one of them, and how far beyond the
+others, in their own extent, a row must lie to be none."""
 _BATCH = 4096
 
 
@@ -44,6 +47,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     cells, lines = _gather(reading, layout)
     if not len(cells):
         return
+    cells, lines = _without_strays(reading, cells, lines)
     if layout.spacing != (1.0, 1.0):
         cells[:, 2:4] -= cells[:, 2:4].min(axis=0)  # positions count from the first cell
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
@@ -73,6 +77,24 @@ def read(reading: Reading) -> Iterator[Frame]:
             quantity=said.quantity,
             factor=said.factor,
         )
+
+
+def _without_strays(
+    reading: Reading, cells: Cells, lines: NDArray[np.intp]
+) -> tuple[Cells, NDArray[np.intp]]:
+    """Return the cells without those of a row or column far beyond all others, seen next to never.
+
+    One digit too many in a row's number would otherwise make every frame as large as it says.
+    """
+    kept = np.ones(len(cells), dtype=bool)
+    for axis in (2, 3):
+        found, n = np.unique(cells[:, axis], return_counts=True)
+        usual = found[n > STRAY * np.median(n)]
+        beyond = found[found > FAR * (usual.max() - usual.min() + 1) + usual.max()]
+        kept &= ~np.isin(cells[:, axis], beyond)
+    for number in lines[~kept]:
+        reading.damaged(int(number), "no cell: its row or column is far beyond all others")
+    return cells[kept], lines[kept]
 
 
 def _frame_of_each(
