@@ -16,6 +16,7 @@ _STEPS = {
     "footprint_rectangle": "single.footprint_of:FootprintRectangle",
     "identify_footprint": "known.identify_footprint:IdentifyFootprint",
     "locate": "any_pad.choose:Locate",
+    "locate_contacts": "any_pad.locate_contacts:LocateContacts",
     "locate_disc": "any_pad.locate:LocateDisc",
     "locate_ellipse": "any_pad.locate:LocateEllipse",
     "locate_objects": "several.locate_objects:LocateObjects",

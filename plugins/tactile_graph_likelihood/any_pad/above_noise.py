@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.thresholds.thresholded import Thresholded
-from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise_v
+from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.readings import LARGEST
 from tactile_graph_pads.pad import Pad, load_pad
@@ -39,7 +39,7 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     image : Image
         In any quantity that rises with load.
     pad : Pad
-        Whose noise is taken, where it states any, for an image in volts.
+        Whose noise is taken, where it was learned from recordings of this quantity.
     deviations : float
         Standard deviations of noise that count as none.
 
@@ -53,7 +53,7 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
         raise ValueError(f"readings must be finite and at most {LARGEST:g}")
     readings = values.ravel() if image.valid is None else values[image.valid]
     noise = frame_noise(readings) if readings.size else FrameNoise(0.0, 0.0, 0.0)
-    told = told_noise_v(pad) if image.quantity == "volt" else None
+    told = told_noise(pad, image.quantity, values.shape)
     sigma = noise.sigma if told is None else told
     least = np.maximum(deviations * sigma, 0.5 * noise.step)
     above = values - noise.zero
@@ -69,7 +69,7 @@ class AboveNoise:
     Parameters
     ----------
     pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself: the noise that it states is taken.
+        Name of a pad, its YAML file, or the pad itself: what noise it has learned is taken.
     deviations : float
         Standard deviations of noise that count as none.
 

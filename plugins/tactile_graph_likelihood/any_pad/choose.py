@@ -13,7 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
-from tactile_graph_likelihood.any_pad.locate import QUICK, fitted_to
+from tactile_graph_likelihood.any_pad.locate import QUICK
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.fit_footprint import KINDS
@@ -62,7 +62,9 @@ class Locate:
         ] = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
-        self._every = {name: AnyPad(settings.model(KINDS[name])) for name in dict.fromkeys(shapes)}
+        self._every: dict[str, AnyPad] = {
+            name: AnyPad(settings.model(KINDS[name])) for name in dict.fromkeys(shapes)
+        }
 
     def __call__(self, image: Image) -> Located:
         """Return the choice.
@@ -75,27 +77,27 @@ class Locate:
         Raises
         ------
         ValueError
-            If the image's cells are not square.
+            If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """
-        readings = observed(image, self._pad, self._gap_cm)
-        every: dict[str, AnyPad] = {}
+        return self.chosen(observed(image, self._pad, self._gap_cm))
+
+    def chosen(self, readings: Readings) -> Located:
+        """Return the choice by some readings; errors as of a call."""
         tops: dict[str, dict[str, Likeliest]] = {}
         reason = Degenerate("none of the shapes explains what is touched")
         for name, any_pad in self._every.items():
-            seen, every[name] = fitted_to(readings, any_pad)
             try:
-                tops[name] = every[name].tops(seen)
+                tops[name] = any_pad.tops(readings)
             except Degenerate as why:
                 reason = why
         if not tops:
             raise reason
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
-        seen, _ = fitted_to(readings, every[best])
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
-        shape = likely(every[best].around(seen, tops[best]))
+        shape = likely(self._every[best].around(readings, tops[best]))
         return Located(
             shape, best, chance[best], shares["disc"], shares["ellipse"], shares["rectangle"]
         )

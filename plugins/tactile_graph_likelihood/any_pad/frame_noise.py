@@ -42,10 +42,22 @@ class FrameNoise(NamedTuple):
     step: float
 
 
-def told_noise_v(pad: Pad) -> float | Values | None:
-    """Return the noise of a reading in volts as a pad states it, if it does."""
-    told = getattr(pad, "noise_v", None)
-    return None if told is None else np.asarray(told, np.float64)
+def told_noise(pad: Pad, quantity: str, shape: tuple[int, ...]) -> Values | None:
+    """Return each element's noise as recordings have taught it, if the pad was learned from such.
+
+    Parameters
+    ----------
+    pad : Pad
+        Its section ``learned`` is asked, if it has one.
+    quantity : str
+        Of the image; noise that was learned in another unit says nothing.
+    shape : (int, int)
+        Of the image.
+    """
+    learned = pad.learned
+    if learned is None or learned.reading != quantity or (learned.rows, learned.columns) != shape:
+        return None
+    return np.asarray(np.hypot(learned.table.noise, learned.drift))
 
 
 def frame_noise(readings: Values) -> FrameNoise:

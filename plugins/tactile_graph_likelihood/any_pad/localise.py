@@ -16,7 +16,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, unexplained
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
@@ -41,9 +41,9 @@ worth its time."""
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
-PRESSED = 0.8
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
-face presses quite like that."""
+face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
 PATTERN = 3.0
 """Pattern left over from which on an outline on a large pad, where no pressure is looked at, is not
@@ -84,7 +84,7 @@ class AnyPad:
     def _fits(self) -> dict[str, Model]:
         """By pressure, the models that estimate sigma and voids with the outline."""
         return {
-            name: self._with(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
+            name: self._search(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
             for name in PRESSURES
         }
 
@@ -93,8 +93,15 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        """Return the model with another noise; its search goes over the pad's edge freely."""
-        return replace(self.told, noise=replace(noise, estimated=estimated), whole=0.0)
+        return replace(self.told, noise=replace(noise, estimated=estimated))
+
+    def _search(self, noise: Noise, *estimated: str) -> Model:
+        """Return a model that goes over the pad's edge, unless it must not, as if there were none.
+
+        Where the edge makes a step in the prior, a search would be caught before it.
+        """
+        whole = 1.0 if self.told.whole >= 1.0 else 0.0
+        return replace(self._with(noise, *estimated), whole=whole)
 
     def posterior(self, readings: Readings, start: Start = None) -> Posterior:
         """Return the posterior of the outline.
@@ -118,7 +125,7 @@ class AnyPad:
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
         large = readings.states.size > LARGE_PAD
-        model = self._with(self.told.noise) if large else self._fits[EVEN]
+        model = self._search(self.told.noise) if large else self._fits[EVEN]
         its, even = self, model.likeliest(readings, start=start)
         if even.unsure:
             even = model.likeliest(readings, before=even)
@@ -155,17 +162,23 @@ class AnyPad:
         for part, share in shares.items():
             if part != best and share > NEGLIGIBLE:
                 found[part] = self._normal(part, tops[part])
-        its = replace(found[best], pressures={best: 1.0})
+        its = found[best]
         if len(found) > 1:
             weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
-        its = replace(its, log_evidence=tops[EVEN].evidence + max(logs[best] - logs[EVEN], 0.0))
+        elif best != EVEN:
+            its = replace(its, pressures={best: 1.0})
         inflation = variance_inflation(its.neighbours, readings.touched)
-        inflation *= 1.0 + PRESSED * (1.0 - shares.get(EVEN, 0.0) / sum(shares.values()))
+        total = sum(shares.values())
+        inflation *= 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
         pitch = float(readings.grid[2])
-        its = on_any_pad(its, inflation, self.told.noise.sigma, pitch)
-        large = readings.states.size > LARGE_PAD
-        return unexplained(its, pitch) if large and its.alike > PATTERN else its
+        evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        its = on_any_pad(its, evidence, inflation, self.told.noise.sigma * pitch**1.5)
+        if readings.states.size > LARGE_PAD and its.alike > PATTERN:
+            its = unexplained(its, pitch)
+        if readings.stretch == 1.0:
+            return its
+        return stretched(its, float(readings.grid[1]), readings.stretch)
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
         return self.told.normal_around(top, self._count + len(PRESSURES[part]))
@@ -173,11 +186,18 @@ class AnyPad:
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
 
-        That has nine unknowns and more, for which few points are worse than none.
+        That has nine unknowns and more, for which few points are worse than none. Nor is a sample
+        taken whose points are worth fewer than there are unknowns, as where strays explain all
+        there is: it would promise far too much.
         """
-        if part != EVEN and self.told.kind != DISC:
-            return self._normal(part, top)
-        return self._sampled(part, readings, top)
+        if part == EVEN or self.told.kind == DISC:
+            try:
+                found = self._sampled(part, readings, top)
+            except Degenerate:
+                return self._normal(part, top)
+            if found.equal_points > self._count:
+                return found
+        return self._normal(part, top)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
@@ -189,12 +209,11 @@ class AnyPad:
         if part == EVEN and not large:
             model = self._with(noise, "contrast")
             begin = np.append(point[: self._count], noise.contrast)
-            mode = model.likeliest_near(readings, begin).mode
+            mode = self._search(noise, "contrast").likeliest_near(readings, begin).mode
         else:
             model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
             p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
             mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
-        model = replace(model, whole=self.told.whole)
         return model.posterior_around(readings, loosened(mode, readings))
 
 

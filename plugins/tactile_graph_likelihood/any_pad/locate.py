@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
 from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.any_pad.observed import observed, uniform
+from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.likely import (
@@ -18,10 +17,8 @@ from tactile_graph_likelihood.single.likely import (
     likely,
 )
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings
 
-QUICK = FootprintSettings(precision=0.3, on_pad="mostly")
+QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
 
 
@@ -51,17 +48,7 @@ class Located:
     ) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        readings, any_pad = fitted_to(readings, self._any_pad)
-        return any_pad.posterior(readings, start)
-
-
-def fitted_to(readings: Readings, any_pad: AnyPad) -> tuple[Readings, AnyPad]:
-    """Return both as they are, but of a large pad with one least load for all elements."""
-    if readings.states.size <= LARGE_PAD:
-        return readings, any_pad
-    readings, least = uniform(readings)
-    told = any_pad.told
-    return readings, AnyPad(replace(told, noise=replace(told.noise, least=least)))
+        return self._any_pad.posterior(readings, start)
 
 
 class LocateDisc(Located):
@@ -90,7 +77,7 @@ class LocateDisc(Located):
         Raises
         ------
         ValueError
-            If the image's cells are not square.
+            If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or no disc on the pad explains what does.
         """

@@ -11,8 +11,8 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import risen
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_pads.law import ForceLaw
 from tactile_graph_pads.pad import Pad
 
 SPACED = 4
@@ -30,6 +30,12 @@ ALIKE, FEWEST_ALIKE, SHARE_ALIKE = 0.04, 5, 0.15
 BEYOND, SHARE_BEYOND = 3, 0.03
 """Readings beyond them that may be strays."""
 
+NEARLY = 0.03
+"""Of a cell's width, by which its height may differ: sizes come out wrong by half of that."""
+
+MISFIT = 1e-3
+"""Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
+
 
 def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     """Return what an image shows, whatever its quantity.
@@ -37,9 +43,9 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     Parameters
     ----------
     image : Image
-        Volts are freed of the pad's circuit, and conductances turned into loads by its law, as far
-        as these are possible; any other quantity is taken to rise with load from the frame's own
-        zero. Invalid cells say nothing.
+        Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
+        turned into loads by its law; any other quantity is taken to rise with load from the
+        frame's own zero. Invalid cells say nothing.
     pad : Pad
     gap_cm : float, optional
         Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
@@ -49,19 +55,19 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     -------
     Readings
         Elements whose reading is no more than noise are `UNDER` the load that would have shown in
-        their column.
+        their column; of more than 1024 elements, all show from the same.
 
     Raises
     ------
     ValueError
-        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
-        beyond 1e100.
+        If the cells are not nearly square, the gap leaves no element, or a valid cell is not finite
+        or beyond 1e100.
     Degenerate
         If nothing shows.
     """
     across, down = image.pitch_cm
-    if abs(across - down) > 1e-9 * across:
-        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    if abs(across - down) > NEARLY * across:
+        raise ValueError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     if not gap_cm < across:
@@ -86,7 +92,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
-    return Readings(grid, logs, states, touched)
+    found = Readings(grid, logs, states, touched, down / across, edge)
+    return uniform(found) if states.size > LARGE_PAD else found
 
 
 def _loads(
@@ -94,17 +101,21 @@ def _loads(
 ) -> tuple[Values, Values, np.ndarray]:
     """Return loads, the load that each element would have shown as ``least``, and what is possible.
 
-    What has no law is its own load.
+    What has no law is its own load; so are volts that are not the circuit's.
     """
+    every = np.ones(above.shape, np.bool_)
     if quantity not in ("volt", "siemens"):
-        return above, np.broadcast_to(least, above.shape), np.ones(above.shape, np.bool_)
-    siemens, valid, from_s = above, np.ones(above.shape, np.bool_), least
+        return above, np.broadcast_to(least, above.shape), every
+    siemens, valid, from_s = above, every, least
     if quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
+        possible = np.count_nonzero(found.valid & (above > 0.0))
+        if found.residual > MISFIT or 2 * possible < np.count_nonzero(above):
+            return above, np.broadcast_to(least, above.shape), every
         siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
         from_s = least * _siemens_per_volt(siemens, above)
-    loads = _by_law(siemens, pad.law)
-    least_loads = _by_law(np.array(np.broadcast_to(from_s, above.shape)), pad.law)
+    loads = pad.law.load_of(siemens)
+    least_loads = pad.law.load_of(np.array(np.broadcast_to(from_s, above.shape)))
     return loads, least_loads, valid & np.isfinite(loads)
 
 
@@ -116,18 +127,6 @@ def _siemens_per_volt(siemens: Values, above: Values) -> Values:
     if not bare.all():
         found[bare] = found[~bare].min()
     return np.asarray(found)
-
-
-def _by_law(siemens: Values, law: ForceLaw) -> Values:
-    """Return loads by a law whose power goes on below the turn-on.
-
-    Where a pad turns on is its own: by a turn-on that is told too high, all that it does read
-    below would come out nearly alike.
-    """
-    loads = law.load_of(siemens)
-    low = (loads < law.turn_on_g) & (siemens > 0.0)
-    loads[low] = law.load_g * (siemens[low] * law.resistance_ohm) ** (1.0 / law.power)
-    return loads
 
 
 def least_that_shows(logs: Values, told: float) -> float:
@@ -172,9 +171,9 @@ def ceiling_of(logs: Values) -> float:
     return float(values[at]) - 0.5 * ALIKE if ends else math.inf
 
 
-def uniform(readings: Readings) -> tuple[Readings, float]:
-    """Return readings whose elements all show from the same load, and that load."""
+def uniform(readings: Readings) -> Readings:
+    """Return readings whose elements all show from the same load: what large pads' kernels take."""
     under = readings.states == UNDER
-    least = float(np.median(readings.logs[under])) if under.any() else -math.inf
+    least_log = float(np.median(readings.logs[under])) if under.any() else readings.least_log
     states = np.where(under, OFF, np.where(readings.states == OVER, ON, readings.states))
-    return readings._replace(states=states.astype(np.uint8)), math.exp(least)
+    return readings._replace(states=states.astype(np.uint8), least_log=least_log)

@@ -28,6 +28,7 @@ from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -153,7 +154,7 @@ class Model:
         mode, unsure, fit = self._find(problem, self._table(problem), begin, attempts, known)
         evidence = mode.height
         if evidence > -math.inf:
-            evidence += log_volume.call(problem.kind, mode.p, mode.root)
+            evidence += _log_volume(problem.kind, mode)
         return Likeliest(mode, evidence, unsure, fit)
 
     def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
@@ -213,6 +214,9 @@ class Model:
 
     def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
+        if readings.least_log is not None:
+            noise = noise.copy()
+            noise[LEAST] = readings.least_log
         kind, n = self.kind, unknowns.call(self.kind, self.corners)
         if kind == ELLIPSE and belief is None:
             kind = OVAL
@@ -295,6 +299,13 @@ class Model:
         if problem.kind == OVAL:
             to_oval.call(begin)
         return begin
+
+
+def _log_volume(kind: int, mode: Mode) -> float:
+    """Return `sample.log_volume`, which is worth compiling for ovals alone."""
+    if kind == OVAL:
+        return log_volume.call(kind, mode.p, mode.root)
+    return sum(0.5 * LN_TWO_PI - math.log(width) for width in mode.root.diagonal().tolist())
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:

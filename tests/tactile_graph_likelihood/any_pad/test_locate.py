@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad.choose import Locate
@@ -19,10 +18,7 @@ from tactile_graph_likelihood.settings import FootprintSettings
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import BASE, KINDS, Bench
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def looked_at(kind, n=18, seed=5, step=None, shape="disc"):
@@ -120,6 +116,19 @@ def test_readings_need_no_quantity_and_no_scale():
     found = LocateDisc()(Image(counts, (1.3, 1.3), (-0.15, -0.15), "counts"))
     assert math.hypot(found.x_cm - 9.0, found.y_cm - 11.0) < 0.35
     assert found.radius_cm == pytest.approx(5.0, abs=0.5)
+    assert found.fits
+
+
+def test_cells_that_are_nearly_square_lie_where_they_lie():
+    rng = np.random.default_rng(8)
+    y, x = np.mgrid[0:30, 0:20] + 0.5
+    near = np.hypot(x - 8.0, y - 24.0) < 4.0
+    counts = 5.0 * rng.standard_normal(x.shape) + near * rng.uniform(150.0, 250.0, x.shape)
+    square = LocateDisc()(Image(counts, (0.5, 0.5), (0.0, 0.0), "counts"))
+    lower = LocateDisc()(Image(counts, (0.5, 0.49), (0.0, 0.0), "counts"))
+    assert lower.x_cm == pytest.approx(square.x_cm)
+    assert lower.y_cm == pytest.approx(0.98 * square.y_cm)
+    assert lower.posterior.contains(Circle(4.0, 24.0 * 0.49, 2.0))
 
 
 def test_a_start_of_its_own_shape_is_taken():
