@@ -203,14 +203,15 @@ class Naive:
 
     def each(self, step: NaiveStep, body: Any, arguments: dict[str, Any], at: str) -> Outcome:
         lists = {p: v for p, v in arguments.items() if isinstance(v, tuple)}
-        items = [
-            self.call(step, body, {**arguments, **{p: v[i] for p, v in lists.items()}}, at)
-            for i in range(len(next(iter(lists.values()))))
-        ]
-        values = tuple(o.value for o in items if o.has_value)
-        if values:
-            return value(values)
-        return Outcome("failed" if items else "skipped", origin=at)
+        items = []
+        for i in range(len(next(iter(lists.values())))):
+            item = {p: v[i] for p, v in lists.items()}
+            lacking = next((v for v in item.values() if isinstance(v, Outcome)), None)
+            items.append(lacking or self.call(step, body, {**arguments, **item}, at))
+        if any(o.has_value for o in items):
+            return value(tuple(o.value if o.has_value else o for o in items))
+        failed = next((o for o in items if o.state == "failed"), None)
+        return failed or Outcome("skipped", origin=at)
 
     # -- what depends on no frame --------------------------------------------------------------
 

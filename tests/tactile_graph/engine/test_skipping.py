@@ -411,14 +411,18 @@ def test_each_runs_a_step_over_the_items_of_a_list() -> None:
     assert run(p)["e"] == (9, 10, 11)
 
 
-def test_items_that_fail_are_left_out_but_reported() -> None:
+def test_an_item_that_fails_keeps_its_place_and_is_named() -> None:
     p = make(
         f"{V}\nm: {{step: many, in: v}}\ne: {{step: picky, in: m, each: true, with: {{bad: 2}}}}",
         "e",
     )
     result = run(p)
-    assert result["e"] == (3, 5)
-    assert [f.reason for f in result.failures] == ["ValueError: 4!"]
+    first, failed, last = result["e"]
+    assert (first, last) == (3, 5)
+    assert (failed.origin, failed.item, failed.reason) == ("e", (1,), "ValueError: 4!")
+    assert [(f.item, f.reason) for f in result.failures] == [((1,), "ValueError: 4!")]
+    assert result.gaps == {"e": [failed]}
+    assert not result.ok
     assert run(p, 1).failures == []
 
 
@@ -489,10 +493,12 @@ def test_nodes_inside_can_be_asked_for(tmp_path: Any) -> None:
 def test_each_runs_a_pipeline_over_a_list_and_keeps_the_results_of_its_items(tmp_path: Any) -> None:
     p = using(tmp_path, "i: {step: images, in: frame}\nu: {use: inner, in: i, each: true}", "u")
     result = run(p)
-    assert result["u"].s == (5, 6)
-    assert result["u"].t == (3, 4)
+    skipped, *rest = result["u"].s
+    assert (rest, skipped.origin, skipped.item) == ([5, 6], "s", (0,))
+    *rest, failed = result["u"].t
+    assert (rest, failed.origin, failed.item) == ([3, 4], "t", (2,))
     assert [r.frame.image.peak for r in result.inner["u"]] == [3, 4, 5]
-    assert [f.origin for f in result.failures] == ["t"]
+    assert [(f.origin, f.item) for f in result.failures] == [("t", (2,))]
     assert run(p, 0).outcome("u").reason == "no items to run for"
 
 
