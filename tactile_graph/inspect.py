@@ -13,7 +13,15 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
 - `Replay`: what a plan alone would have come to, from a run that settled more.
 """
 
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done, Failed, Skipped, gaps, with_value
+from tactile_graph.engine.outcome import (
+    NO_VALUE,
+    NOT_ASKED,
+    Done,
+    Failed,
+    Skipped,
+    gaps,
+    with_value,
+)
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
 from tactile_graph.engine.rows import as_data, scalars, without_nan

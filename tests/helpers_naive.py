@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from tactile_graph.errors import Skip
+
 _REF = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 _WORDS = {"and", "or", "not"}
 
@@ -92,6 +94,15 @@ class Naive:
             self.settled[at] = guard or self.ref(name, inner, f"{prefix}{root}/")
         return self.settled[at]
 
+    def whole(self, items: tuple[Any, ...]) -> Outcome:
+        """Return a list as a step takes it that knows of no empty place."""
+        empty = [v for v in items if isinstance(v, Outcome)]
+        kept = tuple(v for v in items if not isinstance(v, Outcome))
+        failed = next((o for o in empty if o.state == "failed"), None)
+        if failed is not None or (empty and not kept):
+            return failed or empty[0]
+        return value(kept)
+
     # -- nodes -------------------------------------------------------------------------------
 
     def node(self, name: str, document: Any, prefix: str) -> Outcome:
@@ -139,6 +150,10 @@ class Naive:
         lacking: Outcome | None = None
         for port, wired in self.wired(step, body).items():
             found = self.port(wired, document, prefix)
+            if found.has_value and isinstance(found.value, tuple) and not body.get("each"):
+                found = self.whole(found.value)
+                if not found.has_value:
+                    return found
             if found.has_value:
                 arguments[port] = found.value
             elif found.state == "failed":
@@ -198,6 +213,8 @@ class Naive:
             }
         try:
             return value(step.function(**arguments, **settings))
+        except Skip:
+            return Outcome("skipped", origin=at)
         except Exception:
             return Outcome("failed", origin=at)
 

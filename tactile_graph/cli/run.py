@@ -249,7 +249,8 @@ class _Run:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted:
             return INTERRUPTED
-        return SOME_FAILED if self.tally.n_failed or self.tally.not_finite else 0
+        tally = self.tally
+        return SOME_FAILED if tally.n_failed or tally.n_items_failed or tally.not_finite else 0
 
     def _no_frames(self) -> None:
         got = self.report.counts["frames"]

@@ -13,8 +13,8 @@ from typing import Any, BinaryIO, NoReturn, Protocol
 import click
 
 from tactile_graph.api.result import Result
-from tactile_graph.engine.columns import OutputColumns, outcome_word, values_of
-from tactile_graph.engine.outcome import NO_VALUE
+from tactile_graph.engine.columns import OutputColumns, values_of
+from tactile_graph.engine.outcome import NO_VALUE, outcome_word
 from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError

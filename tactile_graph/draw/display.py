@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.outcome import Done, Failed, Skipped
+from tactile_graph.engine.outcome import Done, Failed, Skipped, outcome_word
 from tactile_graph.engine.rows import scalars
 from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
 
@@ -182,6 +182,9 @@ class _Listing:
         if not items:
             self.records.append(Note("", "none"))
         for number, item in enumerate(items, 1):
+            if isinstance(item, Skipped | Failed):
+                self.records.append(Note(f"{number}", outcome_word(item)))
+                continue
             self.add(item, alone=False)
             at = _middle(item) if 1 < len(items) <= MOST_NUMBERED else None
             if at is not None:

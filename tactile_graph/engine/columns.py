@@ -8,7 +8,7 @@ from typing import Any, Literal, get_origin
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
+from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.rows import scalars
 from tactile_graph.engine.truth import error_names, errors_against, nearest
@@ -119,12 +119,3 @@ def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:
         errors = errors_against(outcome, true)
         values.update({c.key: errors.get(c.error) for c in columns.errors})
     return values
-
-
-def outcome_word(outcome: Any) -> str:
-    """Return ``ok``, or ``skipped: why``, or ``failed: why``."""
-    if isinstance(outcome, Failed):
-        return f"failed: {outcome.reason}"
-    if isinstance(outcome, Skipped):
-        return f"skipped: {outcome.reason}"
-    return "ok"

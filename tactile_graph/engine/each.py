@@ -21,6 +21,7 @@ from tactile_graph.engine.outcome import (
     raised,
     with_value,
 )
+from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import Binding, Node
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.wires.frame import Frame
@@ -89,7 +90,7 @@ def mapped(node: Node, context: Context) -> Call:
     names = list(node.inner.outputs)
 
     def call(frame: Any) -> Any:
-        results = []
+        results: list[Outcomes | None] = []
         outer = context.frame
         for i, image in enumerate(frame):
             if image.__class__ in NO_VALUE:
@@ -111,12 +112,12 @@ def mapped(node: Node, context: Context) -> Call:
     return call
 
 
-def _of_item(result: Any, name: str, image: Any, i: int) -> Any:
+def _of_item(result: Outcomes | None, name: str, image: Any, i: int) -> Any:
     """Return what an embedded pipeline's output came to for an item; the item's own without one."""
     if result is None:
         return image
     outcome = result.outcome(name)
-    return outcome.of_item(i) if outcome.__class__ in NO_VALUE else outcome
+    return outcome.of_item(i) if isinstance(outcome, Skipped | Failed) else outcome
 
 
 def told_of_gaps(node: Node, step: Call) -> Call:

@@ -116,10 +116,12 @@ NOT_ASKED = Skipped("", "nothing asked for it")
 
 
 def gaps(value: Any) -> list[Skipped | Failed]:
-    """Return the outcomes of those items of a list that have no value; of others nothing."""
+    """Return the outcomes of those items of a list that have no value, of lists in records too."""
     if not isinstance(value, list | tuple):
         return []
-    return [item for item in value if item.__class__ in NO_VALUE]
+    if hasattr(value, "_fields"):
+        return [gap for field in value for gap in gaps(field)]
+    return [item for item in value if isinstance(item, Skipped | Failed)]
 
 
 def with_value(items: Iterable[Any]) -> list[Any]:
@@ -130,6 +132,14 @@ def with_value(items: Iterable[Any]) -> list[Any]:
 def item_words(item: tuple[int, ...]) -> str:
     """Return which item of a list that is, counted from 1 as pictures do: ``item 2``."""
     return f"item {'.'.join(str(i + 1) for i in item)}" if item else ""
+
+
+def outcome_word(outcome: Outcome) -> str:
+    """Return ``ok``, or ``skipped: why``, or ``failed: why``; of a list what its items lack."""
+    if isinstance(outcome, Skipped | Failed):
+        where = f"{item_words(outcome.item)} " if outcome.item else ""
+        return f"{where}{'failed' if outcome.__class__ is Failed else 'skipped'}: {outcome.reason}"
+    return "; ".join(outcome_word(gap) for gap in gaps(outcome)) or "ok"
 
 
 class Done:

@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import Done, Failed, Skipped
+from tactile_graph.engine.outcome import (
+    NO_VALUE,
+    Done,
+    Failed,
+    Skipped,
+    gaps,
+    item_words,
+    outcome_word,
+    with_value,
+)
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.errors import PluginError
 
@@ -27,12 +36,12 @@ def result_row(result: Outcomes) -> dict[str, Any]:
         row["time_s"] = frame.time_s
     for name in result.plan.asked:
         outcome = result.outcome(name)
-        if isinstance(outcome, Failed):
-            row[name] = f"failed: {outcome.reason}"
-        elif isinstance(outcome, Skipped):
-            row[name] = f"skipped: {outcome.reason}"
-        else:
-            row.update(scalars(name, outcome))
+        if outcome.__class__ in NO_VALUE:
+            row[name] = outcome_word(outcome)
+            continue
+        row.update(scalars(name, outcome))
+        if gaps(outcome):
+            row[name] = outcome_word(outcome)
     return row
 
 
@@ -56,7 +65,7 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
     if fields:
         return row
     if isinstance(value, list | tuple):
-        return {f"{name}.count": len(value)}
+        return {f"{name}.count": len(with_value(value))}
     count = getattr(value, "count", None)
     return {f"{name}.count": count} if isinstance(count, int) else {}
 
@@ -73,9 +82,10 @@ def as_data(value: Any, full: bool = True) -> Any:
         told by their shape alone.
     """
     if isinstance(value, Skipped):
-        return {"skipped": value.reason, "origin": value.origin}
+        return {"skipped": value.reason, "origin": value.origin, **_item(value)}
     if isinstance(value, Failed):
-        return {"failed": value.reason, "origin": value.origin, "kind": value.kind}
+        told = {"failed": value.reason, "origin": value.origin, "kind": value.kind}
+        return {**told, **_item(value)}
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist() if full or value.size <= MOST_NUMBERS else _shape(*value.shape)
     if isinstance(value, bool | int | float | str) or value is None:
@@ -91,6 +101,10 @@ def as_data(value: Any, full: bool = True) -> Any:
         numbers = len(data) > MOST_NUMBERS and not isinstance(data[0], dict)
         return _shape(len(data)) if numbers and not full else data
     return _record(value, full)
+
+
+def _item(outcome: Skipped | Failed) -> dict[str, str]:
+    return {"item": item_words(outcome.item).removeprefix("item ")} if outcome.item else {}
 
 
 def _shape(*shape: int) -> dict[str, list[int]]:

@@ -37,7 +37,6 @@ class Ref:
         return not self.path and not self.item_path
 
 
-
 def arms(kind: Any) -> tuple[Any, ...]:
     """Return the arms of a union, or the type alone; ``Annotated`` stripped."""
     bare, _ = strip(kind)
