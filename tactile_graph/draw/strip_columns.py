@@ -13,9 +13,9 @@ from tactile_graph.engine.fields import field_getter
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
+from tactile_graph.wires.image import UNITS
 
 MOST_COLUMNS = 10
-UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 
 
 @dataclass(frozen=True)

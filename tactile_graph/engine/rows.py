@@ -20,6 +20,7 @@ from tactile_graph.engine.outcome import (
     with_value,
 )
 from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.truth import shape_kind
 from tactile_graph.errors import PluginError
 
 MOST_NUMBERS = 32
@@ -125,7 +126,9 @@ def _record(value: Any, full: bool) -> Any:
     else:
         names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
     shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
-    data = {n: as_data(getattr(value, n), full) for n in shown}
+    shape = shape_kind(type(value))
+    data = {} if shape is None or "kind" in shown else {"kind": shape.__name__}
+    data |= {n: as_data(getattr(value, n), full) for n in shown}
     for name in getattr(value, "columns_shown", ()):
         data.setdefault(name, as_data(getattr(value, name), full))
     return data if data else str(value)

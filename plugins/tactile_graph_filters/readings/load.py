@@ -36,6 +36,9 @@ class Load(NamedTuple):
     n_left_out: int = 0
 
 
+Load.image_unit = ("total", "peak")  # type: ignore[attr-defined]  # within, it would be a field
+
+
 @compiled_later
 def measure(values, usable, above):  # type: ignore[no-untyped-def]
     """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
