@@ -19,6 +19,8 @@ from tactile_graph.engine.outcome import Failed, Skipped, item_words
 from tactile_graph.steps.injected import Report
 
 MOST_TROUBLES = 20
+LOOKED_THROUGH = 100
+"""Frames at the beginning in which nodes are asked what they assume."""
 LONGEST_REASON = 300
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
@@ -60,6 +62,8 @@ class Tally:
     n_not_finite: int = 0
     """Frames with all outputs and items, of which one holds NaN or infinity."""
     n_items_failed: int = 0
+    assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
+    """What a node took that nobody said, and in which frame first."""
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     not_finite: dict[tuple[str, str], _Kept] = field(default_factory=dict)
@@ -70,6 +74,8 @@ class Tally:
     def add(self, result: Result) -> None:
         """Count a frame."""
         self.n += 1
+        if self.n <= LOOKED_THROUGH:
+            self._assumed(result)
         classes = {result.outcome(o.output).__class__ for o in self.outputs}
         self.n_failed += Failed in classes
         self.n_skipped += Skipped in classes and Failed not in classes
@@ -104,6 +110,13 @@ class Tally:
         kept.n += kept.last_frame != frame or kept.n == 0
         kept.last_frame = frame
 
+    def _assumed(self, result: Result) -> None:
+        """Note what nodes took that nobody said."""
+        for item in result.plan.nodes:
+            told = getattr(result.outcome(item.name), "assumed", "")
+            if told and item.name not in self.assumed:
+                self.assumed[item.name] = (told, result.frame.index)
+
     def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
         """Note each value that is no number and should be one; return whether there is any."""
         strange = [c.key for c in output.values if not _finite(values.get(c.key))]
@@ -130,6 +143,7 @@ class Tally:
             "frames_lacking_items": self.n_lacking,
             "frames_not_finite": self.n_not_finite,
             "failures_by_node": failed,
+            "assumed": {node: told for node, (told, _) in self.assumed.items()},
         }
 
     # -- in closing --------------------------------------------------------------------------
@@ -158,6 +172,8 @@ class Tally:
         for (key, _), kept in self.not_finite.items():
             text = f"{key} {_times(kept)}: {kept.outcome}, which is no answer"
             yield _labelled("strange", "red", text)
+        for node, (told, frame) in self.assumed.items():
+            yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
             text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"

@@ -92,19 +92,23 @@ def step_troubles(
     return troubles, rules
 
 
-def quantity_troubles(
-    node: Node, takes: Mapping[str, Quantity], facts: FactTable
-) -> tuple[list[Trouble], list[FrameRule]]:
-    """Return what is wrong at the ports of a step that, made with its settings, takes less."""
+def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list[FrameRule]]:
+    """Return what is wrong at the ports of a step that, made with its settings, takes less.
+
+    It says so itself: ``takes`` holds the quantities by port, ``takes_by`` the setting at fault.
+    """
+    made = node.callable
+    takes = {p: Quantity(*names) for p, names in getattr(made, "takes", {}).items()}
+    setting = getattr(made, "takes_by", "")
     troubles: list[Trouble] = []
     rules: list[FrameRule] = []
     by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in node.inputs if b.refs}
     for port in takes.keys() & by_port.keys():
         known, what = by_port[port], node.what
-        text = quantity_trouble(what, port, takes[port], known.quantity)
+        text = quantity_trouble(what, port, takes[port], known.quantity, setting)
         troubles += [(port, text)] if text else []
         if known.of_frame:
-            rules.append(FrameRule(node.name, port, what, takes[port]))
+            rules.append(FrameRule(node.name, port, what, takes[port], setting=setting))
     return troubles, rules
 
 

@@ -35,7 +35,6 @@ from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.mistakes import why
-from tactile_graph.steps.rules import Quantity
 from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
 
@@ -207,10 +206,7 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"
         scope.problem(declared, f": {text}", "with")
         return node
-    takes = getattr(made.callable, "takes", {})
-    troubles, rules = quantity_troubles(
-        made, {port: Quantity(*names) for port, names in takes.items()}, scope.facts
-    )
+    troubles, rules = quantity_troubles(made, scope.facts)
     scope.rules += rules
     _report_ports(scope, declared, troubles)
     return made
