@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import click
@@ -23,6 +24,7 @@ def plugins() -> None:
     from tactile_graph.cli.terminal import console
 
     found = registry.installed()
+    broken = _broken_steps(found)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("plugin", style="bold", no_wrap=True)
     table.add_column("package", no_wrap=True)
@@ -34,12 +36,15 @@ def plugins() -> None:
     table.add_column("offers", overflow="fold")
     for plugin in found.plugins:
         spent = ["" if plugin.blocked else f"{plugin.import_ms:.1f}"] if timed else []
-        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin))
+        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin, broken))
     out.print(table)
     for plugin in found.plugins:
         if plugin.error:
             text = Text.assemble((f"{plugin.label}: ", "bold red"), plugin.error)
             out.print(text, soft_wrap=True)
+    for name, trouble in broken.items():
+        text = f"step {name!r} of {found.offer('steps', name).plugin.label}: {trouble}"
+        out.print(Text.assemble(("cannot be used: ", "bold red"), text), soft_wrap=True)
     from tactile_graph.cli.app import COMMANDS
 
     for words in near_groups(registry.GROUP):
@@ -54,16 +59,30 @@ def _hidden(found: registry.Registry, name: str) -> str:
     return f"command {name!r} of {label} is refused: tactile-graph has its own"
 
 
-def _offers(plugin: registry.Plugin) -> Any:
+def _broken_steps(found: registry.Registry) -> dict[str, str]:
+    """Return what is wrong with each step that is not where its plugin says."""
+    from tactile_graph.plugins.outline import outline
+
+    told = {n: outline(found.offer("steps", n).target).trouble for n in found.names("steps")}
+    return {name: trouble for name, trouble in told.items() if trouble}
+
+
+def _offers(plugin: registry.Plugin, broken: Mapping[str, str]) -> Any:
     from rich.text import Text
 
     if plugin.blocked:
         return Text("blocked", style="yellow")
     if plugin.error:
         return Text("failed to load, see below", style="red")
+    usable = {
+        kind: [n for n in names if kind != "steps" or n not in broken]
+        for kind, names in plugin.offers.items()
+    }
     parts = [
         f"{len(names)} {kind if len(names) != 1 else kind[:-1]}"
-        for kind, names in plugin.offers.items()
+        for kind, names in usable.items()
         if names
     ]
+    n_broken = len(plugin.offers.get("steps", ())) - len(usable.get("steps", ()))
+    parts += [f"{n_broken} of its steps cannot be used, see below"] if n_broken else []
     return Text(", ".join(parts) or "nothing", style="" if parts else "dim")
