@@ -6,15 +6,17 @@ The profile ``fast`` draws the same examples every time, ``full`` new ones;
 
 from __future__ import annotations
 
+import gc
 import os
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
-from helpers_modes import answered_by
+from helpers_modes import answered_by, cool_down
 from helpers_processes import compile_once_among_processes
+from tactile_graph.compiled import warm_up
 
 settings.register_profile("fast", derandomize=True, deadline=None)
 settings.register_profile("full", deadline=None)
@@ -24,6 +26,37 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))
 def pytest_configure() -> None:
     if "PYTEST_XDIST_WORKER" in os.environ:
         compile_once_among_processes()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Look for no garbage in what is imported and collected, now or later: it stays.
+
+    That takes a third of the time otherwise.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
+@pytest.fixture(autouse=True)
+def cool_kernels() -> Iterator[None]:
+    """Whatever a test warms up is for that test alone."""
+    yield
+    cool_down()
+
+
+@pytest.fixture
+def warm_kernels() -> None:
+    """Machine code from the first call on, as for live sources.
+
+    For tests with much to do: plain loops would take long, and have those below them compiled
+    for themselves.
+    """
+    warm_up()
 
 
 @pytest.fixture

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from typing import Any, Literal
 from unittest.mock import patch
 
+from numpy.typing import NDArray
+
 from tactile_graph.compiled import kernel
 
 
@@ -30,6 +32,26 @@ def plainly(one: kernel.Kernel[..., Any]) -> Callable[..., Any]:
             return one.loops(*args)
 
     return run
+
+
+def compiled(one: kernel.Kernel[..., Any]) -> Callable[..., Any]:
+    """Return a kernel's machine code: the counterpart of `plainly`."""
+    return one.compiled
+
+
+def held(values: NDArray[Any]) -> NDArray[Any]:
+    """Return an array as frames, masks and points hold it, so that one machine code serves both."""
+    values.setflags(write=False)
+    return values
+
+
+def cool_down() -> None:
+    """Let kernels that `warm_up` told to be compiled, and that nobody called, be plain again."""
+    if kernel._warm:
+        kernel._warm = False
+        for each in kernel._kernels:
+            if each._entry is None:
+                each.reset()
 
 
 def _restart() -> None:

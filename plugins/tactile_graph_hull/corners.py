@@ -37,7 +37,7 @@ def hull_polygon(xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: fl
     Degenerate
         If there are no points, or some are not finite.
     """
-    xy = np.ascontiguousarray(xy_cm, dtype=np.float64)
+    xy = as_points(np.ascontiguousarray(xy_cm, dtype=np.float64))
     found = corners(xy, rounding_ulps)
     if len(found) == 0:
         found = _out_of_range(xy, corners, rounding_ulps)
@@ -58,7 +58,15 @@ def _out_of_range(
     scaled = np.ldexp(xy, -shift)
     # Beside the largest coordinate these are 270 decimal places down: far below its rounding.
     scaled[np.abs(scaled) < SMALLEST] = 0.0
-    return np.ldexp(corners(scaled, rounding_ulps), shift)
+    return np.ldexp(corners(as_points(scaled), rounding_ulps), shift)
+
+
+def as_points(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the array as `Points` hold it, read-only: others have the corners compiled anew."""
+    if xy.flags.writeable:
+        xy = xy.view()
+        xy.setflags(write=False)
+    return xy
 
 
 @compiled_later

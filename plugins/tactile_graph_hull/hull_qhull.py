@@ -9,7 +9,7 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Points, Polygon
-from tactile_graph_hull.corners import hull_polygon
+from tactile_graph_hull.corners import as_points, hull_polygon
 from tactile_graph_hull.hull import chain_corners
 
 NEAR = 2.0**-40  # Qhull merges within some dozen units in the last place; this is a wide net
@@ -61,7 +61,8 @@ def qhull_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     except QhullError:
         return chain_corners(xy, ulps)
     rounding = float(np.abs(xy).max()) / half
-    return chain_corners(xy[_not_inside(scaled, corners, NEAR * (1.0 + rounding))], ulps)
+    left = xy[_not_inside(scaled, corners, NEAR * (1.0 + rounding))]
+    return chain_corners(as_points(left), ulps)
 
 
 def _not_inside(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +14,7 @@ from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
 from tactile_graph.pipeline.scope import Overrides
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 
@@ -77,6 +77,24 @@ class Pipeline(Graph):
     def of(cls, graph: Graph) -> Pipeline:
         """Return the pipeline of a graph."""
         return cls(**{f.name: getattr(graph, f.name) for f in fields(graph)})
+
+    def __copy__(self) -> Pipeline:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Pipeline:
+        return self
+
+    def __reduce__(self) -> tuple[Callable[..., Pipeline], tuple[Any, ...]]:
+        """Pickle by text, settings and source: another process resolves them by its own plugins.
+
+        Raises
+        ------
+        UsageError
+            If it was loaded with a registry of its own, which no other process has.
+        """
+        if self.registry is not None and self.registry is not installed():
+            raise UsageError(f"pipeline {self.name!r} has a registry of its own: not to be pickled")
+        return _unpickled, (self.text, self.file, dict(self.overrides), self.source_override)
 
     # -- running -----------------------------------------------------------------------------
 
@@ -250,6 +268,10 @@ class Pipeline(Graph):
 
     def __repr__(self) -> str:
         return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
+
+
+def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverride) -> Pipeline:
+    return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
 
 
 def _as_frame(frame: Any) -> Frame:

@@ -122,6 +122,10 @@ class Image(_Gridded):
             self.valid if valid is None else valid,
         )
 
+    def __reduce__(self) -> tuple[type[Image], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of: another process's image is as frozen."""
+        return Image, (self.values, self.pitch_cm, self.origin_cm, self.quantity, self.valid)
+
     def mask(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""
         return Mask(values, self.pitch_cm, self.origin_cm)
@@ -177,6 +181,10 @@ class Mask(_Gridded):
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
         _set_count(self, count)
+
+    def __reduce__(self) -> tuple[type[Mask], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of."""
+        return Mask, (self.values, self.pitch_cm, self.origin_cm, self._count)
 
     def with_values(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""

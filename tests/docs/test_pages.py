@@ -213,6 +213,7 @@ def three_discs() -> tuple[np.ndarray, np.ndarray]:
     return load, pad.conductance_s(load)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [Divider, Floating, Feedback])
 @pytest.mark.parametrize("driver_ohm", [0.0, 100.0])
 def test_conductances_are_found_back_as_the_page_says(kind: type[Any], driver_ohm: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
@@ -32,14 +32,17 @@ SHARED = ("tactile_graph.plugins.registry", "tactile_graph.pipeline.document")
 mistakes are told with their places."""
 
 
-def imports(path: Path) -> Iterator[tuple[str, str]]:
-    """Yield (module, name) for each import of a file; the name is empty for plain imports."""
+@cache
+def imports(path: Path) -> list[tuple[str, str]]:
+    """Return (module, name) for each import of a file; the name is empty for plain imports."""
+    found = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from ((a.name, "") for a in node.names)
+            found += [(a.name, "") for a in node.names]
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}: relative import"
-            yield from ((node.module or "", a.name) for a in node.names)
+            found += [(node.module or "", a.name) for a in node.names]
+    return found
 
 
 def files(*folders: str) -> list[Path]:
@@ -86,6 +89,7 @@ def modules() -> dict[str, Path]:
     return found
 
 
+@cache
 def import_graph() -> nx.DiGraph[str]:
     """Return which module imports which, lazily or for a type checker only being no excuse."""
     known = modules()

@@ -10,12 +10,15 @@ from hypothesis.extra.numpy import arrays
 from scipy.spatial import ConvexHull
 
 from helpers_hulls import KINDS, exact_hull, random_set
+from helpers_modes import answered_by
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_hull.hull import chain_corners, hull
 from tactile_graph_hull.hull_beneath_beyond import beneath_beyond_corners, hull_beneath_beyond
 from tactile_graph_hull.hull_graham import graham_corners, hull_graham
 from tactile_graph_hull.hull_qhull import hull_qhull
+
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 ALL_HULLS = [hull, hull_graham, hull_beneath_beyond, hull_qhull]
 OTHERS = ALL_HULLS[1:]
@@ -46,10 +49,12 @@ def test_exact_hull_is_that_of_fractions(kind):
 @pytest.mark.parametrize("kernel", KERNELS, ids=lambda k: k.__name__)
 def test_kernels_and_their_twins_agree(kernel):
     rng = np.random.default_rng(2)
-    for k in range(180):
-        xy = random_set(rng, k % KINDS)
-        for ulps in (0.0, 8.0):
-            assert np.array_equal(kernel.compiled(xy, ulps), kernel.reference(xy, ulps))
+    sets = [Points(random_set(rng, k % KINDS)).xy_cm for k in range(180)]
+    with answered_by("plain"):
+        expected = [[kernel.reference(xy, ulps) for ulps in (0.0, 8.0)] for xy in sets]
+    for xy, pair in zip(sets, expected, strict=True):
+        for ulps, corners in zip((0.0, 8.0), pair, strict=True):
+            assert np.array_equal(kernel.compiled(xy, ulps), corners)
 
 
 @pytest.mark.parametrize("find", ALL_HULLS)

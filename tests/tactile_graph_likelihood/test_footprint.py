@@ -7,7 +7,6 @@ import pytest
 
 from helpers_likelihood import NOISE, drawn, made
 from helpers_modes import answered_by
-from tactile_graph.compiled import warm_up
 from tactile_graph.engine.rows import as_data
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
@@ -17,13 +16,10 @@ from tactile_graph_likelihood.single.footprint_of import FootprintDisc, Footprin
 from tactile_graph_likelihood.single.likely import LikelyCircle, LikelyPolygon, likely
 from tactile_graph_likelihood.single.model import Model
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 DISCS = Model(DISC, noise=NOISE, whole=True)
 SLABS = Model(RECTANGLE, noise=NOISE, whole=True)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def discs(n, seed, **noise):

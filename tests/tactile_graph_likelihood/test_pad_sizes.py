@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import made
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
@@ -12,12 +11,9 @@ from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 SIGMA, VOIDS = 0.3, 0.05
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 MAT = Geometry(64, 27, 2.7, 0.3)

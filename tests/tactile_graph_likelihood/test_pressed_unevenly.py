@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
@@ -17,10 +16,7 @@ from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 DISC_CM = Circle(10.0, 9.5, 6.4)

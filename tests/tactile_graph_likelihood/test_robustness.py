@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
@@ -22,12 +21,9 @@ from tactile_graph_likelihood.single.readings import readings_of
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 DISCS = Model(DISC, noise=NOISE, whole=True)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def discs(n, seed):

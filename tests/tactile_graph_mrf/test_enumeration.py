@@ -88,6 +88,7 @@ def joint():
     return problem, states, base, bits, between, h_off, v_off
 
 
+@pytest.mark.slow
 def test_labels_and_all_lines_are_drawn_from_the_joint_distribution():
     problem, states, base, bits, between, h_off, v_off = joint()
     weights_h, weights_v = np.exp(-BETA * h_off), np.exp(-BETA * v_off)

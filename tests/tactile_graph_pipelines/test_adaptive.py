@@ -12,21 +12,17 @@ import pytest
 
 from tactile_graph import Circle, Frame, Pipeline, load
 from tactile_graph.api.result import Result
-from tactile_graph.compiled import warm_up
 from tactile_graph.engine.outcome import NO_VALUE, Skipped
 from tactile_graph.pipeline.graph import NodeKind
 from tactile_graph_fitters.circle.fit_circle_load import EvenCircle
 from tactile_graph_likelihood.single.likely import LikelyCircle
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
 SATURATED = 10e3  # g/cm^2, where an element's law ends at 10 kg
 BAYES = {f"bayes/{n}" for n in ("levels", "restored", "closed", "object", "outline", "hull")}
 CHEAP = {"cells", "footprint", "siemens", "grams", "even"}
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled() -> None:
-    warm_up()
 
 
 def frames(n: int, seed: int = 5, g_cm2: float = 0.0, **settings: Any) -> list[Frame]:

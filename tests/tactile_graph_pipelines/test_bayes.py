@@ -11,6 +11,8 @@ from tactile_graph import Circle, Frame, Rectangle, load
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 EVERY = ("bayes-smooth", "bayes-lines", "bayes-circle", "bayes-rectangle", "bayes-objects")
 PARENTS = {
     "bayes-smooth": "",
@@ -113,7 +115,9 @@ def test_an_empty_pad_is_not_swept(name: str) -> None:
         assert not result.failures
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize(
+    "name", [*EVERY[:-1], pytest.param("bayes-objects", marks=pytest.mark.slow)]
+)
 def test_odd_images_come_to_an_answer_or_a_reason(name: str) -> None:
     pipeline = load(name)
     one, full, line = np.zeros((16, 16)), np.ones((16, 16)), np.zeros((16, 16))

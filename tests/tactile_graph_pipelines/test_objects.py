@@ -14,6 +14,8 @@ from tactile_graph.engine.outcome import Skipped
 from tactile_graph_filters.contacts.align_contacts import AlignContacts
 from tactile_graph_tracking.score_objects import ObjectScore, score_objects
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 # The alignment of the real panel was fitted on recordings 0000, 0008, …; tried on the others.
 REAL_CAMERA = ((1.0065, 0.0279), (0.0011, 1.0187)), (-0.2352, -0.2531)
 REAL_LOG_AREA = (1.5311, -0.06584, -0.16679, -6e-05, 0.00505, 0.00438)

@@ -4,16 +4,13 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, load
-from tactile_graph.compiled import warm_up
 from tactile_graph.engine.outcome import Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
-pytestmark = pytest.mark.slow  # the kernels alone compile for half a minute
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled() -> None:
-    warm_up()
+pytestmark = [
+    pytest.mark.slow,  # the kernels alone compile for half a minute
+    pytest.mark.usefixtures("warm_kernels"),
+]
 
 
 def test_one_to_six_objects_are_counted_and_placed() -> None:

@@ -22,6 +22,8 @@ from tactile_graph_thesis.measure.rectangles import (
     signed_errors,
 )
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 ORIGIN_CM = (-0.15, -0.15)
 EVERY = ("rectangle-1", "rectangle-2", "rectangle-3", "ellipse-direct")
 

@@ -21,6 +21,8 @@ from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.trial import Trial
 from tactile_graph_stress.verdict import Outcome
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 BOUNDS = {
     "fit_circle": 100.0,
     "fit_circle_kasa": 100.0,

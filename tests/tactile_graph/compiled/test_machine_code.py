@@ -81,6 +81,7 @@ def test_the_next_run_loads_what_was_kept_and_can_raise(fresh: Any) -> None:
         again(np.ones(helpers_kernels.MOST + 2))
 
 
+@pytest.mark.slow
 def test_what_was_kept_runs_without_the_compiler(tmp_path: Path) -> None:
     """A process of its own: this one has loaded the compiler long since."""
     code = """
@@ -188,6 +189,7 @@ def assigned(values: Any, n: int) -> float:
     return float(copy[0])
 
 
+@pytest.mark.slow
 def test_numbas_own_functions_serve_entries_and_others_alike() -> None:
     entry = whole.entry_of(assigned.loops)
     assert entry(VALUES, 5) == 1.0

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from helpers_classifiers import digital_disc, image_and_mask
+from helpers_modes import held
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph_classifiers.measuring.feature_sums import feature_sums
 from tactile_graph_classifiers.measuring.features import NAMES, FeaturesOf
@@ -140,8 +141,9 @@ def test_the_twins_agree(on, seed):
     pytest.importorskip("numba")
     rng = np.random.default_rng(seed)
     values, good = rng.normal(1.0, 1.0, on.shape), on & (rng.random(on.shape) < 0.8)
-    plain = feature_sums.reference(values, on, good)
-    assert feature_sums.compiled(values, on, good) == pytest.approx(plain, rel=1e-9, abs=1e-9)
+    arrays_ = held(values), held(on), held(good)
+    plain = feature_sums.reference(*arrays_)
+    assert feature_sums.compiled(*arrays_) == pytest.approx(plain, rel=1e-9, abs=1e-9)
 
 
 @settings(max_examples=60, deadline=None)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy import ndimage
 
 from helpers_filters import ORIGIN, PITCH, drawn, image_of, masks, random_mask
+from helpers_modes import held
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.contacts import Contact, contacts
@@ -108,7 +109,7 @@ def test_both_twins_label_as_scipy_does(twin, eight):
         pytest.importorskip("numba")
     for seed, shape in enumerate([(16, 16), (1, 1), (3, 40), (33, 9)]):
         on = random_mask(seed, shape, 0.5).values
-        values = np.random.default_rng(seed).normal(size=shape)
+        values = held(np.random.default_rng(seed).normal(size=shape))
         labels = np.empty(shape, np.int32)
         table = getattr(label, twin)(values, on, eight, labels)
         expected, n = ndimage.label(on, EIGHT if eight else None)

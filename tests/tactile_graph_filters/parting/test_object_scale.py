@@ -8,6 +8,8 @@ from helpers_objects import LEVEL_V, discs, frames
 from tactile_graph_filters.parting.object_scale import Cells, parts, split_by_scale
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 SPLIT = SplitContacts()
 FINE = SplitContacts(working_cells=10**6)
 
@@ -55,6 +57,7 @@ def test_gaps_of_two_cells_lie_within_a_part_and_of_three_between_parts():
     assert [p[1].tolist() for p in parts(row)] == [[0, 3], [7, 8]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [32, 64, 128])
 def test_a_disc_on_a_pad_of_any_size_is_one_contact(size):
     middle, radius = size / 2, 0.25 * size
@@ -62,6 +65,7 @@ def test_a_disc_on_a_pad_of_any_size_is_one_contact(size):
     assert counts(SPLIT, images) == [1] * 12
 
 
+@pytest.mark.slow
 def test_what_falls_apart_in_detail_is_whole_on_coarser_cells():
     images = [uneven(discs(24, 24, (12, 12, 10)), seed, voids=0.45) for seed in range(8)]
     assert counts(SPLIT, images) == [1] * 8

@@ -15,6 +15,8 @@ from tactile_graph_filters.parting.filled_hull import misfit
 from tactile_graph_filters.parting.joined_basins import joined
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 SPLIT = SplitContacts()
 NARROW = drawn("""
     .###......###.

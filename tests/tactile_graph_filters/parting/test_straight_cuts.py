@@ -21,6 +21,8 @@ from tactile_graph_filters.parting.split_contacts import SplitContacts
 from tactile_graph_filters.parting.straight_cuts import joined_and_cut
 from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 LOBES = drawn("""
     .###...###.
     ####..#####
@@ -173,6 +175,7 @@ def test_compiled_and_plain_agree(scene):
         assert np.array_equal(*owners)
 
 
+@pytest.mark.slow
 def test_touching_pairs_are_told_apart_more_often_and_single_objects_cut_no_more_often():
     """Discs of radius 3 to 4.4 cm that touch; long thin rectangles; discs of the thesis."""
     rng = np.random.default_rng(21)

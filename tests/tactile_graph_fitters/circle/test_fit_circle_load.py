@@ -12,6 +12,8 @@ from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 PITCH, ORIGIN = 1.3, (-0.15, -0.15)
 GEOMETRY = Geometry(16, 16, 1.0, 0.3)
 
@@ -38,6 +40,7 @@ def off(found, truth):
     return max(centre, abs(found.radius_cm - truth.radius_cm))
 
 
+@pytest.mark.slow
 def test_an_even_load_gives_the_disc_to_a_hundredth_of_an_element():
     rng = np.random.default_rng(0)
     for _ in range(30):
@@ -60,6 +63,7 @@ def test_lightly_covered_elements_that_do_not_show_are_no_sign_of_a_smaller_disc
     assert np.mean([f.radius_cm - d.radius_cm for f, d in zip(blind, discs, strict=True)]) < -5e-3
 
 
+@pytest.mark.slow
 def test_its_standard_deviations_are_those_of_its_errors():
     rng = np.random.default_rng(2)
     centre, radius = [], []

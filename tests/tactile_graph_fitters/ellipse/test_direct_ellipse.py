@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_ellipses import DEGENERATE, WELL, anywhere, drawn, oval
-from helpers_modes import answered_by
+from helpers_modes import answered_by, held
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import OK, into_frame
@@ -52,6 +52,7 @@ def test_it_is_the_eigenvector_of_halir_and_flusser(kind):
         assert [u, v, first, second] == pytest.approx(expected, rel=1e-9, abs=1e-9 * first)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*WELL, *DEGENERATE])
 def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
     """Degenerate ones too: whether there is an ellipse, and which; never anything but a number."""
@@ -66,6 +67,7 @@ def test_plain_and_compiled_agree_on_thousands_of_point_sets(kind):
             assert one[1:5] == pytest.approx(two[1:5], rel=1e-9, abs=1e-9 * one[3])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "n"), [(k, 40) for k in WELL if k != "blob"] + [(k, 3) for k in ("blob", *DEGENERATE)]
 )
@@ -130,7 +132,7 @@ def test_points_at_four_places_but_for_rounding_are_refused():
     for _ in range(50):
         xy = corners[rng.integers(0, 4, 30)]
         xy += np.spacing(1.0) * rng.integers(-1, 2, xy.shape)
-        status = direct_fit(xy)[0]
+        status = direct_fit(held(xy))[0]
         assert status in (FEW_PLACES, OTHER_CONIC)
 
 
@@ -138,7 +140,8 @@ def test_a_line_of_many_points_and_one_beside_it_has_no_ellipse():
     for seed in range(50):
         rng = np.random.default_rng(seed)
         u = rng.uniform(-2, 2, 9)
-        assert direct_fit(anywhere(rng, u, np.where(np.arange(9) == 4, 1.0, 0.0)))[0] != OK
+        xy = anywhere(rng, u, np.where(np.arange(9) == 4, 1.0, 0.0))
+        assert direct_fit(held(xy))[0] != OK
 
 
 @pytest.mark.parametrize("power", [-4, -5, -7])

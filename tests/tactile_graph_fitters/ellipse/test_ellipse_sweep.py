@@ -13,6 +13,8 @@ from tactile_graph_fitters.ellipse.ellipse_sweep import ellipse_sweep, straight
 from tactile_graph_fitters.ellipse.fit_ellipse_origin import Polar, origin_fit, polar
 from tactile_graph_fitters.orientation.orientation import Orientation
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds)

@@ -81,6 +81,7 @@ def test_away_from_the_nearest_points_a_step_brings_both_nearer():
     assert best <= 2.0 * squares(uv, [u, v, *as_matrix.loops(a, b, angle)])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["outline", "arc", "flat", "cells", "blob", "grid"])
 def test_equations_and_their_twin_agree_on_thousands_of_point_sets(kind):
     for seed in range(350):

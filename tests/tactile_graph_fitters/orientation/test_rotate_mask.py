@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import references_fitters as references
+from helpers_modes import held
 from helpers_rectangles import covered, off_rad, seeds
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask, Rectangle
@@ -71,7 +72,7 @@ def test_an_empty_mask_cannot_be_turned():
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds, angle=st.floats(-1.5, 1.5))
 def test_it_turns_as_the_reference_does(seed, angle):
-    values = np.random.default_rng(seed).random((9, 12)) < 0.4
+    values = held(np.random.default_rng(seed).random((9, 12)) < 0.4)
     settings_ = (5.3, 4.1, math.cos(angle), math.sin(angle), 1.25)
     expected = references.rotated(values, *settings_)
     for which in (rotated.loops, rotated.compiled):

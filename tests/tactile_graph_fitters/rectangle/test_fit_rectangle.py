@@ -13,6 +13,8 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points, Rectangle
 from tactile_graph_fitters.rectangle.fit_rectangle import equations, fit_rectangle
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 
 def five(r):
     return np.array([r.x_cm, r.y_cm, r.length_cm, r.breadth_cm])

@@ -9,7 +9,6 @@ import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn, made
 from tactile_graph import load
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Mask, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
@@ -17,14 +16,11 @@ from tactile_graph_likelihood.by_order.goodness_of_fit import order_moments, tou
 from tactile_graph_likelihood.by_order.hazards import hazard, hazards
 from tactile_graph_likelihood.by_order.likelihood import log_order, order_of
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 SHARES = np.array([0.1, 0.4, 0.7, 1.0])
 SIGMA, T = 0.5, 2.5
 TABLE = hazards(np.array([SIGMA, 0.16, 1e-6, 0.0, 0.0, 0.0, 0.0, 0.0]))
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def distinct(n):

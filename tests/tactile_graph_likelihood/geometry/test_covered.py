@@ -5,6 +5,7 @@ import pytest
 
 import references_likelihood as references
 from helpers_likelihood import GRID
+from helpers_modes import compiled, plainly
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.disc_areas import disc_areas
@@ -22,16 +23,17 @@ SHAPES = [
     Rectangle(19.0, 2.0, 7.0, 5.0, 1.2),
     Polygon(np.array([[3.0, 3.0], [9.0, 2.5], [8.0, 9.0]])),
 ]
+BOTH = (plainly, compiled)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
-@pytest.mark.parametrize("which", ["reference", "compiled"])
-def test_a_window_holds_all_that_an_outline_covers(shape, which):
+@pytest.mark.parametrize("by", [plainly, pytest.param(compiled, marks=pytest.mark.slow)])
+def test_a_window_holds_all_that_an_outline_covers(shape, by):
     kind, corners, p = packed(shape)
-    r0, c0, rows, columns = getattr(window, which)(kind, corners, p, GRID, 16, 16, 0.0)
+    r0, c0, rows, columns = by(window)(kind, corners, p, GRID, 16, 16, 0.0)
     shares = np.zeros((16, 16))
     box = (r0, c0, rows, columns)
-    shares[r0 : r0 + rows, c0 : c0 + columns] = getattr(covered, which)(kind, corners, p, GRID, box)
+    shares[r0 : r0 + rows, c0 : c0 + columns] = by(covered)(kind, corners, p, GRID, box)
     np.testing.assert_allclose(shares, coverage_cm2(shape, Geometry()), atol=1e-11)
     assert 0 < rows * columns < 256
 
@@ -46,8 +48,8 @@ def test_bounds_are_those_of_the_drawn_outline(shape):
     kind, corners, p = packed(shape)
     xy = shape.outline_cm(4000) if not isinstance(shape, Polygon) else shape.xy_cm
     expected = (*xy.min(axis=0), *xy.max(axis=0))
-    for which in (bounds.reference, bounds.compiled):
-        np.testing.assert_allclose(which(kind, corners, p), expected, atol=1e-4)
+    for by in BOTH:
+        np.testing.assert_allclose(by(bounds)(kind, corners, p), expected, atol=1e-4)
 
 
 def test_a_disc_is_an_ellipse_at_half_the_cost():
@@ -57,14 +59,14 @@ def test_a_disc_is_an_ellipse_at_half_the_cost():
         place = (*rng.uniform(-3, 24, 2), rng.uniform(0.01, 12))
         args = (*place, 1.3, element, 16, 16)
         expected = references.disc_areas(*args)
-        for which in (disc_areas.loops, disc_areas.compiled):
-            np.testing.assert_allclose(which(*args), expected, atol=1e-12)
+        for by in BOTH:
+            np.testing.assert_allclose(by(disc_areas)(*args), expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("which", ["reference", "compiled"])
-def test_foam_blurs_as_the_pads_does(which):
+@pytest.mark.parametrize("by", BOTH)
+def test_foam_blurs_as_the_pads_does(by):
     shape, geometry = Circle(3.1, 8.7, 2.2), Geometry()
     share = coverage_cm2(shape, geometry)
-    found = getattr(blurred, which)(share, 0.8 / 1.3, (0, 0, 16, 16), 16, 16)
+    found = by(blurred)(share, 0.8 / 1.3, (0, 0, 16, 16), 16, 16)
     np.testing.assert_allclose(found, spread(share, geometry, 0.8), atol=2e-4)
     assert found.sum() == pytest.approx(share.sum(), rel=1e-3)

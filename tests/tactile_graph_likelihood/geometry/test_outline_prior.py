@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from helpers_modes import compiled, plainly
 from tactile_graph_likelihood.geometry.outline_prior import log_prior, pulled_in
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, FREE, RECTANGLE, REGULAR
 
@@ -48,10 +49,13 @@ def test_free_quadrilaterals_that_are_not_convex_cannot_be():
     assert log_prior.compiled(FREE, 4, square, prior(1.0)) > -math.inf
 
 
-@pytest.mark.parametrize("which", ["reference", "compiled"])
-def test_an_outline_is_pulled_onto_the_pad(which):
+@pytest.mark.parametrize(
+    "by",
+    [plainly, pytest.param(compiled, marks=pytest.mark.slow)],  # compiled for it alone: 2 s
+)
+def test_an_outline_is_pulled_onto_the_pad(by):
     p = np.array([0.0, 25.0, 9.0, 0.1, 0.3])
     known = prior(1.0, largest=9.5)
-    assert getattr(log_prior, which)(RECTANGLE, 0, p, known) == -math.inf
-    getattr(pulled_in, which)(RECTANGLE, 0, p, known)
-    assert getattr(log_prior, which)(RECTANGLE, 0, p, known) > -math.inf
+    assert by(log_prior)(RECTANGLE, 0, p, known) == -math.inf
+    by(pulled_in)(RECTANGLE, 0, p, known)
+    assert by(log_prior)(RECTANGLE, 0, p, known) > -math.inf

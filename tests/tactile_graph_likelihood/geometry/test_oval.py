@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE, drawn, made
-from tactile_graph.compiled import warm_up
+from helpers_modes import compiled, plainly
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, OVAL, bounds
@@ -14,10 +14,7 @@ from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_e
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
 from tactile_graph_likelihood.single.model import Model
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def ovals(n):
@@ -26,23 +23,23 @@ def ovals(n):
         yield np.array([*rng.uniform(5, 15, 2), *rng.uniform(1, 6, 2), rng.uniform(-2, 2), 4.0])
 
 
-@pytest.mark.parametrize("which", ["reference", "compiled"])
-def test_an_oval_is_the_ellipse_it_was_made_of(which):
+@pytest.mark.parametrize("by", [plainly, compiled])
+def test_an_oval_is_the_ellipse_it_was_made_of(by):
     for ellipse in ovals(20):
         oval = ellipse.copy()
-        getattr(to_oval, which)(oval)
-        back = getattr(as_ellipse, which)(oval)
+        by(to_oval)(oval)
+        back = by(as_ellipse)(oval)
         assert back[2] >= back[3]
         assert sorted(back[2:4]) == pytest.approx(sorted(ellipse[2:4]))
-        box = getattr(window, which)(OVAL, 0, oval, GRID, 16, 16, 0.0)
-        assert box == getattr(window, which)(ELLIPSE, 0, ellipse, GRID, 16, 16, 0.0)
+        box = by(window)(OVAL, 0, oval, GRID, 16, 16, 0.0)
+        assert box == by(window)(ELLIPSE, 0, ellipse, GRID, 16, 16, 0.0)
         np.testing.assert_allclose(
-            getattr(covered, which)(OVAL, 0, oval, GRID, box),
-            getattr(covered, which)(ELLIPSE, 0, ellipse, GRID, box),
+            by(covered)(OVAL, 0, oval, GRID, box),
+            by(covered)(ELLIPSE, 0, ellipse, GRID, box),
             atol=1e-11,
         )
         np.testing.assert_allclose(
-            bounds.call(OVAL, 0, oval), bounds.call(ELLIPSE, 0, ellipse), atol=1e-11
+            by(bounds)(OVAL, 0, oval), by(bounds)(ELLIPSE, 0, ellipse), atol=1e-11
         )
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn, made
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import DataError, Degenerate, UsageError
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
 from tactile_graph_classifiers.database.opening import load_known
@@ -17,15 +16,12 @@ from tactile_graph_likelihood.known.touched_sizes import Touching, sizes_from
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 TRUE = {
     "Disc I": [6.9], "Disc II": [3.8], "Disc III": [5.1], "Disc IV": [7.7],
     "RECTANGLE I": [8.0, 3.5], "RECTANGLE II": [7.0, 1.5],
 }  # fmt: skip
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def database(weights, shape="disc", area=100.0, quantity="gram"):

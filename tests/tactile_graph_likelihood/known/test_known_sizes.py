@@ -6,17 +6,13 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, drawn
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.known.known_sizes import KnownSizes, sizes_of
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def test_share_is_the_integral_of_belief_times_prior_and_the_mean_is_the_one_given():

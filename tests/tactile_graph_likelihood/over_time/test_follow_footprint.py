@@ -4,19 +4,15 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import drawn, made
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.over_time.at_rest import AtRest
 from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
 from tactile_graph_likelihood.single.readings import readings_of
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 PITCH_CM = 1.3
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def noisy(image, rng, scatter=0.034):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import NOISE, made
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered
@@ -19,12 +18,10 @@ FIT = made(FitFootprints)
 PAIR = [Circle(6.0, 7.0, 3.0), Circle(12.1, 7.4, 3.1)]
 THREE = [Rectangle(5.0, 5.0, 7.0, 4.0, 0.3), Circle(14.5, 5.5, 2.8), Circle(9.0, 15.0, 3.4)]
 
-pytestmark = pytest.mark.slow  # the kernels alone compile for half a minute
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = [
+    pytest.mark.slow,  # the kernels alone compile for half a minute
+    pytest.mark.usefixtures("warm_kernels"),
+]
 
 
 def image_of(shapes, seed, loads=(90.0, 90.0, 90.0)):

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE
-from helpers_modes import plainly
-from tactile_graph.compiled import warm_up
+from helpers_modes import answered_by, compiled, plainly
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
 from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
@@ -28,16 +27,17 @@ from tactile_graph_likelihood.single.information import Information
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.problem import problem_of
 
+pytestmark = pytest.mark.usefixtures("plain_kernels")
+
 VECTOR = NOISE.vector(1.3)
 PRIOR = np.array([0.0, 0.0, 20.5, 20.5, 1.0, 12.0, 1.0, 0.0, 0.0, 4.5, 1.5])
 KINDS, CORNERS = np.array([DISC, RECTANGLE]), np.array([0, 0])
 POINTS = np.array([[6.0, 6.0, 2.6, 4.5, 0.0, 0.0], [10.9, 7.2, 3.0, 2.1, 0.4, 5.0]])
 BARE = np.zeros((16, 16))
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+BOTH = [
+    plainly,
+    pytest.param(compiled, marks=pytest.mark.slow),  # what is for several outlines takes 8 s
+]
 
 
 def table(points, *rows):
@@ -89,9 +89,10 @@ def test_two_outlines_add_what_one_and_then_the_other_beside_it_do():
     assert both(POINTS, logs, states) == pytest.approx(one + two, abs=1e-9)
 
 
-def test_the_plain_kernel_gives_the_same():
+@pytest.mark.slow
+def test_the_compiled_kernel_gives_the_same():
     logs, states = image(3)
-    got = plainly(gain)(problem_of_joint(logs, states), table(POINTS))
+    got = gain.compiled(problem_of_joint(logs, states), table(POINTS))
     assert both(POINTS, logs, states) == pytest.approx(got, abs=1e-8)
 
 
@@ -122,14 +123,15 @@ def test_slopes_are_those_of_the_gain():
     assert matrix[4, 4] == matrix[5, 5] == 1.0
 
 
-def test_maximising_gains_and_comes_near_the_truth():
+@pytest.mark.parametrize("by", BOTH)
+def test_maximising_gains_and_comes_near_the_truth(by):
     off = []
     for seed in range(12):
         logs, states = image(seed)
         points = POINTS + np.array([0.4, -0.3, 0.0, 0.0, 0.0, 0.0])
         problem, outlines = problem_of_joint(logs, states), table(points)
         before = both(points, logs, states) + log_rest_of.call(problem, outlines)
-        top = maximise_jointly.call(problem, outlines, 25, 0.1)
+        top = by(maximise_jointly)(problem, outlines, 25, 0.1)
         points = outlines.points
         assert top > before
         assert top == pytest.approx(
@@ -150,7 +152,8 @@ def test_no_prior_where_an_outline_is_too_small_or_too_light():
     assert rest(REGULAR, 3, good - [0, 0, 0, 0, 3.0, 0]) == -math.inf  # shows not even once
 
 
-def test_the_best_cut_parts_two_discs():
+@pytest.mark.parametrize("mode", ["plain", pytest.param("compiled", marks=pytest.mark.slow)])
+def test_the_best_cut_parts_two_discs(mode):
     kinds = np.array([DISC, DISC])
     points = np.array([[6.0, 6.0, 2.6, 4.5, 0, 0], [9.9, 9.9, 2.6, 4.5, 0, 0]])
     discs = Outlines(kinds, CORNERS, points)
@@ -159,7 +162,8 @@ def test_the_best_cut_parts_two_discs():
     states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
     logs = np.log(np.where(load > 5.0, load, 1.0))
     sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
-    found, _ = cuts(problem_of_joint(logs, states), 4, sides)
+    with answered_by(mode):
+        found, _ = cuts(problem_of_joint(logs, states), 4, sides)
     best = sides[int(np.argmax(found))]
     assert ((best > 0) == (states == ON)).all()
     assert min(((best == k) != first).sum() for k in (1, 2)) <= 2

@@ -5,7 +5,6 @@ import pytest
 
 from helpers_likelihood import NOISE, drawn, made
 from tactile_graph import load
-from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC
@@ -13,10 +12,7 @@ from tactile_graph_likelihood.single.choose_shape import ChooseShape
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 from tactile_graph_likelihood.single.model import Model
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def test_evidence_tells_discs_from_rectangles():

@@ -5,14 +5,10 @@ import pytest
 
 from helpers_likelihood import made
 from tactile_graph import load
-from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
+pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
 def recorded(scene, sigma, voids, frames=12):

@@ -8,7 +8,6 @@ import pytest
 
 from helpers_likelihood import GRID, NOISE, made
 from helpers_modes import plainly
-from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
 from tactile_graph_likelihood.single.any_pressure import (
@@ -28,6 +27,8 @@ from tactile_graph_likelihood.single.model import Model
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 FINE = 48
 SHAPES = [
     Circle(9.1, 8.7, 5.2),
@@ -35,11 +36,6 @@ SHAPES = [
     Rectangle(10.0, 9.0, 13.0, 6.0, -0.4),
     Polygon(np.array([[4.0, 12.0], [10.0, 2.5], [16.0, 12.0]])),
 ]
-
-
-@pytest.fixture(autouse=True, scope="module")
-def compiled():
-    warm_up()
 
 
 def distances(shape, x, y):
@@ -142,6 +138,7 @@ def errors(step, seen):
 SETTINGS = {"sigma": 0.48, "voids": 0.16, "shows_from": 5.0, "gap_cm": 0.3, "on_pad": "whole"}
 
 
+@pytest.mark.slow
 def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     ball = [errors(step, frames(40, 1, fall=0.5)) for step in steps]
@@ -152,6 +149,7 @@ def test_a_ball_and_a_lean_are_located_better_than_by_an_even_face():
     assert leaning[0][2] > 0.65 > 0.2 > leaning[1][2]
 
 
+@pytest.mark.slow
 def test_an_even_face_loses_nothing_by_the_question():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     asked, plain = (errors(step, frames(60, 3)) for step in steps)
@@ -228,6 +226,7 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     assert unknown["foam"] / unknown["fall"] == pytest.approx(FOAM_ODDS)
 
 
+@pytest.mark.slow
 def test_foam_nobody_told_of_is_found():
     steps = [made(FootprintDisc, pressure=p, **SETTINGS) for p in ("any", "even")]
     pad = Geometry()

@@ -32,6 +32,7 @@ def test_twins_agree(shape):
     assert log_likelihood.compiled(problem, p) == pytest.approx(expected, rel=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
 @pytest.mark.parametrize("estimated", [(), ("sigma", "voids"), ("foam",), ("fall", "lean")])
 def test_slopes_are_those_of_the_likelihood(shape, estimated):

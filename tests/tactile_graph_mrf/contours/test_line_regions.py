@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from helpers_modes import plainly
+from helpers_modes import held, plainly
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.contours.line_regions import line_regions
@@ -125,7 +125,7 @@ def regions_by_waves(
 def test_loops_part_as_the_reference_does(r: int, c: int, share: float, seed: int) -> None:
     pytest.importorskip("numba")
     rng = np.random.default_rng(seed)
-    across, down = rng.random((r - 1, c)) < share, rng.random((r, c - 1)) < share
+    across, down = held(rng.random((r - 1, c)) < share), held(rng.random((r, c - 1)) < share)
     wanted = regions_by_waves(across, down)
     np.testing.assert_array_equal(plainly(label_regions)(across, down), wanted)
     np.testing.assert_array_equal(label_regions.compiled(across, down), wanted)

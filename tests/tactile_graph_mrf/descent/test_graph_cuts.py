@@ -49,6 +49,7 @@ def test_jumps_end_at_the_least_energy_of_a_convex_model():
     ("kind", "moves"),
     [("truncated_absolute", "expansion"), ("truncated_quadratic", "swap"), ("huber", "jump")],
 )
+@pytest.mark.slow
 def test_no_cycle_of_moves_raises_the_energy(kind, moves):
     pytest.importorskip("maxflow")
     restored = graph_cuts(square(20.0, 8), model=model(kind, lambda_d=3.0), moves=moves)

@@ -11,6 +11,7 @@ from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("temperature", [0.05, 1.0, 100.0])
 @pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
 def test_no_sweep_raises_the_free_energy(lines, temperature):

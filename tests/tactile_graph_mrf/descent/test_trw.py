@@ -11,6 +11,7 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", ["quadratic", "truncated_quadratic", "geman_mcclure"])
 @pytest.mark.parametrize("n_sweeps", [1, 30])

@@ -17,6 +17,8 @@ from tactile_graph_thesis.measure import noise_response
 from tactile_graph_thesis.measure.shown_reading import stages, typical_rectangle
 from tactile_graph_thesis.work import Work
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
 
 
@@ -43,6 +45,7 @@ def test_each_comes_out(name: str, work: Work) -> None:
             assert not drawn or axes.get_xlabel() or axes.get_ylabel() or axes.get_title(), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NOISES)
 def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(noise_response, "QUICK_READINGS", 2)

@@ -9,6 +9,8 @@ from tactile_graph_thesis.catalogue import chosen, items
 from tactile_graph_thesis.item import Item, Made
 from tactile_graph_thesis.work import Work
 
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
 STUDIES = (
     "converter",
     "samples",
