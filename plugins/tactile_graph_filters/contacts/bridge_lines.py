@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
-
-LEAST_CELLS = 4
-"""A line of fewer is never called dead: its cells may well be equal by chance."""
+from tactile_graph_filters.readings.dead_lines import dead_lines
 
 Flags = NDArray[np.bool_]
 
@@ -28,8 +26,8 @@ def bridge_lines(
     Parameters
     ----------
     image : Image
-        Dead is a row or column of it without a valid cell; and, where the others are not all
-        constant too, one whose cells all read the same.
+        Dead is a row or column of it without a valid cell; and, where few others are constant too,
+        one of which nearly all cells read the same.
     mask : Mask
     most : int
         So many dead lines side by side are bridged, no more.
@@ -37,29 +35,14 @@ def bridge_lines(
     Returns
     -------
     Mask
-        The mask itself where no line is dead.
+        The mask itself where no line is dead. Cells of dead lines are on only by what lies beside.
     """
-    valid = np.ones(image.shape, np.bool_) if image.valid is None else image.valid
-    on: Flags = mask.values
-    for axis in (0, 1):
-        lines, known = (image.values, valid) if axis == 0 else (image.values.T, valid.T)
-        dead = _dead(lines, known)
-        if dead.any() and not dead.all():
-            on = _bridged(on if axis == 0 else on.T, dead, most)
-            on = on if axis == 0 else on.T
-    return mask if on is mask.values else mask.with_values(np.ascontiguousarray(on))
-
-
-def _dead(lines: NDArray[np.float64], valid: Flags) -> Flags:
-    """Return which lines, shape (lines, cells), are dead."""
-    without: Flags = np.logical_not(valid.any(axis=1))
-    if lines.shape[1] < LEAST_CELLS:
-        return without
-    lowest = np.where(valid, lines, np.inf).min(axis=1)
-    highest = np.where(valid, lines, -np.inf).max(axis=1)
-    constant = lowest == highest
-    # Of a pad without noise every unloaded line is constant: that says nothing.
-    return np.logical_or(without, constant) if constant.mean() < 0.25 else without
+    rows, columns = dead_lines(image)
+    if not (rows.any() or columns.any()):
+        return mask
+    on: Flags = mask.values & ~rows[:, None] & ~columns
+    on = _bridged(on, rows, most)
+    return mask.with_values(np.ascontiguousarray(_bridged(on.T, columns, most).T))
 
 
 def _bridged(on: Flags, dead: Flags, most: int) -> Flags:

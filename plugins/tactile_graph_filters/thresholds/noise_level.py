@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
 from tactile_graph.wires.image import UNITS
+from tactile_graph_filters.readings.dead_lines import dead_lines
 
 LOW, MIDDLE = 0.05, 0.25
 """Shares of the cells, by rising reading: the unloaded ones are among the lower quarter."""
@@ -27,7 +28,7 @@ def noise_level(image: Image) -> float:
     Parameters
     ----------
     image : Image
-        Unloaded in at least a quarter of its valid cells.
+        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out.
 
     Returns
     -------
@@ -41,7 +42,9 @@ def noise_level(image: Image) -> float:
     Chosen on 90 frames of a capacitive panel (CapContact), so that its contacts are as many as the
     optical reference shows.
     """
-    values = image.values if image.valid is None else image.values[image.valid]
+    rows, columns = dead_lines(image)
+    usable = ~rows[:, None] & ~columns
+    values = image.values[usable if image.valid is None else usable & image.valid]
     if values.size == 0:
         return math.inf
     seen = np.asarray(values, np.float64).ravel()
@@ -84,6 +87,18 @@ class LevelledMask(Mask):
         super().__init__(values, pitch_cm, origin_cm, count)
         object.__setattr__(self, "level", level)
         object.__setattr__(self, "quantity", quantity)
+
+    def __reduce__(self) -> tuple[type[LevelledMask], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of."""
+        made_of = (
+            self.values,
+            self.pitch_cm,
+            self.origin_cm,
+            self.count,
+            self.level,
+            self.quantity,
+        )
+        return LevelledMask, made_of
 
     @property
     def assumed(self) -> str:

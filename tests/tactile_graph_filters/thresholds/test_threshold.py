@@ -1,4 +1,5 @@
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -137,6 +138,8 @@ def test_auto_finds_what_stands_out_of_the_noise_and_says_the_level():
         mask.assumed
         == f"cells from {mask.level:.4g} counts on, which is above the frame's own noise"
     )
+    again = pickle.loads(pickle.dumps(mask))
+    assert (again.level, again.quantity, again.count) == (mask.level, "counts", 35)
     shifted = Threshold(level="auto")(Image(3.0 * values - 50.0))
     assert np.array_equal(shifted.values, mask.values)
 
