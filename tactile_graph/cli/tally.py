@@ -114,7 +114,8 @@ class Tally:
         """Note what nodes took that nobody said."""
         for item in result.plan.nodes:
             told = getattr(result.outcome(item.name), "assumed", "")
-            if told and item.name not in self.assumed:
+            known = {text for text, _ in self.assumed.values()}  # a mask may be handed on as it is
+            if told and item.name not in self.assumed and told not in known:
                 self.assumed[item.name] = (told, result.frame.index)
 
     def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from helpers_cli import call
 from helpers_panel import panel_frames
 from helpers_recordings import SHARED, shared
 from tactile_graph import Frame, load
@@ -40,3 +41,10 @@ def test_dead_lines_do_not_part_a_contact() -> None:
         values[:, 7] = 1023.0
         frame = Frame.of(values, 1.0, quantity="counts")
         assert load("contacts").run(frame)["contacts"].count == 1
+
+
+def test_the_level_taken_is_told_once(tmp_path: Path) -> None:
+    np.save(tmp_path / "one.npy", np.random.default_rng(1).normal(0.0, 1.0, (2, 8, 8)))
+    said = call("run", "contacts", tmp_path / "one.npy").stdout
+    assert said.count("which is above the frame's own noise") == 1
+    assert "assumed  footprint: cells from" in said
