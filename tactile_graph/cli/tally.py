@@ -112,11 +112,13 @@ class Tally:
 
     def _assumed(self, result: Result) -> None:
         """Note what nodes took that nobody said."""
+        seen: set[int] = set()  # a value may be handed on as it is
         for item in result.plan.nodes:
-            told = getattr(result.outcome(item.name), "assumed", "")
-            known = {text for text, _ in self.assumed.values()}  # a mask may be handed on as it is
-            if told and item.name not in self.assumed and told not in known:
+            value = result.outcome(item.name)
+            told = getattr(value, "assumed", "")
+            if told and id(value) not in seen and item.name not in self.assumed:
                 self.assumed[item.name] = (told, result.frame.index)
+            seen.add(id(value))
 
     def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
         """Note each value that is no number and should be one; return whether there is any."""
