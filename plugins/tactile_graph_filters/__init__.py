@@ -7,6 +7,7 @@ from tactile_graph import hookimpl
 _STEPS = {
     "align_contacts": "contacts.align_contacts:AlignContacts",
     "and_compare": "morphology.and_compare:and_compare",
+    "bridge_lines": "contacts.bridge_lines:bridge_lines",
     "close": "morphology.close:Close",
     "contacts": "contacts.contacts:contacts",
     "correct_place": "contacts.correct_place:CorrectPlace",
@@ -26,6 +27,7 @@ _STEPS = {
     "mask": "readings.mask:mask",
     "open": "morphology.open:Open",
     "sharpen_contacts": "contacts.sharpen_contacts:sharpen_contacts",
+    "pick_contact": "contacts.pick_contact:pick_contact",
     "skeleton": "morphology.skeleton:skeleton",
     "split_contacts": "parting.split_contacts:SplitContacts",
     "split_watershed": "parting.split_watershed:split_watershed",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from tactile_graph.api.result import Result
+    from tactile_graph.api.results import Results
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
 
@@ -126,8 +127,8 @@ class Pipeline(Graph):
         frames: Iterable[Frame | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
-    ) -> Iterator[Result]:
-        """Yield the result of each frame, in order; stateful steps keep their state.
+    ) -> Results:
+        """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
         Parameters
         ----------
@@ -136,8 +137,17 @@ class Pipeline(Graph):
         only, seed
             As in `run`.
         """
+        from tactile_graph.api.results import Results
+
         runner = self.runner(only, seed)
-        for frame in self.frames(seed) if frames is None else frames:
+        asked = tuple(only or self.outputs)
+        given = self.frames(seed) if frames is None else frames
+        return Results(self, asked, self._results(runner, given))
+
+    def _results(
+        self, runner: Runner[Result], frames: Iterable[Frame | NDArray[np.generic]]
+    ) -> Iterator[Result]:
+        for frame in frames:
             result = runner(_as_frame(frame))
             if self.promises.waiting:
                 self.promises.check(result)

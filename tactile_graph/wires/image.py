@@ -8,6 +8,8 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
+"""Units of quantities; counts, raw readings and levels are their own."""
 QUANTITIES = ("counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary")
 """What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
 
@@ -84,6 +86,7 @@ class Image(_Gridded):
 
     __slots__ = ("quantity", "valid")
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
+    image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
     quantity: str
     valid: NDArray[np.bool_] | None
 
