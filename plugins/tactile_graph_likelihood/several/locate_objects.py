@@ -19,7 +19,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     variance_inflation,
 )
 from tactile_graph_likelihood.any_pad.observed import observed, uniform
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched
 from tactile_graph_likelihood.settings import ON_PAD
 from tactile_graph_likelihood.several.fit_footprints import (
     KINDS,
@@ -112,7 +112,9 @@ class LocateObjects:
         """
         readings = observed(image, self._pad, self._gap_cm)
         pitch = float(readings.grid[2])
-        told = replace(self._told, least=uniform(readings)[1])
+        told, least_log = self._told, uniform(readings).least_log
+        if least_log is not None:
+            told = replace(told, least=math.exp(least_log))
         problem = self._expected.problem(readings, told.vector(pitch))
         found = likeliest(problem, self._expected)
         noise, shared = said_by(problem, found, told)
@@ -124,8 +126,11 @@ class LocateObjects:
         parts, fit = posteriors(problem, its)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
-        usual = math.sqrt(FEW_ELEMENTS) * told.sigma
-        shapes = [on_any_pad(part, wide, usual, pitch) for part in parts]
+        uneven = math.sqrt(FEW_ELEMENTS) * told.sigma * pitch**1.5
+        shapes = [on_any_pad(part, part.log_evidence, wide, uneven) for part in parts]
+        if readings.stretch != 1.0:
+            top = float(readings.grid[1])
+            shapes = [stretched(shape, top, readings.stretch) for shape in shapes]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),

@@ -86,7 +86,7 @@ class Expected:
 
     def problem(self, readings: Readings, noise: Values) -> JointProblem:
         """Return the problem of a whole pad on which nothing lies yet."""
-        grid, logs, states, _ = readings
+        grid, logs, states = readings.grid, readings.logs, readings.states
         states = np.where(states == OVER, ON, states).astype(np.uint8)
         prior = np.zeros(11)
         prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_cm
