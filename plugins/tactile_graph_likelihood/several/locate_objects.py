@@ -13,13 +13,16 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.from_frame import (
     FEWEST,
+    MOST_STRAYS,
     NORMAL,
     PAIRS,
+    TOLD_STRAYS,
     learned,
     variance_inflation,
 )
 from tactile_graph_likelihood.any_pad.observed import observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched
+from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.settings import ON_PAD
 from tactile_graph_likelihood.several.fit_footprints import (
     KINDS,
@@ -32,14 +35,18 @@ from tactile_graph_likelihood.several.pad import Expected, OnPad, laid, likelies
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
 from tactile_graph_likelihood.single.posterior import UNLIKELY
+from tactile_graph_likelihood.single.readings import Readings
 
 COVERED = 0.95
 """Share of an element from which on it counts as covered whole."""
 
 TOLD = 8.0
 """Covered elements that what is told of gains and voids is worth."""
+
+NUMBERS, MANY = 4, 10**6
+"""Numbers fitted to an outline, about; readings so many that they make no sigma larger."""
 
 ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
@@ -106,7 +113,7 @@ class LocateObjects:
         Raises
         ------
         ValueError
-            If the image's cells are not square.
+            If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or no such outlines explain what does.
         """
@@ -115,15 +122,8 @@ class LocateObjects:
         told, least_log = self._told, uniform(readings).least_log
         if least_log is not None:
             told = replace(told, least=math.exp(least_log))
-        problem = self._expected.problem(readings, told.vector(pitch))
-        found = likeliest(problem, self._expected)
-        noise, shared = said_by(problem, found, told)
-        new = noise.vector(pitch)
-        problem = problem._replace(noise=new)
-        if is_other(told, noise, shared):
-            found = likeliest(problem, self._expected, shared)
-        its = found.under(new, shared)
-        parts, fit = posteriors(problem, its)
+        problem, found = self._found(readings, told)
+        parts, fit = posteriors(problem, found)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
         uneven = math.sqrt(FEW_ELEMENTS) * told.sigma * pitch**1.5
@@ -142,30 +142,49 @@ class LocateObjects:
             and all(shape.fits for shape in shapes),
         )
 
+    def _found(self, readings: Readings, told: Noise) -> tuple[JointProblem, OnPad]:
+        """Return the likeliest outlines, under the noise that they leave."""
+        pitch = float(readings.grid[2])
+        problem = self._expected.problem(readings, told.vector(pitch))
+        found = likeliest(problem, self._expected)
+        noise, shared = said_by(problem, found, told)
+        problem = problem._replace(noise=noise.vector(pitch))
+        if is_other(told, noise, shared):
+            found = likeliest(problem, self._expected, shared)
+        return problem, found.under(problem.noise, shared)
+
 
 def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, float]:
     """Return the noise that outlines leave, and how many times less evidence is worth by it."""
-    its = laid(problem, found.outlines)
-    known = problem.states != UNKNOWN
-    on = problem.states == ON
-    whole = (its.share >= COVERED) & known
-    shown = whole & on
+    its, on = laid(problem, found.outlines), problem.states == ON
+    bare = (its.share <= 0.0) & (problem.states != UNKNOWN)
+    count = np.count_nonzero(bare & on) + TOLD_STRAYS * told.strays
+    strays = min(float(count / (np.count_nonzero(bare) + TOLD_STRAYS)), MOST_STRAYS)
+    noise = learned(told, scatter_of(its, told), MANY, strays)
+    vector, n = noise.vector(float(problem.grid[2])), found.outlines.count
+    _, alike = goodness_of_load.call(its._replace(noise=vector), NUMBERS * n)
+    touched = int(np.count_nonzero(on))
+    return noise, variance_inflation(unbiased(alike, touched, n), touched)
+
+
+def scatter_of(laid_out: JointProblem, told: Noise) -> Values:
+    """Return ln sigma and the voids' log odds of what outlines cover whole, and of what is told."""
+    states = laid_out.states
+    whole = (laid_out.share >= COVERED) & (states != UNKNOWN)
+    shown = whole & (states == ON)
     n, many = int(np.count_nonzero(whole)), int(np.count_nonzero(shown))
     sigma = told.sigma
     if many >= FEWEST:
-        off = problem.logs[shown] - np.log(its.load[shown])
-        sigma = max(NORMAL * float(np.median(np.abs(off - np.median(off)))), 0.05)
-    sigma = math.exp((many * math.log(sigma) + TOLD * math.log(told.sigma)) / (many + TOLD))
-    voids = (n - many + TOLD * told.voids) / (n + TOLD)
-    bare = (its.share <= 0.0) & known
-    strays = (np.count_nonzero(bare & on) + 50.0 * told.strays) / (np.count_nonzero(bare) + 50.0)
-    scatter = np.array([math.log(sigma), math.log(voids / (1.0 - voids))])
-    noise = learned(told, scatter, 10**6, min(float(strays), 0.3))
-    fitted = 4 * found.outlines.count
-    pitch = float(problem.grid[2])
-    _, alike = goodness_of_load.call(its._replace(noise=noise.vector(pitch)), fitted)
-    touched = int(np.count_nonzero(on))
-    return noise, variance_inflation(unbiased(alike, touched, found.outlines.count), touched)
+        off = laid_out.logs[shown] - np.log(laid_out.load[shown])
+        sigma = max(NORMAL * float(np.median(np.abs(off - np.median(off)))), LEAST_SIGMA)
+    log_sigma = (many * math.log(sigma) + TOLD * math.log(told.sigma)) / (many + TOLD)
+    return np.array([log_sigma, log_odds((n - many + TOLD * told.voids) / (n + TOLD))])
+
+
+def log_odds(voids: float) -> float:
+    """Return the log odds of a share of voids, which is never none nor all."""
+    voids = min(max(voids, LEAST_VOIDS), MOST_VOIDS)
+    return math.log(voids / (1.0 - voids))
 
 
 def unbiased(neighbours: float, touched: int, n_outlines: int) -> float:
@@ -178,6 +197,6 @@ def unbiased(neighbours: float, touched: int, n_outlines: int) -> float:
 
 def is_other(told: Noise, noise: Noise, shared: float) -> bool:
     """Return whether a noise is so different that outlines should be looked for anew."""
-    odds = [math.log(x.voids / (1.0 - x.voids)) for x in (told, noise)]
-    changes = math.log(noise.sigma / told.sigma), odds[1] - odds[0], math.log(shared)
+    voids = log_odds(noise.voids) - log_odds(told.voids)
+    changes = math.log(noise.sigma / told.sigma), voids, math.log(shared)
     return bool((np.abs(changes) > ANEW).any())
