@@ -68,14 +68,20 @@ def record(
     _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
     frames = serial(
-        port=port, preset=preset, baud=baud, n_frames=n_frames, give_up_s=give_up, report=report
+        port=port,
+        preset=preset,
+        baud=baud,
+        n_frames=n_frames,
+        seconds=seconds,
+        give_up_s=give_up,
+        report=report,
     )
     failure: Exception | None = None
     with _Ended() as ended:
         try:
             about = {"preset": preset, "pad": pad, "port": port}
             with StoreWriter(target, chunk, append, about) as store:
-                _keep(_until(frames, seconds), store)
+                _keep(frames, store)
         except KeyboardInterrupt:
             pass  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
@@ -130,14 +136,6 @@ class _Ended:
         raise KeyboardInterrupt
 
 
-def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
-    end = None if seconds is None else time.monotonic() + seconds
-    for frame in frames:
-        yield frame
-        if end is not None and time.monotonic() > end:
-            return
-
-
 def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
     """Write the frames; on a terminal, say how many and how fast."""
     shown = sys.stderr.isatty()
@@ -157,6 +155,11 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
 def _tell(store: StoreWriter, report: Report) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
+    if not store.path.exists():
+        click.echo(f"{store.path}: no frame came, and nothing was written", err=True)
+        n_bytes = report.counts["bytes"]
+        click.echo(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        return
     click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in ("bytes", "good frames", "troubles")]
     for name in names:

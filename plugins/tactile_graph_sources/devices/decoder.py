@@ -20,12 +20,16 @@ from tactile_graph_sources.devices.units import Assembled, Units
 
 
 class Decoded(NamedTuple):
-    """One frame: values (rows, columns), device clock, loss just before it, place of its end."""
+    """One frame: values (rows, columns), device clock, loss just before it, place of its end.
+
+    ``doubtful`` is true where the protocol cannot tell whether a frame starts there.
+    """
 
     values: NDArray[np.float64]
     device_time_s: float | None
     gap: bool
     end: int
+    doubtful: bool = False
 
 
 class Decoder:
@@ -44,13 +48,16 @@ class Decoder:
         self.assembler = _assembler(preset, self.framer, self.counts)
         self._clock = _clock(preset)
         self._by_silence = preset.framed_by_silence
+        self._one_reply = preset.assembler == "full"
         self._lost = False
         self._out_of_range = ""
 
     @property
     def complete(self) -> bool:
         """Whether a whole reply is there and only its silence is waited for."""
-        return isinstance(self.framer, ReplyFramer) and self.framer.complete
+        if isinstance(self.framer, ReplyFramer):
+            return self.framer.complete
+        return isinstance(self.framer, PacketFramer) and self.framer.complete and self._one_reply
 
     def feed(self, data: bytes) -> list[Decoded]:
         """Take bytes, return the frames that they complete."""
@@ -63,9 +70,9 @@ class Decoder:
         A kit whose frames are found by what they hold takes no notice: a pause inside a line is
         the host's own hiccup.
         """
-        if not self._by_silence:
-            return []
-        return self._frames(self.framer.boundary())
+        if isinstance(self.framer, PacketFramer):
+            self.framer.boundary()
+        return self._frames(self.framer.boundary()) if self._by_silence else []
 
     def reset(self) -> None:
         """Start afresh after a reconnect; the next frame is marked as following a gap."""
@@ -95,13 +102,16 @@ class Decoder:
         if not good.all():
             self._refuse(batch.cells[~good])
             gap = gap | np.concatenate([[False], ~good[:-1]])
-        images = self.placement.images(batch.cells)
+        images = iter(self.placement.images(batch.cells if good.all() else batch.cells[good]))
         gap_list, ends = gap.tolist(), batch.ends.tolist()
-        for i in range(len(images)) if good.all() else np.flatnonzero(good).tolist():
+        for i in range(len(good)) if good.all() else np.flatnonzero(good).tolist():
             lost = (gap_list[i] or self._lost) and self.counts.good > 0
             self.counts.good += 1
             self._lost = False
-            out.append(Decoded(images[i], None if times is None else times[i], lost, ends[i]))
+            time_s = None if times is None else times[i]
+            out.append(Decoded(next(images), time_s, lost, ends[i], batch.doubtful))
+        if batch.doubtful:
+            self.counts.doubtful += int(np.count_nonzero(good))
         if not good[-1]:
             self._lost = True
 
