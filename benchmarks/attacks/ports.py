@@ -4,12 +4,13 @@
     python benchmarks/attacks/ports.py --preset m1616 --frames 1000000
 
 2 % of the frames are damaged: a byte lost, a byte flipped (half of them among the first four
-of a frame), a byte inserted, or a burst (up to three frames cut out, overwritten, or inserted). The
-pads are still, at random, or hold the header at a fixed place, half way through a frame and a third,
-still and at random; they start without it, or hold it from the first byte on. A frame is wrong if
-a cell holds what was sent for no such cell near it in time; cells that were overwritten are let off,
-as are those next to a lost character where frames are counted out. Frames marked as doubtful are
-not given as good. A relock counts the frames from a damage to the next one that comes out.
+of a frame), a byte inserted, or a burst (up to three frames cut out, overwritten, or inserted).
+The pads are still, at random, or hold the header at a fixed place, a third or half way through a
+frame; they start without it, or hold it from the first byte on. A frame is wrong if a cell holds
+what was sent for no such cell near it in time (`torn`: each cell was sent, but by two frames);
+cells that were overwritten are let off, as are those next to a lost character where frames are
+counted out. Frames marked as doubtful are not given as good. A relock counts the frames from a
+damage to the next one that comes out.
 """
 
 from __future__ import annotations

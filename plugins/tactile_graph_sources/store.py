@@ -1,10 +1,11 @@
 """Recordings as Zarr stores, read back frame by frame; `write_store` writes them.
 
 A store is a Zarr 3 group of arrays of one row a frame: ``values`` (N, rows, columns; NaN where a
-cell is invalid), ``time_s``, ``device_time_s`` (NaN where there is none), ``gap``,
-``doubtful``, ``notes_end`` and ``number``; each chunk carries a CRC-32C. ``notes`` holds JSON (label and truth), of which a frame's ends at ``notes_end``.
-What holds for all frames are the group's attributes. ``number`` is written last of a chunk: rows
-it does not reach do not count, so a writer killed at any moment leaves a store that opens.
+cell is invalid), ``time_s``, ``device_time_s`` (NaN where there is none), ``gap``, ``doubtful``,
+``notes_end`` and ``number``; each chunk carries a CRC-32C. ``notes`` holds JSON (label and truth),
+of which a frame's ends at ``notes_end``. What holds for all frames are the group's attributes.
+``number`` is written last of a chunk: rows it does not reach do not count, so a writer killed at
+any moment leaves a store that opens.
 """
 
 from __future__ import annotations

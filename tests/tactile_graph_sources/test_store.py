@@ -217,7 +217,7 @@ def test_other_zarr_stores_are_no_recordings(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("version", 99, "is a recording of version 99, 1 can be read"),
+        ("version", 99, "is a recording of version 99, 1 and 2 can be read"),
         ("quantity", "bananas", "unknown quantity 'bananas'"),
     ],
 )

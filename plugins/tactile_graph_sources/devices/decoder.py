@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress, repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -94,25 +95,27 @@ class Decoder:
         return out
 
     def _emit(self, batch: Assembled, out: list[Decoded]) -> None:
-        good = self.placement.in_range(batch.cells)
-        gap = batch.gap
-        times = self._clock.seconds(batch.time) if self._clock and batch.time is not None else None
+        cells, ends, gap, time = batch.cells, batch.ends, batch.gap, batch.time
+        times = self._clock.seconds(time) if self._clock and time is not None else None
+        good = self.placement.in_range(cells)
+        ends_well = bool(good[-1])
         if good.any():
             self._out_of_range = ""
         if not good.all():
-            self._refuse(batch.cells[~good])
-            gap = gap | np.concatenate([[False], ~good[:-1]])
-        images = iter(self.placement.images(batch.cells if good.all() else batch.cells[good]))
-        gap_list, ends = gap.tolist(), batch.ends.tolist()
-        for i in range(len(good)) if good.all() else np.flatnonzero(good).tolist():
-            lost = (gap_list[i] or self._lost) and self.counts.good > 0
-            self.counts.good += 1
+            self._refuse(cells[~good])
+            gap = (gap | np.concatenate([[False], ~good[:-1]]))[good]
+            times = None if times is None else list(compress(times, good))
+            cells, ends = cells[good], ends[good]
+        if len(cells):
+            lost = gap.tolist()
+            lost[0] = (lost[0] or self._lost) and self.counts.good > 0
+            self.counts.good += len(cells)
+            self.counts.doubtful += len(cells) * batch.doubtful
+            images = self.placement.images(cells)
+            clock = repeat(None) if times is None else times
+            out.extend(map(Decoded, images, clock, lost, ends.tolist(), repeat(batch.doubtful)))
             self._lost = False
-            time_s = None if times is None else times[i]
-            out.append(Decoded(next(images), time_s, lost, ends[i], batch.doubtful))
-        if batch.doubtful:
-            self.counts.doubtful += int(np.count_nonzero(good))
-        if not good[-1]:
+        if not ends_well:
             self._lost = True
 
     def _refuse(self, cells: NDArray[Any]) -> None:

@@ -157,12 +157,33 @@ class Layout:
         cells = self.values(units)
         return np.asarray(((cells >= low) & (cells <= high)).all(axis=1))
 
-    def heads(self, array: NDArray[np.uint8], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return at which places of a stream, shape (k,), the beginning of a unit is."""
+    def ahead_ok(self, heads: NDArray[np.uint8]) -> NDArray[np.bool_]:
+        """Return which beginnings, shape (k, >= ahead), look like a unit's."""
         at = self.at_ahead
-        held = array[starts[:, None] + at] & self.mask[at]
-        good: NDArray[np.bool_] = (held == self.want[at]).all(axis=1)
+        good: NDArray[np.bool_] = ((heads[:, at] & self.mask[at]) == self.want[at]).all(axis=1)
         return good
+
+    def like_tags(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
+        """Return which units, shape (k, size), have tag-like bytes where values are.
+
+        A phase off by an odd number of bytes takes low bytes for high ones. For it to fit, those
+        of the first column must count up from row to row.
+        """
+        width = self.cells_dtype.itemsize
+        row = self.row_length * width
+        low = units[:, self.cells_at + width - 1 :: row] >> 4
+        ups = (low[:, 1:] - low[:, :-1]) & 15 == 1
+        return np.asarray(np.count_nonzero(ups, axis=1) >= low.shape[1] - 3)
+
+    def count_of_headers(self, array: NDArray[np.uint8]) -> int:
+        """Return how often the header's last three bytes occur, or as many as it has."""
+        tail = self.anchor[-3:]
+        n = len(array) - len(tail) + 1
+        skip = len(self.anchor) - len(tail)
+        fits = array[skip:n] == tail[0]
+        for i in range(1, len(tail)):
+            fits &= array[skip + i : n + i] == tail[i]
+        return int(np.count_nonzero(fits))
 
     def beginnings(self, array: NDArray[np.uint8], start: int, stop: int) -> NDArray[np.int64]:
         """Return the places from ``start`` to ``stop`` of a stream that look like beginnings."""

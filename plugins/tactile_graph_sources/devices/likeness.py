@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,15 +52,18 @@ class Likeness:
     """
 
     def __init__(self, size: int) -> None:
-        self._units = np.zeros((0, size), np.uint8)
+        self._recent = deque([np.zeros((0, size), np.uint8)])
+        self._n_recent = 0
         self._n = 0
         self._expected: Expectation | None = None
         self._spread = 0.0
 
     def remember(self, units: NDArray[np.uint8], n: int) -> None:
         """Take note of ``n`` good units; of the last of these, shape (k, size), in their order."""
-        kept = self._units[max(0, len(self._units) + len(units) - KEPT) :]
-        self._units = np.concatenate([kept, units])
+        self._recent.append(units)  # views: joined only when they are asked for
+        self._n_recent += len(units)
+        while self._n_recent - len(self._recent[0]) >= KEPT:
+            self._n_recent -= len(self._recent.popleft())
         if self._n // RENEW_AFTER != (self._n + n) // RENEW_AFTER:
             self._expected = None
         self._n += n
@@ -67,7 +71,10 @@ class Likeness:
     @property
     def units(self) -> NDArray[np.uint8]:
         """The units remembered, the last one last, shape (k, size)."""
-        return self._units
+        if len(self._recent) > 1:
+            self._recent = deque([np.concatenate(self._recent)[-KEPT:]])
+            self._n_recent = len(self._recent[0])
+        return self._recent[0][-KEPT:]
 
     @property
     def age(self) -> int:
@@ -85,13 +92,13 @@ class Likeness:
         expected = self._expectation()
         if expected is None:
             return np.zeros(len(units))
-        last = self._units[-1].astype(np.int16)
+        last = self._recent[-1][-1].astype(np.int16)
         total: NDArray[np.float64] = expected.nats(units.astype(np.int16), last).sum(axis=1)
         return total
 
     def _expectation(self) -> Expectation | None:
-        if self._expected is None and len(self._units) > 1:
-            units = self._units.astype(np.int16)
+        if self._expected is None and self._n_recent > 1:
+            units = self.units.astype(np.int16)
             self._expected = _expectation(units)
             past = self._expected.nats(units[1:], units[:-1])
             self._spread = float(np.sqrt(past.var(axis=0).sum()))

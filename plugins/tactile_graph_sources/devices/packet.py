@@ -116,7 +116,7 @@ class PacketFramer:
         else:
             good = fits & layout.checksum_ok(rows)
         n = k if good.all() else int(np.argmin(good))
-        judged = self._judge(array, at, n)
+        judged = self._judge(array, at, n, n == k)
         self._emit(rows[: judged.n], at, judged.doubtful, out)
         at += judged.n * layout.size
         if judged.jumped or (judged.n == n < k):
@@ -128,18 +128,35 @@ class PacketFramer:
     def _followed(self, array: NDArray[np.uint8], at: int, k: int) -> NDArray[np.bool_]:
         """Return which units have the beginnings of others right behind them."""
         layout = self.layout
-        starts = at + layout.size * np.arange(1, k + layout.n_follow)
-        heads = layout.heads(array, starts)
+        size, n = layout.size, k + layout.n_follow - 1
+        following = np.ndarray((n, layout.ahead), np.uint8, array, at + size, (size, 1))
+        heads = layout.ahead_ok(following)
         good = heads[:k]
         for i in range(1, layout.n_follow):
             good = good & heads[i : k + i]
         return good
 
-    def _judge(self, array: NDArray[np.uint8], at: int, n: int) -> Judged:
-        """Hold the next ``n`` units against rivals, where any are about."""
+    def _may_hold_rivals(self, array: NDArray[np.uint8], rows: NDArray[np.uint8], at: int) -> bool:
+        """Return quickly whether good units, or what must follow them, may hold a rival."""
+        layout, n = self.layout, len(rows) + self.layout.n_follow
+        if not layout.anchor:
+            return bool(layout.like_tags(rows).any())
+        stop = at + (n - 1) * layout.size + len(layout.anchor)
+        return layout.count_of_headers(array[at:stop]) != n
+
+    def _judge(self, array: NDArray[np.uint8], at: int, n: int, whole: bool) -> Judged:
+        """Hold the next ``n`` units against rivals, where any are about.
+
+        ``whole`` tells that these are all the units that are there.
+        """
         size, ahead = self.layout.size, self.layout.ahead
         doubtful = np.zeros(n, np.bool_)
-        if not ahead:
+        if not ahead or self.layout.in_pieces:  # pieces must come in order, which rivals do not
+            return Judged(n, doubtful, False)
+        rows = array[at : at + n * size].reshape(n, size)
+        if not self._rivalled and whole and not self._may_hold_rivals(array, rows, at):
+            self.likeness.remember(rows[-KEPT:], n)
+            self._probation = PROBATION
             return Judged(n, doubtful, False)
         rivals = self.phases.rivals(array, at, len(array) - ahead + 1)
         held = np.unique(rivals // size)
@@ -209,7 +226,9 @@ class PacketFramer:
         self, rows: NDArray[np.uint8], at: int, doubtful: NDArray[np.bool_], out: list[Units]
     ) -> None:
         """Hand on good units, those in doubt apart from those not."""
-        cuts = [0, *(np.flatnonzero(np.diff(doubtful)) + 1).tolist(), len(rows)]
+        cuts = [0, len(rows)]
+        if doubtful.any():
+            cuts[1:1] = (np.flatnonzero(np.diff(doubtful)) + 1).tolist()
         for low, high in pairwise(cuts):
             if high == low:
                 continue

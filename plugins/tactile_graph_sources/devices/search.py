@@ -58,8 +58,15 @@ class Phases:
 
     def rivals(self, array: NDArray[np.uint8], at: int, stop: int) -> NDArray[np.int64]:
         """Return where beginnings are that are none of the phase of ``at``, counted from there."""
+        size = self.layout.size
         places = self.layout.beginnings(array, at, stop) - at
-        return np.asarray(places[places % self.layout.size != 0])
+        places = places[places % size != 0]
+        if not self.layout.anchor and len(places):
+            n = (len(array) - at) // size
+            held = self.layout.like_tags(array[at : at + n * size].reshape(n, size))
+            places = places[places < n * size]
+            places = places[held[places // size]]
+        return np.asarray(places)
 
     def possible(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Return which units hold what they must, values in the allowed range included."""
