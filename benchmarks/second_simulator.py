@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph import Circle, Frame
+from tactile_graph import Circle, Frame, Rectangle
 from tactile_graph.wires import TrueObject
 
 Values = NDArray[np.float64]
 Pressure = Callable[[Values, Values], Values]
-"""Of u and v, a point's place in the disc in units of its radius."""
+"""Of u and v, a point's place in the object: 0 in its middle, of the length 1 at its rim."""
+Outline = Circle | Rectangle
 
 SUPPLY_V = 5.0
 BIAS_OHM = 33e3
@@ -29,6 +30,8 @@ SOWN = 20
 STUCK_OHM = 2e3
 DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
 """Weight in grams and radius in cm of the discs of table 4.2."""
+RECTANGLES = ((3000.0, 16.0, 7.0), (1500.0, 14.0, 3.0))
+"""Weight in grams, length and breadth in cm of the rectangles of table 4.6."""
 
 
 def even(u: Values, v: Values) -> Values:
@@ -75,8 +78,9 @@ class Kind:
     foam_cells: float = 0.0
     pressure: Pressure = even
     discs: tuple[tuple[float, float], ...] = DISCS
+    rectangles: tuple[tuple[float, float, float], ...] = RECTANGLES
     over_edge: bool = False
-    """Whether discs may lie partly beyond the pad, their centre on it."""
+    """Whether objects may lie partly beyond the pad, their centre on it."""
 
     @property
     def pitch_cm(self) -> float:
@@ -85,7 +89,7 @@ class Kind:
 
 
 class Bench:
-    """One pad of a kind as built, on which discs are put down and read."""
+    """One pad of a kind as built, on which objects are put down and read."""
 
     def __init__(self, kind: Kind, rng: np.random.Generator) -> None:
         self.kind, self.rng = kind, rng
@@ -110,13 +114,14 @@ class Bench:
         white = self.rng.standard_normal(shape)
         return blurred(white, width, unit_variance=True) if width else white
 
-    def frames(self, n: int) -> Iterator[Frame]:
-        """Yield frames of discs put down one after another."""
+    def frames(self, n: int, shape: str = "disc") -> Iterator[Frame]:
+        """Yield frames of discs or rectangles put down one after another."""
+        objects = self.kind.discs if shape == "disc" else self.kind.rectangles
         for index in range(n):
-            weight_g, radius_cm = self.kind.discs[index % len(self.kind.discs)]
-            disc = self._put_down(radius_cm)
-            volts = self._read(self._load_g(disc, weight_g))
-            truth = (TrueObject(disc, weight_g),)
+            weight_g, *sizes = objects[index % len(objects)]
+            outline = self._put_down(*sizes)
+            volts = self._read(self._load_g(outline, weight_g))
+            truth = (TrueObject(outline, weight_g),)
             pitch = self.kind.pitch_cm
             yield Frame.of(volts, pitch, self._origin_cm, "volt", index=index, truth=truth)
 
@@ -125,19 +130,40 @@ class Bench:
         # Of a cell, its pitch wide; elements begin half a gap further in.
         return (-self.kind.gap_cm / 2, -self.kind.gap_cm / 2)
 
-    def _put_down(self, radius_cm: float) -> Circle:
-        kind = self.kind
+    def _put_down(self, *sizes_cm: float) -> Outline:
+        """Return a disc of a radius, or a rectangle of a length and breadth at any angle."""
+        kind, angle = self.kind, 0.0
+        wide = high = sizes_cm[0]
+        if len(sizes_cm) == 2:
+            angle = self.rng.uniform(-0.5, 0.5) * math.pi
+            cos, sin = abs(math.cos(angle)), math.sin(abs(angle))
+            length, breadth = (0.5 * size for size in sizes_cm)
+            wide, high = length * cos + breadth * sin, length * sin + breadth * cos
         width, height = (n * kind.pitch_cm - kind.gap_cm for n in (kind.columns, kind.rows))
-        margin = 0.0 if kind.over_edge else radius_cm
-        x = self.rng.uniform(margin, width - margin)
-        y = self.rng.uniform(margin, height - margin)
-        return Circle(x, y, radius_cm)
+        if kind.over_edge:
+            wide = high = 0.0
+        x = self.rng.uniform(wide, width - wide)
+        y = self.rng.uniform(high, height - high)
+        if len(sizes_cm) == 1:
+            return Circle(x, y, sizes_cm[0])
+        return Rectangle(x, y, *sizes_cm, angle)
 
-    def _load_g(self, disc: Circle, weight_g: float) -> Values:
+    def _places(self, outline: Outline) -> tuple[Values, Values]:
+        """Return each sown point's place in an object."""
+        x, y = self.x[None, :] - outline.x_cm, self.y[:, None] - outline.y_cm
+        if isinstance(outline, Circle):
+            u, v = np.broadcast_arrays(x / outline.radius_cm, y / outline.radius_cm)
+            return u, v
+        cos, sin = math.cos(outline.angle_rad), math.sin(outline.angle_rad)
+        u = 2.0 * (x * cos - y * sin) / outline.length_cm
+        v = 2.0 * (x * sin + y * cos) / outline.breadth_cm
+        far = np.hypot(u, v)
+        to_rim = np.maximum(np.abs(u), np.abs(v)) / np.where(far > 0.0, far, 1.0)
+        return u * to_rim, v * to_rim
+
+    def _load_g(self, outline: Outline, weight_g: float) -> Values:
         kind, rng = self.kind, self.rng
-        u = (self.x[None, :] - disc.x_cm) / disc.radius_cm
-        v = (self.y[:, None] - disc.y_cm) / disc.radius_cm
-        u, v = np.broadcast_arrays(u, v)
+        u, v = self._places(outline)
         pressed = np.where(u * u + v * v <= 1.0, np.maximum(kind.pressure(u, v), 0.0), 0.0)
         share = pressed.reshape(kind.rows, SOWN, kind.columns, SOWN).mean(axis=(1, 3))
         mixed = math.sqrt(kind.fixed) * self.own + math.sqrt(1.0 - kind.fixed) * self._field()
@@ -194,6 +220,7 @@ def hollow(u: Values, v: Values) -> Values:
 
 BASE = Kind()
 SMALL = ((300.0, 1.6), (500.0, 2.0), (800.0, 2.4))
+SMALL_RECTANGLES = ((500.0, 5.0, 3.0), (800.0, 6.5, 4.0))
 
 KINDS: dict[str, Kind] = {
     "noise 0": replace(BASE, noise_v=0.0),
@@ -224,7 +251,7 @@ KINDS: dict[str, Kind] = {
     "round face": replace(BASE, pressure=round_face),
     "hollow face": replace(BASE, pressure=hollow),
     "foam 0.6 cells": replace(BASE, foam_cells=0.6),
-    "small discs": replace(BASE, discs=SMALL),
+    "small objects": replace(BASE, discs=SMALL, rectangles=SMALL_RECTANGLES),
     "over the edge": replace(BASE, over_edge=True),
     "drift 5 mV": replace(BASE, offset_v=5e-3),
     "8 bits": replace(BASE, noise_v=1.6e-3, step_v=10.0 / 256),

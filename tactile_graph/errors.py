@@ -19,6 +19,14 @@ class Degenerate(TactileGraphError):  # noqa: N818 -- the name of an outcome
     """
 
 
+class Skip(TactileGraphError):  # noqa: N818 -- the name of an outcome
+    """A step has nothing to say for this frame, and why: warming up, nothing new.
+
+    A step raises it instead of giving a value; the node's outcome is then ``skipped``, which is no
+    failure.
+    """
+
+
 class DataError(TactileGraphError):
     """A recording, stream or image that does not hold what it should.
 

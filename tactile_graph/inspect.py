@@ -7,12 +7,21 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
   (`plain`) and digests of it (`node_key`);
 - the plan of a demand (`make_plan`, `Plan`), what it needs of a frame (`check_frame`), and its
   `Runner`;
-- outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`; values as numbers (`scalars`) and
+- outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`, the items of a
+  list that have none (`gaps`) or one (`with_value`); values as numbers (`scalars`) and
   as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`);
 - `Replay`: what a plan alone would have come to, from a run that settled more.
 """
 
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Done, Failed, Skipped
+from tactile_graph.engine.outcome import (
+    NO_VALUE,
+    NOT_ASKED,
+    Done,
+    Failed,
+    Skipped,
+    gaps,
+    with_value,
+)
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
 from tactile_graph.engine.rows import as_data, scalars, without_nan
@@ -43,11 +52,13 @@ __all__ = [
     "as_data",
     "check_frame",
     "field_type",
+    "gaps",
     "make_plan",
     "node_key",
     "plain",
     "public_fields",
     "scalars",
     "shape_kind",
+    "with_value",
     "without_nan",
 ]

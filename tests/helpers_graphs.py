@@ -13,7 +13,7 @@ from annotated_types import Ge
 from hypothesis import strategies as st
 
 from helpers_naive import NaiveStep
-from tactile_graph import Degenerate, Frame, Image, hookimpl
+from tactile_graph import Degenerate, Frame, Image, Skip, hookimpl
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps import TimeGap
 
@@ -99,6 +99,13 @@ def picky(a: int, *, bad: Annotated[int, Ge(1)] = 2, tag: str = "") -> int:
     return a
 
 
+def shy(a: int, *, tag: str = "") -> int:
+    CALLS.append(tag)
+    if a % 3 == 0:
+        raise Skip(f"{a} says nothing")
+    return a
+
+
 class Count:
     def __init__(self, *, tag: str = "") -> None:
         self.tag = tag
@@ -123,6 +130,12 @@ def _naive_picky(a: int, bad: int = 2) -> int:
     return a
 
 
+def _naive_shy(a: int) -> int:
+    if a % 3 == 0:
+        raise Skip
+    return a
+
+
 STEPS: dict[str, Callable[..., Any]] = {
     f.__name__.lower(): f
     for f in (
@@ -140,6 +153,7 @@ STEPS: dict[str, Callable[..., Any]] = {
         maybe,
         many,
         picky,
+        shy,
         Count,
     )
 }
@@ -159,6 +173,7 @@ NAIVE = {
     "maybe": NaiveStep(("a",), lambda a: a),
     "many": NaiveStep(("a",), lambda a: tuple(a + i for i in range(a % 4))),
     "picky": NaiveStep(("a",), _naive_picky),
+    "shy": NaiveStep(("a",), _naive_shy),
     "count": NaiveStep(("a",), _naive_count, stateful=True),
 }
 
@@ -204,6 +219,7 @@ INTS = (
     "total",
     "total_of",
     "picky",
+    "shy",
     "maybe",
     "count",
     "read",
@@ -212,6 +228,8 @@ INTS = (
     "first_of",
     "pair",
     "many",
+    "many",
+    "each",
     "each",
     "use",
 )
@@ -265,7 +283,7 @@ class _Grower:
 
     def body(self, kind: str) -> dict[str, Any]:
         pick = lambda: self.some(self.ints)  # noqa: E731
-        if kind in ("add1", "picky", "count", "pair", "many"):
+        if kind in ("add1", "picky", "shy", "count", "pair", "many"):
             body: dict[str, Any] = {"step": kind, "in": pick()}
             if kind == "picky":
                 body["with"] = {"bad": self.draw(st.integers(1, 4))}
@@ -294,7 +312,8 @@ class _Grower:
             if self.draw(st.booleans()):
                 step, wires = "add2", {"a": self.some(self.lists), "b": pick()}
             else:
-                step, wires = "picky", {"a": self.some(self.lists)}
+                step = self.draw(st.sampled_from(["picky", "shy"]))
+                wires = {"a": self.some(self.lists)}
             return {"step": step, "in": wires, "each": True}
         if kind == "use":
             return {"use": self.draw(st.sampled_from(sorted(self.library)))}

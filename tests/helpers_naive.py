@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from tactile_graph.errors import Skip
+
 _REF = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")
 _WORDS = {"and", "or", "not"}
 
@@ -92,6 +94,15 @@ class Naive:
             self.settled[at] = guard or self.ref(name, inner, f"{prefix}{root}/")
         return self.settled[at]
 
+    def whole(self, items: tuple[Any, ...]) -> Outcome:
+        """Return a list as a step takes it that knows of no empty place."""
+        empty = [v for v in items if isinstance(v, Outcome)]
+        kept = tuple(v for v in items if not isinstance(v, Outcome))
+        failed = next((o for o in empty if o.state == "failed"), None)
+        if failed is not None or (empty and not kept):
+            return failed or empty[0]
+        return value(kept)
+
     # -- nodes -------------------------------------------------------------------------------
 
     def node(self, name: str, document: Any, prefix: str) -> Outcome:
@@ -139,6 +150,10 @@ class Naive:
         lacking: Outcome | None = None
         for port, wired in self.wired(step, body).items():
             found = self.port(wired, document, prefix)
+            if found.has_value and isinstance(found.value, tuple) and not body.get("each"):
+                found = self.whole(found.value)
+                if not found.has_value:
+                    return found
             if found.has_value:
                 arguments[port] = found.value
             elif found.state == "failed":
@@ -198,19 +213,22 @@ class Naive:
             }
         try:
             return value(step.function(**arguments, **settings))
+        except Skip:
+            return Outcome("skipped", origin=at)
         except Exception:
             return Outcome("failed", origin=at)
 
     def each(self, step: NaiveStep, body: Any, arguments: dict[str, Any], at: str) -> Outcome:
         lists = {p: v for p, v in arguments.items() if isinstance(v, tuple)}
-        items = [
-            self.call(step, body, {**arguments, **{p: v[i] for p, v in lists.items()}}, at)
-            for i in range(len(next(iter(lists.values()))))
-        ]
-        values = tuple(o.value for o in items if o.has_value)
-        if values:
-            return value(values)
-        return Outcome("failed" if items else "skipped", origin=at)
+        items = []
+        for i in range(len(next(iter(lists.values())))):
+            item = {p: v[i] for p, v in lists.items()}
+            lacking = next((v for v in item.values() if isinstance(v, Outcome)), None)
+            items.append(lacking or self.call(step, body, {**arguments, **item}, at))
+        if any(o.has_value for o in items):
+            return value(tuple(o.value if o.has_value else o for o in items))
+        failed = next((o for o in items if o.state == "failed"), None)
+        return failed or Outcome("skipped", origin=at)
 
     # -- what depends on no frame --------------------------------------------------------------
 

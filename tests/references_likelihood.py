@@ -8,11 +8,15 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import (
+    HIGH,
     LEAST,
     OFF,
     ON,
+    OVER,
     SIGMA,
     SQRT_HALF,
+    STRAYS,
+    UNDER,
     VOIDS,
     States,
     on_level,
@@ -61,8 +65,11 @@ def terms(
     sigma, voids, least = noise[SIGMA], noise[VOIDS], noise[LEAST]
     u = (logs[here] - mu) / sigma
     on = np.logaddexp(0.0, on_level.call(noise) - 0.5 * u * u)
-    z = (mu - least) / sigma
+    z = (mu - np.where(states[here] == OFF, least, logs[here])) / sigma
     tail = np.array([[0.5 * math.erfc(-SQRT_HALF * e) for e in line] for line in z.tolist()])
-    off = np.log(1.0 - (1.0 - voids) * tail.reshape(z.shape))
-    found = np.where(states[here] == ON, on, np.where(states[here] == OFF, off, 0.0))
+    tail = tail.reshape(z.shape)
+    off = np.log(1.0 - (1.0 - voids) * tail)
+    over = np.log1p((1.0 - noise[STRAYS]) * (1.0 - voids) / (HIGH * noise[STRAYS]) * tail)
+    of = {ON: on, OFF: off, UNDER: off, OVER: over}
+    found = sum(np.where(states[here] == state, its, 0.0) for state, its in of.items())
     return float(found[touched].sum())

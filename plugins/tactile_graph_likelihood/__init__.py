@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
+    "above_noise": "any_pad.above_noise:AboveNoise",
     "choose_shape": "single.choose_shape:ChooseShape",
     "fit_footprint": "single.fit_footprint:FitFootprint",
     "follow_footprint": "over_time.follow_footprint:FollowFootprint",
@@ -14,6 +15,11 @@ _STEPS = {
     "footprint_ellipse": "single.footprint_of:FootprintEllipse",
     "footprint_rectangle": "single.footprint_of:FootprintRectangle",
     "identify_footprint": "known.identify_footprint:IdentifyFootprint",
+    "locate": "any_pad.choose:Locate",
+    "locate_contacts": "any_pad.locate_contacts:LocateContacts",
+    "locate_disc": "any_pad.locate:LocateDisc",
+    "locate_ellipse": "any_pad.locate:LocateEllipse",
+    "locate_rectangle": "any_pad.locate:LocateRectangle",
 }
 
 

@@ -19,6 +19,8 @@ from tactile_graph_pads.pad import Pad, load_pad
 Positive = Annotated[float, Gt(0)]
 Share = Annotated[float, Gt(0), Lt(1)]
 Part = Literal["sigma", "voids", "foam", "fall", "lean"]
+ON_PAD = {"whole": 1.0, "mostly": 0.9, "partly": 0.0}
+"""Probability, before a frame is read, that the whole outline lies on the pad."""
 Load = Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
 
 
@@ -48,8 +50,9 @@ class FootprintSettings:
     pressure : "any" or "even"
         Whether the object may press unevenly: leaning, less towards its rim, or through foam.
         Looked at where an even face leaves that pattern over, and weighed by the evidence.
-    on_pad : "whole" or "partly"
-        Whether the whole outline lies on the pad, or its centre only. Free polygons are whole.
+    on_pad : "whole", "mostly" or "partly"
+        Whether the whole outline lies on the pad, or its centre only; in nine of ten cases the
+        whole. Free polygons are whole.
     smallest_cm, largest_cm : float, optional
         Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
     precision : float
@@ -74,7 +77,7 @@ class FootprintSettings:
     shows_from: Annotated[float, Ge(0)] | None = None
     estimate: list[Part] = field(default_factory=list)
     pressure: Literal["any", "even"] = "any"
-    on_pad: Literal["whole", "partly"] = "partly"
+    on_pad: Literal["whole", "mostly", "partly"] = "partly"
     smallest_cm: Positive | None = None
     largest_cm: Positive | None = None
     precision: Annotated[float, Gt(0), Le(1)] = 0.15
@@ -114,7 +117,7 @@ class FootprintSettings:
             corners,
             noise=self.noise,
             gap_cm=self.gap,
-            whole=self.on_pad == "whole",
+            whole=ON_PAD[self.on_pad],
             smallest_cm=self.smallest_cm or 0.0,
             largest_cm=self.largest_cm or math.inf,
             precision=self.precision,

@@ -6,9 +6,15 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt, Le
+from numpy.typing import NDArray
 
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
+
+SPARE_SHARE = 0.01
+"""Of all cells so many, and one more, may be broken and read far below 0."""
+LEAST_CELLS = 32
+"""Of fewer, none is called broken: too few others say how far below 0 noise reaches."""
 
 
 class Compressed(NamedTuple):
@@ -49,15 +55,17 @@ def compress(
 
     Notes
     -----
-    Cells that are not finite become invalid, as those are that were; they hold 0.
+    Cells that are not finite become invalid, as those are that were; they hold 0. So do a few that
+    read far below 0 while no other does: broken, they say nothing of the noise.
     """
     values = np.asarray(image.values, np.float64)
     usable = np.isfinite(values)
     if image.valid is not None:
         usable = usable & image.valid
+    noise, broken_below = _below_zero(values[usable], times)
+    usable = usable & (values >= broken_below)
     seen = values[usable]
-    peak, low = (float(seen.max()), float(seen.min())) if seen.size else (0.0, 0.0)
-    noise = max(0.0, -low)
+    peak = float(seen.max()) if seen.size else 0.0
     if peak <= 0.0:
         return Compressed(image.with_values(np.zeros(values.shape), "level"), False)
     scale = max(share * peak, noise, np.finfo(np.float64).tiny)
@@ -67,3 +75,18 @@ def compress(
     if not usable.all():
         made = Image(out, image.pitch_cm, image.origin_cm, "level", usable)
     return Compressed(made, peak > times * noise)
+
+
+def _below_zero(seen: NDArray[np.float64], times: float) -> tuple[float, float]:
+    """Return how far noise reaches below 0, and below which reading a cell is broken.
+
+    Broken is a cell that reads more than so many times as far below 0 as all but the few below it.
+    """
+    if seen.size == 0:
+        return 0.0, -np.inf
+    n_spare = 1 + int(SPARE_SHARE * seen.size) if seen.size >= LEAST_CELLS else 0
+    lowest = np.sort(np.partition(seen, n_spare)[: n_spare + 1])
+    for this, following in zip(lowest[:-1][::-1], lowest[1:][::-1], strict=True):
+        if this < 0.0 and this < times * min(0.0, following):
+            return max(0.0, -float(following)), float(following)
+    return max(0.0, -float(lowest[0])), -np.inf

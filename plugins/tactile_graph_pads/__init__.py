@@ -21,5 +21,8 @@ def tactile_graph_pads() -> Mapping[str, Path]:
 
 @hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the command that calibrates a pad."""
-    return {"calibrate": "tactile_graph_pads.commands.calibrate:calibrate"}
+    """Offer the commands that calibrate a pad, and that learn one from recordings."""
+    return {
+        "calibrate": "tactile_graph_pads.commands.calibrate:calibrate",
+        "learn-pad": "tactile_graph_pads.commands.learn_pad:learn_pad",
+    }

@@ -7,7 +7,7 @@ share `Pad.forward`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, NamedTuple
@@ -25,6 +25,7 @@ from tactile_graph_pads.contact import Contact
 from tactile_graph_pads.defects import Built, Defects
 from tactile_graph_pads.geometry import Geometry
 from tactile_graph_pads.law import ForceLaw
+from tactile_graph_pads.learned import Learned
 from tactile_graph_pads.records import inline, read_record
 from tactile_graph_pads.scan import Converter, Scan
 from tactile_graph_pads.unevenness import Unevenness
@@ -56,6 +57,8 @@ class Pad:
     contact : Contact
     unevenness : Unevenness
     defects : Defects
+    learned : Learned, optional
+        What recordings have taught; None for a pad that was described by hand alone.
     """
 
     about: str = ""
@@ -69,6 +72,7 @@ class Pad:
     contact: Contact = field(default_factory=Contact)
     unevenness: Unevenness = field(default_factory=Unevenness)
     defects: Defects = field(default_factory=Defects)
+    learned: Learned | None = None
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     def __post_init__(self) -> None:
@@ -215,7 +219,33 @@ def load_pad(pad: str | Path | Mapping[str, Any]) -> Pad:
     path = Path(pad)
     if path.suffix not in (".yaml", ".yml"):
         path = installed().path("pads", str(pad))
-    return read_record(read_file(path, "pad"), Pad, "a pad")
+    found = read_record(read_file(path, "pad"), Pad, "a pad")
+    if found.learned is None:
+        return found
+    return replace(found, learned=found.learned.beside(path.parent))
+
+
+def learned_of(pad: str | Path | Mapping[str, Any]) -> Learned:
+    """Return what recordings have taught about a pad.
+
+    Parameters
+    ----------
+    pad : str, Path or mapping
+        As `load_pad` takes it.
+
+    Raises
+    ------
+    UsageError
+        If no recordings have.
+    """
+    learned = load_pad(pad).learned
+    if learned is None:
+        named = f"pad {pad!r}" if isinstance(pad, str | Path) else "the pad"
+        raise UsageError(
+            f"{named} was not learned from recordings: it has no section 'learned'; "
+            "tactile-graph learn-pad makes such a file"
+        )
+    return learned
 
 
 def read_file(path: Path, what: str) -> Document:

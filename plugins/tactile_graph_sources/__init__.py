@@ -35,6 +35,7 @@ def tactile_graph_commands() -> Mapping[str, str]:
     """Offer the commands about devices and recordings."""
     return {
         "convert": "tactile_graph_sources.commands.convert:convert",
+        "inspect": "tactile_graph_sources.commands.inspect:inspect",
         "ports": "tactile_graph_sources.commands.ports:ports",
         "record": "tactile_graph_sources.commands.record:record",
     }

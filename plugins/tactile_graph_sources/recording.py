@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
-from annotated_types import Gt
+from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers import pictures
 from tactile_graph_sources.readers.formats import known, reader_of
+from tactile_graph_sources.readers.garbage import without_garbage
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.store import is_store, read_store
 
@@ -31,6 +35,16 @@ def recording(
     origin_cm: tuple[float, float] | None = None,
     quantity: QuantityName | None = None,
     sensor: str = "",
+    order: Literal["rows", "columns"] = "rows",
+    transpose: bool = False,
+    flip: Literal["", "rows", "columns", "both"] = "",
+    skip: Annotated[int, Ge(0)] = 0,
+    frame_column: str = "",
+    time_column: str = "",
+    time_unit: Literal["", "s", "ms", "us", "ns", "min"] = "",
+    time_format: str = "",
+    value_column: str = "",
+    cells: str = "",
     report: Report,
 ) -> Iterator[Frame]:
     """Frames of one or more recordings, whatever device or program wrote them.
@@ -56,8 +70,24 @@ def recording(
     sensor : str
         Only frames of sensors whose name contains this; in an ``.npz`` the name of the array.
         Several sensors give a frame each, with the sensor's name as label.
+    order : str
+        Whether cells that come in a row come row by row or column by column.
+    transpose : bool
+        Whether rows and columns are exchanged once a frame is read; before ``flip``.
+    flip : str
+        What is turned round: the order of the ``rows`` (top to bottom), of the ``columns``, both.
+    skip : int
+        How many frames at the start of each file are left out.
+    frame_column, time_column, value_column : str
+        Columns of a table, by name or number from 1, where the header does not say it.
+    time_unit, time_format : str
+        Unit of the times, or how dates and times of day are written, as ``strptime`` takes it.
+    cells : str
+        The columns of a table that are cells: numbers from 1 (``2-65``, ``2-``), or names with
+        wildcards (``v*``).
     report : Report
-        Takes counters, troubles, the number of frames to expect and the files' digests.
+        Takes the format that was recognised, counters, troubles, the number of frames to expect
+        and the files' digests.
 
     Yields
     ------
@@ -74,23 +104,73 @@ def recording(
         raise ValueError("path is an empty list; give at least one file")
     for one in paths:
         _check_file(one)
-    pitch = (pitch_cm, pitch_cm) if isinstance(pitch_cm, int | float) else pitch_cm
-    told = Told(rows, columns, pitch, origin_cm, quantity, sensor)
+    told = Told.of(
+        ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format),
+        rows=rows,
+        columns=columns,
+        pitch_cm=pitch_cm,
+        origin_cm=origin_cm,
+        quantity=quantity,
+        sensor=sensor,
+        order=order,
+        transpose=transpose,
+        flip=flip,
+        skip=skip,
+    )
     index = 0
     for one in paths:
         label = one.name if len(paths) > 1 else ""
-        frames = (
-            _stored(one, report, index)
-            if is_store(one)
-            else _frames(one, told, report, index, label)
-        )
-        for frame in frames:
-            yield frame
-            index = frame.index + 1
+        for frame in opened(one, told, report, label).frames:
+            yield frame if frame.index == index else frame.with_index(index)
+            index += 1
+
+
+class Opened(NamedTuple):
+    """A recording that is about to be read: what it was recognised as, and its frames.
+
+    ``why`` says in words how it was recognised, once a frame was asked for.
+    """
+
+    format: str
+    why: Callable[[], str]
+    frames: Iterator[Frame]
+
+
+def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
+    """Return one recording, recognised.
+
+    Raises
+    ------
+    DataError
+        If it is missing or of no known format.
+    """
+    _check_file(path)
+    if is_store(path):
+        name, why = "Zarr store of ours", "a folder with zarr.json"
+        frames, start = read_store(path, report), told.skip
+        kept = without_garbage(islice(frames, start, None), report, str(path))
+        return Opened(name, lambda: why, kept)
+    if path.is_dir():
+        reading = Reading(Head(path, b"", told), told, report, 0, label)
+        found = islice(_frames(reading, pictures.NAME, pictures.read_folder), told.skip, None)
+        return Opened(pictures.NAME, lambda: reading.why, without_garbage(found, report, str(path)))
+    try:
+        with path.open("rb") as file:
+            report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
+        head = Head.of(path, told)
+        reader = reader_of(head)
+    except OSError as error:
+        raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
+    reading = Reading(head, told, report, 0, label)
+    found = islice(_frames(reading, reader.NAME, reader.read), told.skip, None)
+    frames = without_garbage(found, report, str(path))
+    return Opened(reader.NAME, lambda: reading.why or "by its first lines", frames)
 
 
 def _check_file(path: Path) -> None:
     if path.is_file() or is_store(path):
+        return
+    if path.is_dir() and pictures.pictures_in(path):
         return
     if path.is_dir():
         held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
@@ -101,25 +181,17 @@ def _check_file(path: Path) -> None:
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
 
-def _stored(path: Path, report: Report, index: int) -> Iterator[Frame]:
-    """Yield the frames of a Zarr store, numbered on from ``index``."""
-    for frame in read_store(path, report):
-        yield frame.with_index(index)
-        index += 1
-
-
-def _frames(path: Path, told: Told, report: Report, index: int, label: str) -> Iterator[Frame]:
+def _frames(
+    reading: Reading, name: str, read: Callable[[Reading], Iterator[Frame]]
+) -> Iterator[Frame]:
     """Yield the frames of one file; a file without any is an error."""
+    path, told, report = reading.path, reading.told, reading.report
+    report.count(f"recordings read as {name}")
     try:
-        with path.open("rb") as file:
-            report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
-        head = Head.of(path, told)
-        reader = reader_of(head)
-        reading = Reading(head, told, report, index, label)
-        yield from reader.read(reading)
+        yield from read(reading)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
-    if reading.index > index:
+    if reading.index > reading.start:
         return
     if told.sensor and reading.sensors:
         near = did_you_mean(told.sensor, reading.sensors)
@@ -129,6 +201,5 @@ def _frames(path: Path, told: Told, report: Report, index: int, label: str) -> I
     why = f" ({reading.first_damage})" if reading.first_damage else ""
     raise DataError(
         str(path),
-        f"it looks like {reader.NAME} but holds no whole frame{why}; "
-        f"formats that are read: {known()}",
+        f"it looks like {name} but holds no whole frame{why}; formats that are read: {known()}",
     )

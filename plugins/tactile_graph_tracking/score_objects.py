@@ -35,7 +35,7 @@ class ObjectScore(NamedTuple):
 
 
 def score_objects(
-    frame: Frame, found: Sequence[Any] = (), *, gate_cm: Annotated[float, Gt(0)] = 2.0
+    frame: Frame, found: Sequence[Any | None] = (), *, gate_cm: Annotated[float, Gt(0)] = 2.0
 ) -> ObjectScore:
     """Return how the objects found pair with the true ones.
 
@@ -48,7 +48,8 @@ def score_objects(
         With its truth.
     found : list
         Contacts, shapes, tracks, decisions on a shape: anything with ``x_cm`` and ``y_cm`` or a
-        ``shape`` that has them. None at all where their node was skipped.
+        ``shape`` that has them. None at all where their node was skipped; an item that is
+        None was not found.
     gate_cm : float
         Centres farther apart are no pair.
 
@@ -66,7 +67,7 @@ def score_objects(
     if frame.truth is None:
         raise Degenerate("the frame has no truth to score against")
     true = places_cm([t.shape for t in frame.truth], "truth")
-    got = places_cm(found, "score_objects")
+    got = places_cm([f for f in found if f is not None], "score_objects")
     off = np.hypot(*(true[:, None] - got[None]).transpose(2, 0, 1))
     # A pair more is worth any detour: that is what makes their number the first concern.
     alone = gate_cm * (2.0 + len(true))

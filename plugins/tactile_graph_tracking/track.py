@@ -89,13 +89,14 @@ class Track:
         self._now_s, self._call, self._last_id = 0.0, 0, 0
         self._all: list[Followed] = []
 
-    def __call__(self, contacts: Sequence[Any], *, gap_s: TimeGap = None) -> Tracks:
+    def __call__(self, contacts: Sequence[Any | None], *, gap_s: TimeGap = None) -> Tracks:
         """Return the objects on the pad, and those that leave.
 
         Parameters
         ----------
         contacts : list
-            Contacts, shapes, decisions on a shape: see `placed`.
+            Contacts, shapes, decisions on a shape: see `placed`. None where one could not be
+            fitted: its object goes unseen in this frame.
         gap_s : float, optional
             Time since the last call.
 
@@ -104,11 +105,12 @@ class Track:
         DataError
             If one of them has no finite centre.
         """
-        xy = places_cm(contacts, "track")
-        areas = np.array([_area_cm2(c) for c in contacts])
+        seen = [c for c in contacts if c is not None]
+        xy = places_cm(seen, "track")
+        areas = np.array([_area_cm2(c) for c in seen])
         order = np.lexsort((areas, xy[:, 0], xy[:, 1]))
         self._go_on(gap_s)
-        self._see([contacts[i] for i in order], xy[order], areas[order])
+        self._see([seen[i] for i in order], xy[order], areas[order])
         gone = self._given_up()
         told = [self._told(one) for one in self._all if one.call == self._call]
         here = [one for one in told if one is not None]

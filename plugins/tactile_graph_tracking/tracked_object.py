@@ -50,15 +50,15 @@ class TrackedObject:
     provides: ClassVar[Mapping[type, str]] = {Image: "image", Mask: "mask"}
 
     @property
-    def image(self) -> Image:
-        """Its contact's own image."""
-        image: Image = self.contact.image
+    def image(self) -> Image | None:
+        """Its contact's own image; None of a shape, which has none."""
+        image: Image | None = getattr(self.contact, "image", None)
         return image
 
     @property
-    def mask(self) -> Mask:
-        """Its contact's own mask."""
-        mask: Mask = self.contact.mask
+    def mask(self) -> Mask | None:
+        """Its contact's own mask; None of a shape, which has none."""
+        mask: Mask | None = getattr(self.contact, "mask", None)
         return mask
 
     @property

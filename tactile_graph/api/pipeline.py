@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +14,7 @@ from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
 from tactile_graph.pipeline.scope import Overrides
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from tactile_graph.api.result import Result
+    from tactile_graph.api.results import Results
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
 
@@ -77,6 +78,24 @@ class Pipeline(Graph):
         """Return the pipeline of a graph."""
         return cls(**{f.name: getattr(graph, f.name) for f in fields(graph)})
 
+    def __copy__(self) -> Pipeline:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Pipeline:
+        return self
+
+    def __reduce__(self) -> tuple[Callable[..., Pipeline], tuple[Any, ...]]:
+        """Pickle by text, settings and source: another process resolves them by its own plugins.
+
+        Raises
+        ------
+        UsageError
+            If it was loaded with a registry of its own, which no other process has.
+        """
+        if self.registry is not None and self.registry is not installed():
+            raise UsageError(f"pipeline {self.name!r} has a registry of its own: not to be pickled")
+        return _unpickled, (self.text, self.file, dict(self.overrides), self.source_override)
+
     # -- running -----------------------------------------------------------------------------
 
     def run(
@@ -108,8 +127,8 @@ class Pipeline(Graph):
         frames: Iterable[Frame | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
-    ) -> Iterator[Result]:
-        """Yield the result of each frame, in order; stateful steps keep their state.
+    ) -> Results:
+        """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
         Parameters
         ----------
@@ -118,8 +137,17 @@ class Pipeline(Graph):
         only, seed
             As in `run`.
         """
+        from tactile_graph.api.results import Results
+
         runner = self.runner(only, seed)
-        for frame in self.frames(seed) if frames is None else frames:
+        asked = tuple(only or self.outputs)
+        given = self.frames(seed) if frames is None else frames
+        return Results(self, asked, self._results(runner, given))
+
+    def _results(
+        self, runner: Runner[Result], frames: Iterable[Frame | NDArray[np.generic]]
+    ) -> Iterator[Result]:
+        for frame in frames:
             result = runner(_as_frame(frame))
             if self.promises.waiting:
                 self.promises.check(result)
@@ -240,6 +268,10 @@ class Pipeline(Graph):
 
     def __repr__(self) -> str:
         return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
+
+
+def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverride) -> Pipeline:
+    return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
 
 
 def _as_frame(frame: Any) -> Frame:

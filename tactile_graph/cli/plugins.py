@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import click
 
+from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.mistakes import near_groups
 
+OWN = "tactile-graph"
 NARROW = 80
 """Columns of a terminal below which what is offered goes before how long it took to import."""
 
@@ -23,6 +26,7 @@ def plugins() -> None:
     from tactile_graph.cli.terminal import console
 
     found = registry.installed()
+    broken = _broken_steps(found)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("plugin", style="bold", no_wrap=True)
     table.add_column("package", no_wrap=True)
@@ -34,12 +38,16 @@ def plugins() -> None:
     table.add_column("offers", overflow="fold")
     for plugin in found.plugins:
         spent = ["" if plugin.blocked else f"{plugin.import_ms:.1f}"] if timed else []
-        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin))
+        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin, broken))
     out.print(table)
     for plugin in found.plugins:
         if plugin.error:
             text = Text.assemble((f"{plugin.label}: ", "bold red"), plugin.error)
             out.print(text, soft_wrap=True)
+    for name, trouble in broken.items():
+        label = found.offer("steps", name).plugin.label
+        told = Text.assemble((f"{label}, step {name!r}: ", "bold red"), trouble)
+        out.print(told, soft_wrap=True)
     from tactile_graph.cli.app import COMMANDS
 
     for words in near_groups(registry.GROUP):
@@ -54,16 +62,42 @@ def _hidden(found: registry.Registry, name: str) -> str:
     return f"command {name!r} of {label} is refused: tactile-graph has its own"
 
 
-def _offers(plugin: registry.Plugin) -> Any:
+def _broken_steps(found: registry.Registry) -> dict[str, str]:
+    """Return what is wrong with each step that cannot be had, by name.
+
+    Steps of others are imported, which tells for certain; the project's own, of which there are
+    many, only where their source does not show them.
+    """
+    from tactile_graph.plugins.outline import outline
+
+    broken = {}
+    for name in found.names("steps"):
+        offer = found.offer("steps", name)
+        if offer.plugin.package == OWN and not outline(offer.target).trouble:
+            continue
+        try:
+            found.step(name)
+        except TactileGraphError as error:
+            broken[name] = str(error)
+    return broken
+
+
+def _offers(plugin: registry.Plugin, broken: Mapping[str, str]) -> Any:
     from rich.text import Text
 
     if plugin.blocked:
         return Text("blocked", style="yellow")
     if plugin.error:
         return Text("failed to load, see below", style="red")
+    usable = {
+        kind: [n for n in names if kind != "steps" or n not in broken]
+        for kind, names in plugin.offers.items()
+    }
     parts = [
         f"{len(names)} {kind if len(names) != 1 else kind[:-1]}"
-        for kind, names in plugin.offers.items()
+        for kind, names in usable.items()
         if names
     ]
+    n_broken = len(plugin.offers.get("steps", ())) - len(usable.get("steps", ()))
+    parts += [f"{n_broken} of its steps cannot be used, see below"] if n_broken else []
     return Text(", ".join(parts) or "nothing", style="" if parts else "dim")

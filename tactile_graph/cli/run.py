@@ -26,6 +26,7 @@ from tactile_graph.files import check_target, is_plain
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph.engine.table import Table
 
 IN_A_PICTURE = 12
 LONG_RUN = 200
@@ -48,19 +49,24 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
     "-o",
     "--output",
     metavar="FILE",
-    help="Write a line a frame: out.jsonl, out.csv, or - for stdout. How it was made is written "
-    "beside it, as FILE.meta.json.",
+    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout. How it was made "
+    "is written beside it, as FILE.meta.json.",
 )
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["jsonl", "csv"]),
+    type=click.Choice(["jsonl", "csv", "parquet"]),
     help="Format of the lines, where the file's name does not say; alone it means '-o -'.",
 )
 @click.option(
     "--full",
     is_flag=True,
     help="JSON lines with every field and array of the outputs, not only their summary.",
+)
+@click.option(
+    "--long",
+    is_flag=True,
+    help="CSV and Parquet with a row a frame and object: every item of every list.",
 )
 @click.option(
     "--plot",
@@ -79,6 +85,7 @@ def run(
     output: str | None,
     form: str | None,
     full: bool,
+    long: bool,
     plot: str | None,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
@@ -88,9 +95,9 @@ def run(
     """
     output = output or ("-" if form else None)
     _check_files(recordings, output, plot)
-    _check_full(full, output, form)
+    _check_form(full, long, output, form)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, output, form, full, plot).go()
+    _Run(opened, tuple(only), span, seed, output, form, full, long, plot).go()
 
 
 def _check_files(recordings: Sequence[str], output: str | None, plot: str | None) -> None:
@@ -105,10 +112,19 @@ def _check_files(recordings: Sequence[str], output: str | None, plot: str | None
         raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
 
 
-def _check_full(full: bool, output: str | None, form: str | None) -> None:
-    """Refuse to give in full what has no place for it."""
+def _check_form(full: bool, long: bool, output: str | None, form: str | None) -> None:
+    """Refuse to give in full, or an object a row, what has no place for it."""
     from tactile_graph.cli.writers import format_of
 
+    written = None if output is None else format_of(output, form)
+    if long and written not in ("csv", "parquet"):
+        got = "a table on the screen" if written is None else "JSON lines"
+        text = "they hold every list already" if written else "has a row a frame"
+        raise UsageError(f"--long: {got}: {text}; give -o FILE.csv or -o FILE.parquet")
+    if written == "parquet":
+        from tactile_graph.cli.parquet import pyarrow
+
+        pyarrow()
     if full and (output is None or format_of(output, form) != "jsonl"):
         got = "a table" if output is None else "CSV"
         raise UsageError(f"--full: {got} holds single numbers only; give -o FILE.jsonl or -o -")
@@ -125,9 +141,12 @@ class _Run:
     output: str | None
     form: str | None
     full: bool
+    long: bool
     plot: str | None
     kept: list[Result] = field(default_factory=list)
     interrupted: bool = False
+    form_of_table: Table | None = None
+    quantity: str = "raw"
     last_frame_s: float = field(default_factory=time.monotonic)
     error: Exception | None = None
 
@@ -141,7 +160,8 @@ class _Run:
 
         self.report = Report(listener=self._trouble)
         self.runner = self.pipeline.runner(self.only, self.seed)
-        self.columns = columns_of(self.pipeline, self.only or tuple(self.pipeline.outputs))
+        self.asked = self.only or tuple(self.pipeline.outputs)
+        self.columns = columns_of(self.pipeline, self.asked)
         self.tally = Tally(self.columns)
         # Lines own stdout; what is said to people then goes to stderr.
         self.people = console(stderr=self.output is not None)
@@ -158,11 +178,19 @@ class _Run:
 
     def _lines(self) -> Any:
         from tactile_graph.cli.writers import Csv, JsonLines, LineFile, format_of
+        from tactile_graph.engine.table import make_table
 
         if self.output is None:
             return None
         form = format_of(self.output, self.form)
-        return LineFile(self.output, Csv(self.columns) if form == "csv" else JsonLines(self.full))
+        if form == "jsonl":
+            return LineFile(self.output, JsonLines(self.full))
+        self.form_of_table = make_table(self.pipeline, self.asked, self.long)
+        if form == "csv":
+            return LineFile(self.output, Csv(self.form_of_table))
+        from tactile_graph.cli.parquet import ParquetFile
+
+        return ParquetFile(self.output, self.form_of_table)
 
     # -- the frames --------------------------------------------------------------------------
 
@@ -206,6 +234,7 @@ class _Run:
             self.stderr.print(f"{where}: {what}", style="yellow", soft_wrap=True)
 
     def _one(self, result: Result) -> None:
+        self.quantity = result.frame.image.quantity
         self.last_frame_s = time.monotonic()
         self.tally.add(result)
         if self.lines is None:
@@ -249,7 +278,8 @@ class _Run:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted:
             return INTERRUPTED
-        return SOME_FAILED if self.tally.n_failed or self.tally.not_finite else 0
+        tally = self.tally
+        return SOME_FAILED if tally.n_failed or tally.n_items_failed or tally.not_finite else 0
 
     def _no_frames(self) -> None:
         got = self.report.counts["frames"]
@@ -277,10 +307,16 @@ class _Run:
         data = provenance(
             self.pipeline, self.seed, self.report,
             command=["tactile-graph", *sys.argv[1:]], complete=complete,
-            asked=list(self.only or self.pipeline.outputs),
+            asked=list(self.asked), columns=self._units(),
             frames={"from": self.span.start, "to": self.span.stop}, result=self.tally.data(),
         )  # fmt: skip
         write_provenance(str(self.output), data)
+
+    def _units(self) -> dict[str, str] | None:
+        from tactile_graph.engine.table import units_of
+
+        table = self.form_of_table
+        return None if table is None else units_of(table, self.quantity)
 
     def _hints(self) -> None:
         say = self.people

@@ -15,10 +15,12 @@ from rich.text import Text
 from tactile_graph.api.result import Result
 from tactile_graph.cli.live_table import shown
 from tactile_graph.engine.columns import OutputColumns, values_of
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcome import Failed, Skipped, item_words
 from tactile_graph.steps.injected import Report
 
 MOST_TROUBLES = 20
+LOOKED_THROUGH = 100
+"""Frames at the beginning in which nodes are asked what they assume."""
 LONGEST_REASON = 300
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
@@ -29,7 +31,9 @@ class _Kept:
 
     outcome: Any
     first_frame: int
+    last_frame: int = -1
     n: int = 0
+    """Frames; several items of one frame count once."""
 
 
 @dataclass
@@ -53,8 +57,13 @@ class Tally:
     n: int = 0
     n_failed: int = 0
     n_skipped: int = 0
+    n_lacking: int = 0
+    """Frames with all outputs, in the lists of which items failed or were skipped."""
     n_not_finite: int = 0
-    """Frames with all outputs, of which one holds NaN or infinity."""
+    """Frames with all outputs and items, of which one holds NaN or infinity."""
+    n_items_failed: int = 0
+    assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
+    """What a node took that nobody said, and in which frame first."""
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     not_finite: dict[tuple[str, str], _Kept] = field(default_factory=dict)
@@ -65,6 +74,8 @@ class Tally:
     def add(self, result: Result) -> None:
         """Count a frame."""
         self.n += 1
+        if self.n <= LOOKED_THROUGH:
+            self._assumed(result)
         classes = {result.outcome(o.output).__class__ for o in self.outputs}
         self.n_failed += Failed in classes
         self.n_skipped += Skipped in classes and Failed not in classes
@@ -81,15 +92,33 @@ class Tally:
                 strange = self._look(output, values, result) or strange
                 self._compare(output, values)
         good = Failed not in classes and Skipped not in classes
-        self.n_not_finite += strange and good
+        empty = [gap for found in result.gaps.values() for gap in found]
+        for gap in empty:
+            if isinstance(gap, Skipped):
+                self._keep(self.skipped, (gap.origin, gap.origin), gap, result)
+        self.n_lacking += good and bool(empty)
+        self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
+        self.n_not_finite += strange and good and not empty
         self.seconds = time.perf_counter() - self.started
 
     @staticmethod
     def _keep(
         where: dict[tuple[str, str], _Kept], key: tuple[str, str], outcome: Any, result: Result
     ) -> None:
-        kept = where.setdefault(key, _Kept(outcome, result.frame.index))
-        kept.n += 1
+        frame = result.frame.index
+        kept = where.setdefault(key, _Kept(outcome, frame))
+        kept.n += kept.last_frame != frame or kept.n == 0
+        kept.last_frame = frame
+
+    def _assumed(self, result: Result) -> None:
+        """Note what nodes took that nobody said."""
+        seen: set[int] = set()  # a value may be handed on as it is
+        for item in result.plan.nodes:
+            value = result.outcome(item.name)
+            told = getattr(value, "assumed", "")
+            if told and id(value) not in seen and item.name not in self.assumed:
+                self.assumed[item.name] = (told, result.frame.index)
+            seen.add(id(value))
 
     def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
         """Note each value that is no number and should be one; return whether there is any."""
@@ -114,8 +143,10 @@ class Tally:
             "frames": self.n,
             "frames_failed": self.n_failed,
             "frames_skipped": self.n_skipped,
+            "frames_lacking_items": self.n_lacking,
             "frames_not_finite": self.n_not_finite,
             "failures_by_node": failed,
+            "assumed": {node: told for node, (told, _) in self.assumed.items()},
         }
 
     # -- in closing --------------------------------------------------------------------------
@@ -144,6 +175,8 @@ class Tally:
         for (key, _), kept in self.not_finite.items():
             text = f"{key} {_times(kept)}: {kept.outcome}, which is no answer"
             yield _labelled("strange", "red", text)
+        for node, (told, frame) in self.assumed.items():
+            yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
             text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
@@ -158,8 +191,9 @@ class Tally:
         )
         if not self.n:
             return text
-        good = self.n - self.n_failed - self.n_skipped - self.n_not_finite
+        good = self.n - self.n_failed - self.n_skipped - self.n_lacking - self.n_not_finite
         parts = [(f"{good} with all outputs", "green" if good else "")]
+        parts += [(f"{self.n_lacking} with items missing", "red")] if self.n_lacking else []
         parts += [(f"{self.n_not_finite} not finite", "red")] if self.n_not_finite else []
         parts += [(f"{self.n_skipped} skipped", "yellow")] if self.n_skipped else []
         parts += [(f"{self.n_failed} failed", "red")] if self.n_failed else []
@@ -188,6 +222,7 @@ def _why(failure: Failed) -> str:
 
 def _times(kept: _Kept) -> str:
     first = f"frame {kept.first_frame}"
+    first += f" ({item_words(kept.outcome.item)})" if getattr(kept.outcome, "item", ()) else ""
     return f"in {first}" if kept.n == 1 else f"in {kept.n} frames, first in {first}"
 
 

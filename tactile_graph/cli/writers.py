@@ -1,4 +1,4 @@
-"""Write results as they come, a line a frame, as JSON lines or CSV; lines are whole."""
+"""Write results as they come, as JSON lines or CSV; lines are whole."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from typing import Any, BinaryIO, NoReturn, Protocol
 import click
 
 from tactile_graph.api.result import Result
-from tactile_graph.engine.columns import OutputColumns, outcome_word, values_of
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.rows import as_data, without_nan
+from tactile_graph.engine.table import Table
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain, said
 
-FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv"}
+FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv", ".parquet": "parquet"}
 
 
 class Lines(Protocol):
@@ -84,32 +84,25 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
 
 
 class Csv:
-    """A row a frame; the columns follow from the types of the outputs, whatever a frame gave.
+    """Rows of a table; the columns follow from the types of the outputs, whatever a frame gave.
 
     Parameters
     ----------
-    columns : list of OutputColumns
+    table : Table
     """
 
-    def __init__(self, columns: list[OutputColumns]) -> None:
-        self.columns = columns
-        self.names = ["frame", "time_s", "label"]
-        for output in columns:
-            keys = [c.key for c in (*output.values, *output.errors)]
-            self.names += [f"{output.output}.outcome", *keys]
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self.names = [column.key for column in table.columns]
 
     def head(self) -> str:
         """Return the line of names."""
         return _csv_line(self.names)
 
     def line(self, result: Result) -> str:
-        """Return a frame's row; empty cells where an output has no value."""
-        frame = result.frame
-        row: dict[str, Any] = {"frame": frame.index, "time_s": frame.time_s, "label": frame.label}
-        for output in self.columns:
-            row[f"{output.output}.outcome"] = outcome_word(result.outcome(output.output))
-            row.update(values_of(result, output))
-        return _csv_line([row.get(name) for name in self.names])
+        """Return a frame's rows; empty cells where an output has no value."""
+        rows = self.table.rows(result)
+        return "".join(_csv_line([row.get(name) for name in self.names]) for row in rows)
 
 
 def _csv_line(cells: list[Any]) -> str:
@@ -119,7 +112,7 @@ def _csv_line(cells: list[Any]) -> str:
 
 
 def format_of(output: str, given: str | None) -> str:
-    """Return ``jsonl`` or ``csv``, as asked for or by the file's name.
+    """Return ``jsonl``, ``csv`` or ``parquet``, as asked for or by the file's name.
 
     Raises
     ------

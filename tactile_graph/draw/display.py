@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.outcome import Done, Failed, Skipped
+from tactile_graph.engine.outcome import Done, Failed, Skipped, outcome_word
 from tactile_graph.engine.rows import scalars
 from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
 
@@ -59,7 +59,7 @@ class Dots:
 
 @dataclass(frozen=True)
 class Outline:
-    """A closed line through ``xy_cm``, shape (corners, 2), the first not repeated.
+    """A line through ``xy_cm``, shape (corners, 2), closed unless told: the first not repeated.
 
     Where it is a circle, ``circle`` is it, for who can draw one exactly.
     """
@@ -67,6 +67,12 @@ class Outline:
     xy_cm: NDArray[np.float64]
     circle: Circle | None = None
     role: Role = "found"
+    closed: bool = True
+
+    @property
+    def drawn_cm(self) -> NDArray[np.float64]:
+        """The corners a pen goes to; of a closed line the first again in the end."""
+        return np.vstack([self.xy_cm, self.xy_cm[:1]]) if self.closed else self.xy_cm
 
 
 @dataclass(frozen=True)
@@ -104,7 +110,8 @@ def display_list(value: Any, role: Role = "found") -> list[Record]:
     Parameters
     ----------
     value : object
-        A record of the wires, a plugin's own with an ``outline_cm()``, a view (``provides``) or a
+        A record of the wires, a plugin's own with an ``outline_cm()`` (open where its
+        ``outline_closed`` is false), a view (``provides``) or a
         place (``x_cm``, ``y_cm``); lists and NamedTuples of these; numbers and texts.
     role : str
         Whether it was found or is true.
@@ -151,13 +158,14 @@ class _Listing:
         elif isinstance(value, list | tuple):
             self._items(value)
         else:
-            self._other(value)
+            self._other(value, alone)
 
     def _outline(self, value: Any) -> None:
         with np.errstate(invalid="ignore"):  # of a shape that is nowhere
             xy_cm = np.asarray(value.outline_cm(), dtype=np.float64).reshape(-1, 2)
         circle = value if isinstance(value, Circle) else None
-        self.records.append(Outline(xy_cm, circle, self.role))
+        closed = bool(getattr(value, "outline_closed", True))
+        self.records.append(Outline(xy_cm, circle, self.role, closed))
         self._cross(value)
 
     def _cross(self, value: Any) -> bool:
@@ -182,18 +190,22 @@ class _Listing:
         if not items:
             self.records.append(Note("", "none"))
         for number, item in enumerate(items, 1):
+            if isinstance(item, Skipped | Failed):
+                self.records.append(Note(f"{number}", outcome_word(item)))
+                continue
             self.add(item, alone=False)
             at = _middle(item) if 1 < len(items) <= MOST_NUMBERED else None
             if at is not None:
                 self.records.append(Number(*at, str(getattr(item, "number", number))))
 
-    def _other(self, value: Any) -> None:
+    def _other(self, value: Any, alone: bool) -> None:
         for kind in (Mask, Points, Image):
             seen = view(value, kind)
             if seen is not None:
                 self.add(seen, alone=False)
                 return
-        self._cross(value)
+        if self._cross(value) and not alone:
+            return  # where it is says enough of one of several
         found = scalars("", value) or {"": value}
         self.records += [Note(name.lstrip("."), v) for name, v in found.items()]
 

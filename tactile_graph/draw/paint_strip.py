@@ -7,7 +7,6 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactile_graph.draw.colours import FAILED, FOUND, MASK_OFF, MASK_ON, SKIPPED, TRUE
 from tactile_graph.draw.display import (
@@ -129,7 +128,7 @@ class Pen:
         self.axes.add_collection(edges, autolim=False)
 
     def _outline(self, outline: Outline) -> None:
-        xy = _closed(outline.xy_cm)
+        xy = outline.drawn_cm
         if outline.role == "true":
             self.axes.plot(
                 xy[:, 0], xy[:, 1], color=TRUE, lw=1.4, dashes=DASHES, zorder=5,
@@ -210,7 +209,3 @@ def _halo(width: float) -> list[AbstractPathEffect]:
     from matplotlib.patheffects import withStroke
 
     return [withStroke(linewidth=width + 1.3, foreground="white")]
-
-
-def _closed(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.vstack([xy, xy[:1]])

@@ -109,7 +109,7 @@ class SvgPicture:
         elif isinstance(record, Outline) and record.circle is not None:
             self._circle(record.circle)
         elif isinstance(record, Outline):
-            self._path(_closed(self.view.at(record.xy_cm)))
+            self._path(_through(self.view.at(record.xy_cm), record.closed))
         elif isinstance(record, Cross):
             for x, y in self.view.at(np.array([record.x_cm, record.y_cm])).tolist():
                 self._path(f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12")
@@ -130,9 +130,9 @@ class SvgPicture:
                 self.lines.append(f'<path d="{path}" class="{under}{kind}"></path>')
 
 
-def _closed(xy: NDArray[np.float64]) -> str:
+def _through(xy: NDArray[np.float64], closed: bool) -> str:
     told = "L".join(f"{x:.1f} {y:.1f}" for x, y in xy.tolist())
-    return f"M{told}Z" if told else ""
+    return f"M{told}{'Z' if closed else ''}" if told else ""
 
 
 def _px(value: float) -> str:

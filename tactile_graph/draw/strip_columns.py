@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.draw.display import images_in, is_picture
+from tactile_graph.engine.fields import field_getter
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
+from tactile_graph.wires.image import UNITS
 
 MOST_COLUMNS = 10
-UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,7 @@ def outcome_of(result: Outcomes, name: str) -> Any:
         value: Any = result.frame
     else:
         value = result.outcome(ref.node)
-    if value.__class__ in NO_VALUE or ref.getter is None:
-        return value
-    return ref.getter(value)
+    return value if value.__class__ in NO_VALUE or ref.whole else field_getter(ref)(value)
 
 
 def _picturable(results: Sequence[Outcomes], pipeline: Graph) -> list[str]:

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from tactile_graph.engine.columns import words_and_unit
-from tactile_graph.engine.outcome import Done, Failed
+from tactile_graph.engine.outcome import Done, Failed, gaps, outcome_word, with_value
 from tactile_graph.engine.rows import scalars
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.plain import plain
@@ -127,9 +127,10 @@ def summary(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, tuple | list) and not hasattr(value, "_fields"):
-        inner = f": {summary(value[0])}" if len(value) == 1 else ""
-        kind = type(value[0]).__name__ if value else "item"
-        return f"{len(value)} × {kind}{inner}" if value else "no items"
+        items = with_value(value)
+        inner = f": {summary(items[0])}" if len(items) == 1 else ""
+        lacking = f"; {outcome_word(value)}" if gaps(value) else ""
+        return f"{len(items)} × {type(items[0]).__name__}{inner}{lacking}" if items else "no items"
     if hasattr(value, "rows") and hasattr(value, "columns"):
         return f"{type(value).__name__} {value.rows} x {value.columns}, {_fields(value)}"
     fields = _fields(value)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_origin
 
 import numpy as np
 
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped
+from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.rows import scalars
 from tactile_graph.engine.truth import error_names, errors_against, nearest
@@ -18,7 +18,7 @@ from tactile_graph.steps.signature import list_item
 
 UNITS = {
     "cm2": "cm²", "cm": "cm", "mm": "mm", "deg": "°", "rad": "rad", "g": "g", "n": "N", "s": "s",
-    "ms": "ms", "us": "µs", "v": "V", "kpa": "kPa", "ohm": "Ω", "hz": "Hz",
+    "cm_s": "cm/s", "ms": "ms", "us": "µs", "v": "V", "kpa": "kPa", "ohm": "Ω", "hz": "Hz",
 }  # fmt: skip
 
 
@@ -27,7 +27,8 @@ class Column:
     """One scalar of an output.
 
     ``key`` is its name in files, ``field`` what it is called within the output, without the unit;
-    ``error`` is which error it holds, if it holds one.
+    ``error`` is which error it holds, if it holds one. ``of_image`` says that its unit is that of
+    the frame's readings.
     """
 
     key: str
@@ -36,6 +37,7 @@ class Column:
     unit: str
     kind: type
     error: str = ""
+    of_image: bool = False
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,11 @@ def columns_of(pipeline: Graph, asked: tuple[str, ...]) -> list[OutputColumns]:
     return found
 
 
+def columns_of_type(output: str, kind: Any) -> list[Column]:
+    """Return the columns of an output's values of one type."""
+    return list(_columns(output, output, kind))
+
+
 def _columns(output: str, key: str, kind: Any) -> Iterator[Column]:
     """Yield the columns `scalars` fills for a value of one type."""
     if get_origin(kind) is Literal:
@@ -69,7 +76,8 @@ def _columns(output: str, key: str, kind: Any) -> Iterator[Column]:
         yield _column(output, key, kind)
     elif shown := getattr(kind, "columns_shown", ()):
         for name in shown:
-            yield _column(output, f"{key}.{name}", _scalar(field_type(kind, name)))
+            of_image = name in getattr(kind, "image_unit", ())
+            yield _column(output, f"{key}.{name}", _scalar(field_type(kind, name)), of_image)
     elif hasattr(kind, "_fields"):
         yield from _field_columns(output, key, kind)
     elif list_item(kind) is not None or isinstance(public_fields(kind).get("count"), type):
@@ -83,17 +91,20 @@ def _field_columns(output: str, key: str, kind: Any) -> Iterator[Column]:
             if list_item(arm) is not None and "count" in kind._fields:
                 continue  # the record counts its list itself
             if arm is not type(None):
-                yield from _columns(output, f"{key}.{name}", arm)
+                of_image = name in getattr(kind, "image_unit", ())
+                found = _columns(output, f"{key}.{name}", arm)
+                yield from (replace(c, of_image=True) for c in found) if of_image else found
 
 
 def _scalar(kind: Any) -> type:
-    scalar = [a for a in arms(kind) if isinstance(a, type) and a is not type(None)]
+    found = [str if get_origin(a) is Literal else a for a in arms(kind)]
+    scalar = [a for a in found if isinstance(a, type) and a is not type(None)]
     return scalar[0] if scalar else float
 
 
-def _column(output: str, key: str, kind: type) -> Column:
+def _column(output: str, key: str, kind: type, of_image: bool = False) -> Column:
     name = key.removeprefix(output).lstrip(".")
-    return Column(key, output, *words_and_unit(name), kind)
+    return Column(key, output, *words_and_unit(name), kind, of_image=of_image)
 
 
 def _error_column(output: str, error: str) -> Column:
@@ -103,9 +114,12 @@ def _error_column(output: str, error: str) -> Column:
 
 def words_and_unit(name: str) -> tuple[str, str]:
     """Return a name's words and its unit: ``("radius", "cm")`` of ``radius_cm``."""
-    head, _, tail = name.rpartition("_")
-    words, unit = (head, UNITS[tail]) if head and tail in UNITS else (name, "")
-    return words.replace("_", " "), unit
+    for n_words in (2, 1):  # vx_cm_s is in cm_s, not in s
+        head, *tail = name.rsplit("_", n_words)
+        unit = UNITS.get("_".join(tail), "")
+        if unit and head:
+            return head.replace("_", " "), unit
+    return name.replace("_", " "), ""
 
 
 def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:
@@ -119,12 +133,3 @@ def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:
         errors = errors_against(outcome, true)
         values.update({c.key: errors.get(c.error) for c in columns.errors})
     return values
-
-
-def outcome_word(outcome: Any) -> str:
-    """Return ``ok``, or ``skipped: why``, or ``failed: why``."""
-    if isinstance(outcome, Failed):
-        return f"failed: {outcome.reason}"
-    if isinstance(outcome, Skipped):
-        return f"skipped: {outcome.reason}"
-    return "ok"

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import Degenerate, Skip
 
 
 class Skipped:
     """A node that was not needed, with the reason and the node it began at.
 
-    The text of the reason is made only when somebody asks for it.
+    The text of the reason is made only when somebody asks for it. ``item`` says which item of a
+    list it is, counted from 0, outermost list first; it is empty for a whole node.
     """
 
-    __slots__ = ("_reason", "_values", "origin")
+    __slots__ = ("_reason", "_values", "item", "origin")
 
     def __init__(
         self,
         origin: str,
         reason: str | Callable[[tuple[Any, ...]], str],
         values: tuple[Any, ...] = (),
+        item: tuple[int, ...] = (),
     ) -> None:
         self.origin = origin
+        self.item = item
         self._reason = reason
         self._values = values
 
@@ -33,7 +36,11 @@ class Skipped:
 
     def at(self, origin: str) -> Skipped:
         """Return the same, begun at a node of another name."""
-        return Skipped(origin, self._reason, self._values)
+        return Skipped(origin, self._reason, self._values, self.item)
+
+    def of_item(self, i: int) -> Skipped:
+        """Return the same as the outcome of a list's item."""
+        return Skipped(self.origin, self._reason, self._values, (i, *self.item))
 
     def __repr__(self) -> str:
         return f"<skipped at {self.origin!r}: {self.reason}>"
@@ -54,13 +61,22 @@ class Failed:
         What went in: types and shapes.
     step : str
         Step and plugin of the node.
+    item : tuple of int
+        Which item of a list it is, counted from 0, outermost list first; empty for a whole node.
     """
 
-    __slots__ = ("error", "inputs", "origin", "step", "where")
+    __slots__ = ("error", "inputs", "item", "origin", "step", "where")
 
     def __init__(
-        self, origin: str, error: Exception, where: str = "", inputs: str = "", step: str = ""
+        self,
+        origin: str,
+        error: Exception,
+        where: str = "",
+        inputs: str = "",
+        step: str = "",
+        item: tuple[int, ...] = (),
     ) -> None:
+        self.item = item
         self.origin = origin
         self.error = error
         self.where = where
@@ -81,7 +97,12 @@ class Failed:
 
     def at(self, origin: str) -> Failed:
         """Return the same, begun at a node of another name."""
-        return Failed(origin, self.error, self.where, self.inputs, self.step)
+        return Failed(origin, self.error, self.where, self.inputs, self.step, self.item)
+
+    def of_item(self, i: int) -> Failed:
+        """Return the same as the outcome of a list's item."""
+        item = (i, *self.item)
+        return Failed(self.origin, self.error, self.where, self.inputs, self.step, item)
 
     def __repr__(self) -> str:
         return f"<failed at {self.origin!r}: {self.reason}>"
@@ -94,6 +115,33 @@ NO_VALUE = frozenset({Skipped, Failed})
 NOT_ASKED = Skipped("", "nothing asked for it")
 
 
+def gaps(value: Any) -> list[Skipped | Failed]:
+    """Return the outcomes of those items of a list that have no value, of lists in records too."""
+    if not isinstance(value, list | tuple):
+        return []
+    if hasattr(value, "_fields"):
+        return [gap for field in value for gap in gaps(field)]
+    return [item for item in value if isinstance(item, Skipped | Failed)]
+
+
+def with_value(items: Iterable[Any]) -> list[Any]:
+    """Return those items of a list that have a value, in order."""
+    return [item for item in items if item.__class__ not in NO_VALUE]
+
+
+def item_words(item: tuple[int, ...]) -> str:
+    """Return which item of a list that is, counted from 1 as pictures do: ``item 2``."""
+    return f"item {'.'.join(str(i + 1) for i in item)}" if item else ""
+
+
+def outcome_word(outcome: Outcome) -> str:
+    """Return ``ok``, or ``skipped: why``, or ``failed: why``; of a list what its items lack."""
+    if isinstance(outcome, Skipped | Failed):
+        where = f"{item_words(outcome.item)} " if outcome.item else ""
+        return f"{where}{'failed' if outcome.__class__ is Failed else 'skipped'}: {outcome.reason}"
+    return "; ".join(outcome_word(gap) for gap in gaps(outcome)) or "ok"
+
+
 class Done:
     """The value of a sink that has run."""
 
@@ -104,6 +152,13 @@ class Done:
 
 
 DONE = Done()
+
+
+def raised(name: str, error: Exception, values: tuple[Any, ...], what: str) -> Skipped | Failed:
+    """Return the outcome of a node whose step raised: skipped where it said so, else failed."""
+    if isinstance(error, Skip):
+        return Skipped(name, str(error) or "its step had nothing to say")
+    return failure(name, error, values, what)
 
 
 def failure(name: str, error: Exception, values: tuple[Any, ...], what: str) -> Failed:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, Self
 
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped
+from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped, gaps
 from tactile_graph.engine.plan import Plan
 from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
 from tactile_graph.pipeline.wiring import Ref
@@ -75,8 +75,11 @@ class Outcomes(Mapping[str, Any]):
         return frame
 
     @property
-    def inner(self) -> dict[str, list[Self]]:
-        """For each node that ran a pipeline over a list, the results of its items."""
+    def inner(self) -> dict[str, list[Self | None]]:
+        """For each node that ran a pipeline over a list, the results of its items.
+
+        None stands for an item that had no value itself.
+        """
         return self._state[INNER] or {}
 
     # -- outputs -----------------------------------------------------------------------------
@@ -146,15 +149,28 @@ class Outcomes(Mapping[str, Any]):
     @property
     def failures(self) -> list[Failed]:
         """The failures of this frame, each once, those of single items of a list included."""
-        single = [f for results in self.inner.values() for r in results for f in r.failures]
+        within = [
+            failed.of_item(i)
+            for results in self.inner.values()
+            for i, result in enumerate(results)
+            if result is not None
+            for failed in result.failures
+        ]
         outcomes = [self._state[item.slot] for item in self.plan.items]
-        found = [*outcomes, *self._state[ITEM_FAILURES], *single]
-        return list({id(f): f for f in found if f.__class__ is Failed}.values())
+        found = [*outcomes, *self._state[ITEM_FAILURES], *within]
+        failed = [f for f in found if f.__class__ is Failed]
+        return list({(f.origin, f.item, id(f.error)): f for f in failed}.values())
+
+    @property
+    def gaps(self) -> dict[str, list[Skipped | Failed]]:
+        """For each output whose list lacks items, the outcomes that stand in their places."""
+        found = {name: gaps(self.outcome(name)) for name in self.plan.asked}
+        return {name: empty for name, empty in found.items() if empty}
 
     @property
     def ok(self) -> bool:
-        """Whether every output asked for has a value."""
-        return len(self) == len(self.plan.asked)
+        """Whether every output asked for has a value, and every item of its lists."""
+        return len(self) == len(self.plan.asked) and not self.gaps
 
     def explain(self) -> list[Explained]:
         """Return for each node whether it ran, was skipped or failed, why, and how long it took."""

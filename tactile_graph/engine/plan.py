@@ -130,7 +130,7 @@ class _Planner:
             {name: self.by_ref[r] for name, r in self.asked.items()},
             self.items,
             tuple(sorted(main - self.given)),
-            {i.name: i.slot for i in self.items},
+            {i.name: i.slot for i in self.items if not (i.view and i.view.item_path)},
             tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
             self._depth(),
             tuple(r for r in self.pipeline.frame_rules if r.node in used),

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from operator import itemgetter
 from typing import Any
 
+from tactile_graph.engine.fields import field_getter
 from tactile_graph.engine.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.guards import guarded
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
@@ -22,14 +23,8 @@ from tactile_graph.pipeline.wiring import Ref
 FieldOf = Callable[[Ref], Callable[[Any], Any]]
 
 
-def _getter(ref: Ref) -> Callable[[Any], Any]:
-    get = ref.getter
-    assert get is not None
-    return get
-
-
 def make_program(
-    plan: Plan, call_of: Callable[[Node], Call], blank: State, field_of: FieldOf = _getter
+    plan: Plan, call_of: Callable[[Node], Call], blank: State, field_of: FieldOf = field_getter
 ) -> list[Operation]:
     """Return the operations of a plan's main part.
 

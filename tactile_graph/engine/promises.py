@@ -106,7 +106,9 @@ def _fits(value: Any, arm: Any) -> bool:
         return value in get_args(arm)
     item = list_item(arm)
     if item is not None:
-        return _is_list(value) and all(not misfit(v, item) for v in list(value)[:MOST_ITEMS])
+        return _is_list(value) and all(
+            v.__class__ in NO_VALUE or not misfit(v, item) for v in list(value)[:MOST_ITEMS]
+        )
     plain = get_origin(arm) or arm
     if plain is tuple and get_args(arm):
         parts = get_args(arm)

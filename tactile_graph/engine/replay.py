@@ -11,7 +11,7 @@ from dataclasses import replace
 from operator import itemgetter
 from typing import Any, TypeVar
 
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcome import Failed, Skipped, gaps
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, REUSED, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan
 from tactile_graph.engine.program import make_program
@@ -93,7 +93,9 @@ class Replay:
         def call(*_: Any, **__: Any) -> Any:
             outcome = self._recorded[slot]
             if isinstance(outcome, Skipped | Failed):
-                return outcome.at(name) if outcome.origin == known else outcome
+                return _renamed(outcome, known, name)
+            if gaps(outcome):
+                return tuple([_renamed(item, known, name) for item in outcome])
             if outcome is None:
                 raise LookupError(f"nothing was recorded of {known!r}")
             return outcome
@@ -111,6 +113,13 @@ class Replay:
             return outcome.at(name) if outcome.__class__ is Failed else outcome
 
         return field
+
+
+def _renamed(outcome: Any, known: str, name: str) -> Any:
+    """Return an outcome that began at one node as begun at another; any other as it is."""
+    if isinstance(outcome, Skipped | Failed) and outcome.origin == known:
+        return outcome.at(name)
+    return outcome
 
 
 def _with_own_fields(call: Callable[..., Any], name: str) -> Callable[..., Any]:

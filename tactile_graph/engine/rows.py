@@ -9,8 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcome import Done, Failed, Skipped
+from tactile_graph.engine.outcome import (
+    NO_VALUE,
+    Done,
+    Failed,
+    Skipped,
+    gaps,
+    item_words,
+    outcome_word,
+    with_value,
+)
 from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.truth import shape_kind
 from tactile_graph.errors import PluginError
 
 MOST_NUMBERS = 32
@@ -27,12 +37,12 @@ def result_row(result: Outcomes) -> dict[str, Any]:
         row["time_s"] = frame.time_s
     for name in result.plan.asked:
         outcome = result.outcome(name)
-        if isinstance(outcome, Failed):
-            row[name] = f"failed: {outcome.reason}"
-        elif isinstance(outcome, Skipped):
-            row[name] = f"skipped: {outcome.reason}"
-        else:
-            row.update(scalars(name, outcome))
+        if outcome.__class__ in NO_VALUE:
+            row[name] = outcome_word(outcome)
+            continue
+        row.update(scalars(name, outcome))
+        if gaps(outcome):
+            row[name] = outcome_word(outcome)
     return row
 
 
@@ -56,7 +66,7 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
     if fields:
         return row
     if isinstance(value, list | tuple):
-        return {f"{name}.count": len(value)}
+        return {f"{name}.count": len(with_value(value))}
     count = getattr(value, "count", None)
     return {f"{name}.count": count} if isinstance(count, int) else {}
 
@@ -73,9 +83,10 @@ def as_data(value: Any, full: bool = True) -> Any:
         told by their shape alone.
     """
     if isinstance(value, Skipped):
-        return {"skipped": value.reason, "origin": value.origin}
+        return {"skipped": value.reason, "origin": value.origin, **_item(value)}
     if isinstance(value, Failed):
-        return {"failed": value.reason, "origin": value.origin, "kind": value.kind}
+        told = {"failed": value.reason, "origin": value.origin, "kind": value.kind}
+        return {**told, **_item(value)}
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist() if full or value.size <= MOST_NUMBERS else _shape(*value.shape)
     if isinstance(value, bool | int | float | str) or value is None:
@@ -91,6 +102,10 @@ def as_data(value: Any, full: bool = True) -> Any:
         numbers = len(data) > MOST_NUMBERS and not isinstance(data[0], dict)
         return _shape(len(data)) if numbers and not full else data
     return _record(value, full)
+
+
+def _item(outcome: Skipped | Failed) -> dict[str, str]:
+    return {"item": item_words(outcome.item).removeprefix("item ")} if outcome.item else {}
 
 
 def _shape(*shape: int) -> dict[str, list[int]]:
@@ -111,7 +126,9 @@ def _record(value: Any, full: bool) -> Any:
     else:
         names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
     shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
-    data = {n: as_data(getattr(value, n), full) for n in shown}
+    shape = shape_kind(type(value))
+    data = {} if shape is None or "kind" in shown else {"kind": shape.__name__}
+    data |= {n: as_data(getattr(value, n), full) for n in shown}
     for name in getattr(value, "columns_shown", ()):
         data.setdefault(name, as_data(getattr(value, name), full))
     return data if data else str(value)

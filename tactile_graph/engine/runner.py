@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from typing import Generic, TypeVar
 
-from tactile_graph.engine.calls import Context, RunInner, make_call
+from tactile_graph.engine.calls import make_call
+from tactile_graph.engine.context import Context, RunInner
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program

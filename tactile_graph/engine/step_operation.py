@@ -7,7 +7,7 @@ from time import perf_counter_ns as clock
 from typing import Any
 
 from tactile_graph.engine.freeze import FROZEN, freeze
-from tactile_graph.engine.outcome import DONE, NO_VALUE, Failed, Skipped, failure, nothing_returned
+from tactile_graph.engine.outcome import DONE, NO_VALUE, Failed, Skipped, nothing_returned, raised
 from tactile_graph.engine.plan import Input, Item
 from tactile_graph.pipeline.graph import Node
 
@@ -67,7 +67,7 @@ def _call_of_one(item: Item, node: Node, call: Call, time: int) -> Operation:
             result = call(value)
         except Exception as error:
             state[time] = clock() - start
-            state[slot] = failure(name, error, (value,), what)
+            state[slot] = raised(name, error, (value,), what)
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN:
@@ -102,7 +102,7 @@ def _call_of_two(item: Item, node: Node, call: Call, time: int) -> Operation:
             result = call(first, second)
         except Exception as error:
             state[time] = clock() - start
-            state[slot] = failure(name, error, (first, second), what)
+            state[slot] = raised(name, error, (first, second), what)
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN:
@@ -143,7 +143,7 @@ def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Blo
             result = call(**arguments)
         except Exception as error:
             state[time] = clock() - start
-            state[slot] = failure(name, error, tuple(arguments.values()), what)
+            state[slot] = raised(name, error, tuple(arguments.values()), what)
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN and result.__class__ not in NO_VALUE:

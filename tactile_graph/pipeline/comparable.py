@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from tactile_graph.pipeline.wiring import arms, public_fields
 
 def sort_of(kind: Any) -> str | None:
     """Return ``number`` or ``text``, None for a type that may be either or neither."""
+    if get_origin(kind) is Literal:
+        sorts = {sort_of(type(value)) for value in get_args(kind)}
+        return sorts.pop() if len(sorts) == 1 else None
     if not isinstance(kind, type) or kind is type(None):
         return None
     if issubclass(kind, str):

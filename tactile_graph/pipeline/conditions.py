@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterable, Mapping, Sized
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 
-from tactile_graph.errors import shown
+from tactile_graph.errors import did_you_mean, shown
 from tactile_graph.pipeline.comparable import fields_hint, is_scalar, sort_of
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
@@ -117,8 +118,11 @@ def _check_depth(tree: ast.AST) -> None:
         raise ConditionError(f"nested deeper than {DEEPEST} levels")
 
 
-def _function(compiler: _Compiler, tree: ast.expr) -> Callable[..., Any]:
-    arguments = [ast.arg(f"v{i}") for i in range(len(compiler.refs))]
+def _function(
+    compiler: _Compiler, tree: ast.expr, refs: Sequence[Ref] | None = None
+) -> Callable[..., Any]:
+    refs = compiler.refs if refs is None else refs
+    arguments = [ast.arg(f"v{i}") for i in range(len(refs))]
     body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), tree)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
     function: Callable[..., Any] = eval(code, {"__builtins__": {}, **FUNCTIONS})  # whitelisted
@@ -144,7 +148,7 @@ class _Compiler:
         try:
             tree = ast.parse(_one_line(text), mode="eval")
         except SyntaxError as error:
-            message = f"{shown(text)} is no condition: {error.msg}"
+            message = f"{shown(text)} is no condition: {error.msg}{_typo_hint(text)}"
             raise ConditionError(message, max(0, (error.offset or 1) - 1)) from None
         except ValueError as error:
             raise ConditionError(f"cannot be read: {error}") from None
@@ -183,7 +187,37 @@ class _Compiler:
                 raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
         if isinstance(node, ast.Compare):
             self.refuse_mixed(node)
+            self.refuse_settled(node)
+            self.refuse_impossible(node)
         return node
+
+    def refuse_settled(self, node: ast.Compare) -> None:
+        """Refuse a comparison that reads no node: it comes out the same in every frame."""
+        if any(isinstance(part, ast.Name) for part in ast.walk(node)):
+            return
+        try:
+            always = bool(_function(self, node, ())())
+        except Exception as error:  # 1 / 0 > 2
+            always_words = f"cannot be told ({error})"
+        else:
+            always_words = f"is always {str(always).lower()}"
+        text = f"{ast.unparse(node)} reads no node: it {always_words}"
+        raise ConditionError(text, getattr(node, "col_offset", 0))
+
+    def refuse_impossible(self, node: ast.Compare) -> None:
+        """Refuse to look for a text that a field never holds: one of a few is all it can be."""
+        sides = [node.left, *node.comparators]
+        for (left, right), operator in zip(pairwise(sides), node.ops, strict=True):
+            if not isinstance(operator, ast.Eq | ast.NotEq | ast.In | ast.NotIn):
+                continue
+            for field, other in ((left, right), (right, left)):
+                allowed = _literals(self.kind(field))
+                for given in _constants(other) if allowed else []:
+                    if given not in allowed:
+                        known = ", ".join(repr(a) for a in allowed)
+                        hint = did_you_mean(str(given), [str(a) for a in allowed])
+                        text = f"{self.spell(field)} is never {given!r}; it is one of {known}{hint}"
+                        raise ConditionError(text, getattr(node, "col_offset", 0))
 
     def refuse_mixed(self, node: ast.Compare) -> None:
         """Refuse to compare a number with a text: it fails, or never holds, in every frame."""
@@ -263,6 +297,28 @@ class _Compiler:
             f"{self.refs[int(node.id[1:])]} is a {type_name(kind)} "  # type: ignore[attr-defined]
             f"and cannot be compared{fields_hint(kind)}"
         )
+
+
+def _typo_hint(text: str) -> str:
+    """Return what other languages' signs are here."""
+    signs = {r"&&": "write 'and' for '&&'", r"\|\|": "write 'or' for '||'",
+             r"(?<![<>=!])=(?!=)": "to compare, write '=='",
+             r"!(?!=)": "write 'not' for '!'", r"\?": "there is no '?'"}  # fmt: skip
+    return "".join(f"; {hint}" for sign, hint in signs.items() if re.search(sign, text))
+
+
+def _literals(kind: Any) -> tuple[Any, ...]:
+    """Return all that a value can be; nothing where it is not one of a few texts or numbers."""
+    found = arms(kind) if kind is not None else ()
+    if not found or not all(get_origin(arm) is Literal for arm in found):
+        return ()
+    return tuple(value for arm in found for value in get_args(arm))
+
+
+def _constants(node: ast.expr) -> list[Any]:
+    """Return the constants a field is compared with: one, or those of a list."""
+    parts = node.elts if isinstance(node, ast.Tuple | ast.List) else [node]
+    return [part.value for part in parts if isinstance(part, ast.Constant)]
 
 
 def _chain(node: ast.expr) -> tuple[str, ...] | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.pipeline.graph import FRAME, Binding, Facts, FrameRule, Source
+from tactile_graph.pipeline.graph import FRAME, Binding, Facts, FrameRule, Node, Source
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.rules import Grid, GridFact, Quantity
 from tactile_graph.steps.signature import Signature
@@ -89,6 +89,26 @@ def step_troubles(
             trouble, rule = _grid_trouble(node, signature, binding, by_port)
             troubles += [trouble] if trouble else []
             rules += [rule] if rule else []
+    return troubles, rules
+
+
+def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list[FrameRule]]:
+    """Return what is wrong at the ports of a step that, made with its settings, takes less.
+
+    It says so itself: ``takes`` holds the quantities by port, ``takes_by`` the setting at fault.
+    """
+    made = node.callable
+    takes = {p: Quantity(*names) for p, names in getattr(made, "takes", {}).items()}
+    setting = getattr(made, "takes_by", "")
+    troubles: list[Trouble] = []
+    rules: list[FrameRule] = []
+    by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in node.inputs if b.refs}
+    for port in takes.keys() & by_port.keys():
+        known, what = by_port[port], node.what
+        text = quantity_trouble(what, port, takes[port], known.quantity, setting)
+        troubles += [(port, text)] if text else []
+        if known.of_frame:
+            rules.append(FrameRule(node.name, port, what, takes[port], setting=setting))
     return troubles, rules
 
 

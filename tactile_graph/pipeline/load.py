@@ -3,34 +3,50 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean, one_of
 from tactile_graph.pipeline.declaration import declare
-from tactile_graph.pipeline.document import read_document
+from tactile_graph.pipeline.document import MOST_CHARACTERS, read_document
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
 from tactile_graph.pipeline.scope import Overrides, Scope
 from tactile_graph.plugins.registry import Registry, installed
 
-Open = tuple[tuple[str, Path], ...]
-"""The pipelines that are being loaded because one uses the other: name and file."""
+MOST_BYTES = 4 * MOST_CHARACTERS
+MOST_LEVELS, MOST_NODES = 50, 2_000
+"""Of pipelines within each other, and of nodes in one that another uses, with all it uses."""
+
+
+class Opened(NamedTuple):
+    """What one load has opened so far.
+
+    Parameters
+    ----------
+    within : tuple of (str, Path)
+        The pipelines that are being loaded because one uses the other: name and file.
+    loaded : dict of Path to Graph or Exception
+        What came of those that were loaded as they stand: they may be used more than once.
+    """
+
+    within: tuple[tuple[str, Path], ...]
+    loaded: dict[Path, Graph | Exception]
 
 
 def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
     """Return the graph of the pipeline of that name or in that file; for the rest see `load`."""
-    return _load(name, registry or installed(), {}, None, ())
+    return _load(name, registry or installed(), {}, None, Opened((), {}))
 
 
 def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
     """Return the graph that YAML text declares; ``file`` is the name its errors carry."""
-    return _build(text, file, registry or installed(), {}, None, ())
+    return _build(text, file, registry or installed(), {}, None, Opened((), {}))
 
 
 def resolve_again(graph: Graph, overrides: Overrides, source: SourceOverride) -> Graph:
     """Return the graph resolved again from its text, with other settings or another source."""
     registry = graph.registry or installed()
-    return _build(graph.text, graph.file, registry, overrides, source, ())
+    return _build(graph.text, graph.file, registry, overrides, source, Opened((), {}))
 
 
 def find(name: str | Path, registry: Registry) -> Path:
@@ -87,11 +103,11 @@ def _load(
     registry: Registry,
     overrides: Overrides,
     source: SourceOverride,
-    within: Open,
+    opened: Opened,
 ) -> Graph:
     path = find(name, registry)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = _text(path)
     except OSError as error:
         why = error.strerror or error
         raise UsageError(f"pipeline file {str(path)!r} cannot be read: {why}") from None
@@ -101,7 +117,22 @@ def _load(
             f"pipeline file {str(path)!r} cannot be read: it is not UTF-8 text "
             f"(byte 0x{error.object[error.start]:02x} in line {line}); save it as UTF-8"
         ) from None
-    return _build(text, _shown(path), registry, overrides, source, within)
+    return _build(text, _shown(path), registry, overrides, source, opened)
+
+
+def _text(path: Path) -> str:
+    """Return a file's text, as far as it has an end.
+
+    Raises
+    ------
+    UsageError
+        If it is too long.
+    """
+    with path.open("rb") as file:
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise UsageError(f"pipeline file {str(path)!r} is longer than {MOST_BYTES} bytes")
+    return data.decode("utf-8-sig")
 
 
 def _shown(path: Path) -> str:
@@ -118,30 +149,60 @@ def _build(
     registry: Registry,
     overrides: Overrides,
     source: SourceOverride,
-    within: Open,
+    opened: Opened,
 ) -> Graph:
     document = read_document(text, file)
     declaration = declare(document)
     if document.problems and not declaration.nodes:
         raise PipelineError(_ordered(document.problems))
-    here = (*within, (declaration.name, Path(file).resolve()))
+    inside = opened._replace(within=(*opened.within, (declaration.name, Path(file).resolve())))
 
     def load_inner(name: str, inner_overrides: Overrides) -> Graph:
-        beside = Path(file).parent / name
-        found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
-        names = [n for n, _ in here]
-        target = None if name in names else find(found, registry).resolve()
-        for i, (known, path) in enumerate(here):
-            if known == name or path == target:
-                loop = " -> ".join((*names[i:], known))
-                raise UsageError(f"pipelines use each other in a circle: {loop}")
-        return _load(found, registry, inner_overrides, None, here)
+        return _load_inner(name, file, registry, inner_overrides, inside)
 
     scope = Scope(declaration, registry, load_inner, overrides)
-    graph = resolve(scope, source, embedded=bool(within))
+    graph = resolve(scope, source, embedded=bool(opened.within))
     _check_parent(declaration.evolves, document, registry)
     if document.problems:
         raise PipelineError(_ordered(document.problems))
+    return graph
+
+
+def _load_inner(
+    name: str, file: str, registry: Registry, overrides: Overrides, opened: Opened
+) -> Graph:
+    """Return the graph that the pipeline in ``file`` uses by name."""
+    if "/" in name and not name.endswith((".yaml", ".yml")):
+        raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
+    beside = Path(file).parent / name
+    found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
+    names = [n for n, _ in opened.within]
+    target = None if name in names else find(found, registry).resolve()
+    for i, (known, path) in enumerate(opened.within):
+        if known == name or path == target:
+            loop = " -> ".join((*names[i:], known))
+            raise UsageError(f"pipelines use each other in a circle: {loop}")
+    if len(names) > MOST_LEVELS:
+        raise UsageError(f"pipelines use each other more than {MOST_LEVELS} deep")
+    if overrides or target is None:
+        return _small_enough(_load(found, registry, overrides, None, opened))
+    if target not in opened.loaded:
+        try:
+            opened.loaded[target] = _small_enough(_load(found, registry, {}, None, opened))
+        except TactileGraphError as error:
+            opened.loaded[target] = error
+    came = opened.loaded[target]
+    if isinstance(came, Exception):
+        raise came
+    return came
+
+
+def _small_enough(graph: Graph) -> Graph:
+    if len(graph.nodes) > MOST_NODES:
+        raise UsageError(
+            f"pipeline {graph.name!r} has {len(graph.nodes)} nodes with those of the pipelines "
+            f"it uses; allowed are {MOST_NODES}"
+        )
     return graph
 
 

@@ -12,7 +12,12 @@ from tactile_graph.pipeline.bind import bind_inputs
 from tactile_graph.pipeline.checks import check_conditions, check_overrides
 from tactile_graph.pipeline.conditions import Guard, compile_condition
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.facts import output_facts, source_facts, step_troubles
+from tactile_graph.pipeline.facts import (
+    output_facts,
+    quantity_troubles,
+    source_facts,
+    step_troubles,
+)
 from tactile_graph.pipeline.graph import (
     FRAME,
     Binding,
@@ -195,12 +200,16 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
     """Build a class step once, so that settings it refuses are an error of the file."""
     try:
         rng = node.signature.rng if node.signature and node.signature.rng_at_init else ""
-        return replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
+        made = replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
     except Exception as error:  # a constructor may raise anything about its settings
         told = isinstance(error, TactileGraphError | ValueError) and str(error)
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"
         scope.problem(declared, f": {text}", "with")
         return node
+    troubles, rules = quantity_troubles(made, scope.facts)
+    scope.rules += rules
+    _report_ports(scope, declared, troubles)
+    return made
 
 
 def _rules(
@@ -214,6 +223,10 @@ def _rules(
         declared.name, signature, scope.given(declared), settings, inputs, scope.facts
     )
     scope.rules += rules
+    _report_ports(scope, declared, troubles)
+
+
+def _report_ports(scope: Scope, declared: NodeDeclaration, troubles: list[tuple[str, str]]) -> None:
     for port, message in troubles:
         path = ("in", port) if isinstance(declared.inputs, dict) else ("in",)
         scope.problem(declared, f": {message}", *path)

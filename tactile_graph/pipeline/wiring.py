@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import inspect
 import types
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from operator import attrgetter
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -36,17 +35,6 @@ class Ref:
     def whole(self) -> bool:
         """Whether it is the node's value itself."""
         return not self.path and not self.item_path
-
-    @property
-    def getter(self) -> Callable[[Any], Any] | None:
-        """What turns the node's value into this one; None where it is the value itself."""
-        whole = attrgetter(".".join(self.path)) if self.path else None
-        if not self.item_path:
-            return whole
-        of_item = attrgetter(".".join(self.item_path))
-        if whole is None:
-            return lambda items: tuple([of_item(item) for item in items])
-        return lambda value: tuple([of_item(item) for item in whole(value)])
 
 
 def arms(kind: Any) -> tuple[Any, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import types
 from collections.abc import Mapping
 from functools import lru_cache
@@ -25,6 +26,8 @@ _WORDS = {
     Path: "a path",
     type(None): "null",
 }
+_QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
+"""Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
 _COMPARISONS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", ">="),
@@ -61,7 +64,7 @@ def validate_settings(
     troubles += [((n,), _unknown(signature, n, list(known))) for n in given if n not in known]
     for name, setting in known.items():
         if name in given:
-            wrong = _booleans(setting, given[name])
+            wrong = _mistyped(setting, given[name])
             try:
                 values[name] = adapter(setting).validate_python(given[name])
             except ValidationError as error:
@@ -82,16 +85,25 @@ def spelled(path: tuple[str | int, ...]) -> str:
     return ".".join(p for p in path if isinstance(p, str))
 
 
-def _booleans(setting: Setting, value: Any) -> dict[Place, str]:
-    """Return what is wrong with each true or false that stands for no such thing.
+def _mistyped(setting: Setting, value: Any) -> dict[Place, str]:
+    """Return what is wrong with each true or false, and each text, that stands for no such thing.
 
-    pydantic would read "yes" as the number 1.
+    pydantic would read "yes" as the number 1, and "0.2" as the number 0.2.
     """
-    return {
-        at: f"must be {_allowed(annotation)}, got {shown(leaf)}"
-        for at, annotation, leaf in leaves(setting.annotation, value)
-        if isinstance(leaf, bool) and not _takes_bool(annotation)
-    }
+    wrong: dict[Place, str] = {}
+    for at, annotation, leaf in leaves(setting.annotation, value):
+        if isinstance(leaf, bool) and not _takes_bool(annotation):
+            wrong[at] = f"must be {_allowed(annotation)}, got {shown(leaf)}"
+        elif isinstance(leaf, str) and _QUOTED.fullmatch(leaf) and _only_numbers(annotation):
+            told = f"got the text {shown(leaf)}; without the quotes it is a number"
+            wrong[at] = f"must be {_allowed(annotation)}, {told}"
+    return wrong
+
+
+def _only_numbers(annotation: Any) -> bool:
+    bare = strip(annotation)[0]
+    arms = get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
+    return all(strip(arm)[0] in (int, float, type(None)) for arm in arms)
 
 
 def _takes_bool(annotation: Any) -> bool:
@@ -113,6 +125,9 @@ def _allowed(annotation: Any) -> str:
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:
     hint = did_you_mean(name, known) or f"; {signature.name} takes: {one_of(known)}"
+    head, colon, value = name.partition(":")
+    if colon and head in known:
+        hint = f"; a space is missing behind the colon: {head}: {value}"
     return f"unknown setting {name!r}{hint}"
 
 

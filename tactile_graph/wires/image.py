@@ -8,6 +8,8 @@ from typing import Any, ClassVar, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
+"""Units of quantities; counts, raw readings and levels are their own."""
 QUANTITIES = ("counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary")
 """What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
 
@@ -84,6 +86,7 @@ class Image(_Gridded):
 
     __slots__ = ("quantity", "valid")
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
+    image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
     quantity: str
     valid: NDArray[np.bool_] | None
 
@@ -118,6 +121,10 @@ class Image(_Gridded):
             self.quantity if quantity is None else quantity,
             self.valid if valid is None else valid,
         )
+
+    def __reduce__(self) -> tuple[type[Image], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of: another process's image is as frozen."""
+        return Image, (self.values, self.pitch_cm, self.origin_cm, self.quantity, self.valid)
 
     def mask(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""
@@ -174,6 +181,10 @@ class Mask(_Gridded):
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
         _set_count(self, count)
+
+    def __reduce__(self) -> tuple[type[Mask], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of."""
+        return Mask, (self.values, self.pitch_cm, self.origin_cm, self._count)
 
     def with_values(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""

@@ -10,10 +10,12 @@ from typing import Any
 import click
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from helpers_learning import MadeUpPad, untold
 from tactile_graph import Circle, loads
 from tactile_graph.cli import cli
-from tactile_graph.errors import PipelineError
+from tactile_graph.errors import DataError, PipelineError
 from tactile_graph.pipeline.conditions import FUNCTIONS
 from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.registry import installed
@@ -23,6 +25,7 @@ from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.devices.preset_file import load_preset
+from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_thesis.catalogue import chosen, items
 
 ROOT = Path(__file__).parents[2]
@@ -239,3 +242,32 @@ def test_what_ignoring_the_circuit_costs_is_as_the_page_says() -> None:
     page = " ".join(text("pad").split())
     assert f"errs by {100 * off:.0f} % on average in the divider" in page
     assert f"seems to conduct {ghost:.1f} times as much as the most loaded one" in page
+
+
+# -- a pad learned ---------------------------------------------------------------------------
+
+
+def test_the_commands_that_learn_a_pad_and_the_pipeline_on_it_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    pad = MadeUpPad(lean_cells=2.0, dead=((5, 6),))
+    pad.recorded(tmp_path, n_empty=20, n_objects=60)
+    for grams, height in ((500, 150.0), (1000, 250.0), (2000, 400.0)):
+        name = {500: "500g", 1000: "1kg", 2000: "2kg"}[grams]
+        frames = [pad.frame(((6.0 + k, 7.0, height),), k) for k in range(3)]
+        write_npz(f"{name}.npz", untold(iter(frames)))
+    Path("places.csv").write_text("recording,frame,x_cm,y_cm\nobjects.npz,0,5.1,4.4\n")
+    learning = [words for words in commands(DOCS / "pad.md") if words[0] == "learn-pad"]
+    assert len(learning) == 4
+    *here, told = learning
+    for words in reversed(here):
+        done = CliRunner().invoke(cli, words, catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+    assert Path("my-pad.html").stat().st_size > 10_000
+    with pytest.raises(DataError, match="has 16 x 16 elements, the recordings have 14 x 20"):
+        CliRunner().invoke(cli, told, catch_exceptions=False, standalone_mode=False)
+    (pipeline,) = fenced("pad", "yaml")
+    result = next(iter(loads(pipeline).stream()))
+    (contact,) = result["placed"].contacts
+    assert contact.x_std_cm > 0.0

@@ -152,3 +152,8 @@ def test_its_own_tests_pass(run: Run) -> None:
     found = run("python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests", cwd=EXAMPLE)
     assert found.returncode == 0, found.stdout + found.stderr
     assert " passed" in found.stdout
+
+
+def test_it_withstands_what_steps_are_stressed_with(run: Run) -> None:
+    found = run("tactile-graph", "stress", "median")
+    assert found.returncode == 0, found.stdout + found.stderr

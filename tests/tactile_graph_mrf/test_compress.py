@@ -66,3 +66,25 @@ def test_what_is_not_known_stays_unknown_and_sets_no_scale() -> None:
     assert not made.image.valid[0, 2]
     assert made.image.valid is not None
     assert not made.image.valid[0, 1]
+
+
+def test_one_cell_far_below_zero_does_not_hide_a_load():
+    rng = np.random.default_rng(3)
+    values = rng.normal(0.0, 0.01, (16, 16))
+    values[4:9, 4:9] += 1.0
+    whole = compress(Image(values.copy()))
+    values[12, 12] = -3.0
+    broken = compress(Image(values))
+    assert whole.stands_out
+    assert broken.stands_out
+    assert broken.image.valid is not None
+    assert np.argwhere(~broken.image.valid).tolist() == [[12, 12]]
+    assert np.array_equal(broken.image.values[:12], whole.image.values[:12])
+
+
+def test_noise_alone_leaves_every_cell_valid_and_nothing_stands_out():
+    for seed in range(50):
+        values = np.random.default_rng(seed).normal(0.0, 0.01, (16, 16))
+        made = compress(Image(values))
+        assert made.image.valid is None
+        assert not made.stands_out

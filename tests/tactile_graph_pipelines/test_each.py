@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import islice
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from helpers_cli import call
 from helpers_objects import frames
-from tactile_graph import Circle, Frame, Mask, loads
+from tactile_graph import Circle, Frame, Mask, Polygon, load, loads
+from tactile_graph.draw.strip import save_strip
 
 TEXT = """
 pipeline: each-contact
@@ -87,3 +92,33 @@ def test_every_localiser_places_each_of_two_contacts(name: str, kind: str) -> No
         found = found[0]
     places = sorted((s.x_cm, s.y_cm) for s in found)
     assert np.array(places) == pytest.approx(np.array([[5.5, 5.0], [14.5, 15.0]]), abs=0.5)
+
+
+FOLLOWED = """
+pipeline: followed
+source: {step: simulate, with: {scene: mixed}}
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  objects: {step: split_contacts, in: [frame, footprint], with: {margin: 1}}
+  outlines: {step: boundary_scan, in: objects.contacts, each: true}
+  hulls: {step: hull, in: outlines, each: true}
+  circles: {step: fit_circle, in: hulls, each: true}
+  tracks: {step: track, in: circles}
+outputs: [hulls, circles, tracks]
+"""
+
+
+def test_shapes_fitted_to_each_contact_are_followed_drawn_and_reported(tmp_path: Path) -> None:
+    Path(tmp_path / "followed.yaml").write_text(FOLLOWED)
+    pipeline = load(tmp_path / "followed.yaml")
+    results = [pipeline.run(frame) for frame in islice(pipeline.frames(), 3)]
+    assert all(r["tracks"].count == len(r["circles"]) == len(r["hulls"]) for r in results)
+    assert {type(h) for r in results for h in r["hulls"]} == {Polygon}
+    assert all(track.mask is None for r in results for track in r["tracks"].tracks)
+    save_strip(results, tmp_path / "strip.png")
+    assert (tmp_path / "strip.png").stat().st_size > 10_000
+    report = str(tmp_path / "report.html")
+    done = call("compare", str(tmp_path / "followed.yaml"), "objects", "--frames", 2,
+                "--report", report)  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert "<svg" in Path(report).read_text()

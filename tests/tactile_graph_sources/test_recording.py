@@ -57,8 +57,11 @@ def test_it_is_a_source_with_settings() -> None:
     assert signature.kind is Kind.SOURCE
     assert signature.output is Frame
     assert signature.report == "report"
-    names = ("path", "rows", "columns", "pitch_cm", "origin_cm", "quantity", "sensor")
-    assert tuple(s.name for s in signature.settings) == names
+    names = tuple(s.name for s in signature.settings)
+    assert names[:7] == ("path", "rows", "columns", "pitch_cm", "origin_cm", "quantity", "sensor")
+    assert names[7:11] == ("order", "transpose", "flip", "skip")
+    assert names[11:15] == ("frame_column", "time_column", "time_unit", "time_format")
+    assert names[15:] == ("value_column", "cells")
 
 
 @pytest.mark.parametrize("name", FORMATS)
@@ -156,7 +159,7 @@ def test_settings_say_what_the_file_cannot(tmp_path: Path) -> None:
     frames, report = frames_of(path, pitch_cm=1.3, origin_cm=(-0.15, -0.15), quantity="volt")
     image = frames[0].image
     assert (image.pitch_cm, image.origin_cm, image.quantity) == ((1.3, 1.3), (-0.15, -0.15), "volt")
-    assert not report.counts
+    assert report.counts == {"recordings read as table, one frame a line": 1}
     frames, report = frames_of(path)
     assert frames[0].image.pitch_cm == (1.0, 1.0)
     assert report.counts["recordings whose pitch is assumed to be 1 cm"] == 1

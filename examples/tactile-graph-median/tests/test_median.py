@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tactile_graph_median.median import median
 
-from tactile_graph import Frame, Image, loads
+from tactile_graph import Degenerate, Frame, Image, loads
 
 
 def test_a_single_stuck_cell_goes() -> None:
@@ -49,3 +49,12 @@ def test_its_range_is_checked_at_load() -> None:
     text = "{pipeline: p, nodes: {m: {step: median, in: frame, with: {reach: -1}}}, outputs: [m]}"
     with pytest.raises(Exception, match="reach: must be >= 0, got -1"):
         loads(text)
+
+
+def test_huge_readings_neither_overflow_nor_warn() -> None:
+    assert median(Image(np.full((2, 2), 1.7e308))).values.tolist() == [[1.7e308] * 2] * 2
+
+
+def test_a_valid_cell_without_a_number_is_refused() -> None:
+    with pytest.raises(Degenerate, match="a valid cell holds no finite number"):
+        median(Image(np.array([[1.0, np.nan]])))

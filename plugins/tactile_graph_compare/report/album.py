@@ -10,8 +10,8 @@ import numpy as np
 from tactile_graph.draw.display import display_list, images_in, is_picture, printed, truth_list
 from tactile_graph.draw.grid_png import pale_uri
 from tactile_graph.draw.paint_svg import LONGEST_NOTE, SvgPicture, View
-from tactile_graph.draw.strip_columns import UNITS
 from tactile_graph.inspect import scalars
+from tactile_graph.wires.image import UNITS
 from tactile_graph_compare.output.tables import us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory

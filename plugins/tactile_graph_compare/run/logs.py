@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Result
-from tactile_graph.inspect import NO_VALUE, Failed, Plan, Ref, Skipped
+from tactile_graph.inspect import Failed, Plan, Ref, Skipped, gaps
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import FrameTable
 from tactile_graph_compare.records.graph import state_of
@@ -58,15 +58,20 @@ class VariantLog:
 
     def _count(self, alone: Result) -> None:
         refs = self.member.asked
-        kinds = {alone.outcome_at(r).__class__ for r in refs}
+        outcomes = {
+            name: alone.outcome_at(r) for name, r in zip(self.prepared.asked, refs, strict=True)
+        }
+        lacking: dict[str, list[Skipped | Failed]] = {
+            name: [outcome] if isinstance(outcome, Skipped | Failed) else gaps(outcome)
+            for name, outcome in outcomes.items()
+        }
+        kinds = {outcome.__class__ for found in lacking.values() for outcome in found}
         self.n_failed += Failed in kinds
         self.n_skipped += Skipped in kinds and Failed not in kinds
-        self.n_ok += not kinds & NO_VALUE
-        if not kinds & NO_VALUE:
-            return
-        for name, ref in zip(self.prepared.asked, refs, strict=True):
-            outcome = alone.outcome_at(ref)
-            if isinstance(outcome, Skipped | Failed):
+        self.n_ok += not kinds
+        for name, found in lacking.items():
+            # Several items of one frame that lack for one reason count as one.
+            for outcome in {(o.__class__, o.origin): o for o in reversed(found)}.values():
                 word = "failed" if outcome.__class__ is Failed else "skipped"
                 first = [outcome.reason.partition("\n")[0], 0]
                 self.reasons.setdefault((word, name, outcome.origin), first)[1] += 1

@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import Any
 
 from tactile_graph import Pipeline
-from tactile_graph.inspect import Ref, arms, field_type, public_fields, shape_kind
+from tactile_graph.inspect import Ref, arms, field_type, public_fields, shape_kind, with_value
 from tactile_graph.steps.signature import list_item
 from tactile_graph_compare.score.quantities import quantities_of
 
@@ -103,7 +103,7 @@ def _listed(kind: Any) -> tuple[Callable[[Any], Sequence[Any]] | None, Any]:
 def _counter(kind: Any, items: Callable[[Any], Sequence[Any]]) -> Callable[[Any], int]:
     if list_item(kind) is None:
         return attrgetter("count")  # the record counts its list itself
-    return lambda value: len(items(value))
+    return lambda value: len(with_value(items(value)))
 
 
 def _places(ref: Ref, items: Any, item: Any) -> Places | None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.inspect import NO_VALUE, Ref, Skipped, shape_kind
+from tactile_graph.inspect import NO_VALUE, Ref, Skipped, shape_kind, with_value
 from tactile_graph.wires.frame import Frame, TrueObject
 from tactile_graph_compare.score.answers import Answers, Places
 from tactile_graph_compare.score.pairing import paired
@@ -94,7 +94,7 @@ class Scorer:
                 kinds = truth if number == NOBODY else truth[number : number + 1]
                 self._missing(position, number, {q for t in kinds for q in self._of(t)})
             return
-        things = [place.thing(item) for item in place.items(value)]
+        things = [place.thing(item) for item in with_value(place.items(value))]
         pairs = self._many(truth, things) if place.many else self._single(truth, things)
         for number, thing in pairs:
             self._compare(position, number, truth[number], thing)

@@ -63,6 +63,7 @@ class Contact:
         "load",
         "peak",
     )
+    image_unit: ClassVar[tuple[str, ...]] = ("load", "peak")
     provides: ClassVar[Mapping[type, str]] = {Image: "image", Mask: "mask"}
 
     @property

@@ -133,6 +133,8 @@ class Force:
             from tactile_graph_pads.pad import load_pad
 
             self._law = load_pad("thesis" if pad is None else pad).law
+        read = self._quantity if self._law is None else "siemens"
+        self.takes = {"image": (read,)} if read else {}
         turn_on_g = 0.0 if self._law is None else self._law.turn_on_g
         self._floor_g = 0.5 * turn_on_g if floor_g is None else floor_g
 

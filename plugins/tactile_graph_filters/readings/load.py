@@ -21,7 +21,9 @@ class Load(NamedTuple):
     """What an image says as a whole.
 
     ``force_n`` is None where the quantity is no force or pressure; ``x_cm`` and ``y_cm`` are
-    None where nothing is loaded, which ``loaded`` says for conditions.
+    None where nothing is loaded, which ``loaded`` says for conditions. ``n_left_out`` counts the
+    cells without a valid reading: broken ones, and those loaded beyond what a calibration covers.
+    Where it is not 0 the total is a lower bound.
     """
 
     loaded: bool
@@ -31,6 +33,10 @@ class Load(NamedTuple):
     peak: float
     x_cm: float | None
     y_cm: float | None
+    n_left_out: int = 0
+
+
+Load.image_unit = ("total", "peak")  # type: ignore[attr-defined]  # within, it would be a field
 
 
 @compiled_later
@@ -91,7 +97,9 @@ class LoadOf:
         else:
             x_cm = y_cm = None
         force_n = force_of(total, image)
-        return Load(total > 0.0, total, force_n, n * image.cell_area_cm2, peak, x_cm, y_cm)
+        left_out = 0 if image.valid is None else int(np.count_nonzero(~image.valid))
+        area_cm2 = n * image.cell_area_cm2
+        return Load(total > 0.0, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
 
     def _usable(self, image: Image) -> NDArray[Any]:
         if image.valid is not None:

@@ -1,9 +1,9 @@
-"""Step ``threshold``: the cells at or above a fixed level."""
+"""Step ``threshold``: the cells at or above a level, fixed or above the frame's own noise."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from annotated_types import Ge
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
 
 
 @compiled_later
@@ -72,26 +73,38 @@ def footprint(image: Image, level: float) -> Mask:
     return Mask(out, image.pitch_cm, image.origin_cm, count if valid is None else None)
 
 
+def levelled(image: Image) -> LevelledMask:
+    """Return the valid cells above the image's own noise, and the level that this is."""
+    refuse_nan(image)
+    level = noise_level(image)
+    mask = footprint(image, level)
+    grid = (mask.pitch_cm, mask.origin_cm)
+    return LevelledMask(mask.values, *grid, mask.count, level, image.quantity)
+
+
 class Threshold:
-    """Turn on the valid cells at or above a fixed level.
+    """Turn on the valid cells at or above a level.
 
     Parameters
     ----------
     level_v : float, optional
         The level for images in volts; the thesis takes 0.01 V (section 4.1, figure 4.3).
-    level : float, optional
-        The level in the image's own unit, whatever that is.
+    level : float or 'auto', optional
+        The level in the image's own unit, whatever that is. ``auto`` finds one in each frame,
+        above the noise that its lower readings show (`noise_level`): the mask then says which.
+        Beside ``level_v`` it is for images that are not in volts.
     above : bool
         Whether a cell must exceed the level instead of reaching it.
 
     Raises
     ------
     ValueError
-        Unless exactly one of ``level_v`` and ``level`` is given, and finite.
+        If neither ``level_v`` nor ``level`` is given, or one that is not finite.
 
     Notes
     -----
-    Thesis section 3.1.1 (Horn 1986, page 47). Invalid cells are never on.
+    Thesis section 3.1.1 (Horn 1986, page 47). Invalid cells are never on. What ``auto`` needs is a
+    quarter of the cells without a load.
     """
 
     stateless = True
@@ -99,31 +112,51 @@ class Threshold:
     def __init__(
         self,
         *,
-        level_v: Annotated[float | None, Ge(0), Quantity("volt", of="image")] = None,
-        level: float | None = None,
+        level_v: Annotated[float | None, Ge(0)] = None,
+        level: float | Literal["auto"] | None = None,
         above: bool = False,
     ) -> None:
-        if (level_v is None) == (level is None):
-            got = "neither" if level is None else "both"
-            raise ValueError(f"exactly one of level_v and level must be given, got {got}")
-        at = float(level if level_v is None else level_v)  # type: ignore[arg-type]
-        if not math.isfinite(at):
-            raise ValueError(f"the level must be a finite number, got {at}")
-        # To exceed a float is to reach the next one.
-        self._level = math.nextafter(at, math.inf) if above else at
+        if level_v is None and level is None:
+            raise ValueError("level_v or level must be given, got neither")
+        self._above = above
+        self._level_v = self._reached(level_v)
+        self._other = None if level == "auto" else self._reached(level)
+        self.takes = {} if level is not None else {"image": ("volt",)}
+        self.takes_by = "level_v"
         self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
 
+    def _reached(self, level: float | None) -> float | None:
+        """Return the level that a cell must reach."""
+        if level is None:
+            return None
+        if not math.isfinite(level):
+            raise ValueError(f"the level must be a finite number, got {level}")
+        # To exceed a float is to reach the next one.
+        return math.nextafter(level, math.inf) if self._above else float(level)
+
     def __call__(self, image: Image) -> Annotated[Mask, Grid.like("image")]:
-        """Return the mask of the cells that are on."""
+        """Return the mask of the cells that are on.
+
+        Raises
+        ------
+        ValueError
+            If only a level in volts is known, and the image is in something else.
+        """
+        in_volts = self._level_v is not None and image.quantity == "volt"
+        level = self._level_v if in_volts else self._other
+        if level is None:
+            if self.takes:
+                raise ValueError(f"level_v is for images in volts, got {image.quantity}")
+            return levelled(image)
         empty = self._empty
         if (
             empty is not None
             and image.valid is None
             and _on_one_grid(image, empty)
-            and not any_at_least.call(image.values, self._level)
+            and not any_at_least.call(image.values, level)
         ):
             return empty  # a pad is empty for long: a look suffices, and nothing is made anew
-        mask = footprint(image, self._level)
+        mask = footprint(image, level)
         self._empty = None if mask.count or image.valid is not None else mask
         return mask
 

@@ -28,6 +28,7 @@ SETTLED = 1e-6  # of the half axes, where the simplex has to find them
 STEPS = 12  # of Newton's method, which needs about five
 SMALL = 1e-8  # relative step after which the next would be below rounding
 NARROW_RAD = 1e-4  # width at which halving the angle's interval ends
+LONGEST = 3.0  # half axes, in farthest coordinates of the points, beyond which they say nothing
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 Values = NDArray[np.float64]
@@ -64,7 +65,8 @@ def ellipse_sweep(
     ------
     Degenerate
         If there are fewer than 5 points, some are not finite or further than 1e150 cm away, or at
-        no orientation an ellipse fits.
+        no orientation an ellipse fits. One with a half axis of more than three times the points'
+        farthest coordinate about the centre, along its axes, does not: a parabola fits as well.
 
     Notes
     -----
@@ -102,10 +104,12 @@ def _at(dx: Values, dy: Values, angle: float) -> tuple[float, float, float]:
     scale, a, b, points = polar(x, y)
     if scale > 0.0:
         a, b, error = straight(points, a, b)
-        if FLATTEST * a < b < a / FLATTEST:
+        if FLATTEST * a < b < a / FLATTEST and max(a, b) <= LONGEST:
             return scale * a, scale * b, scale * math.sqrt(error / x.shape[0])
     status, a, b, rms, _ = origin_fit(x, y, SETTLED, 1000)
-    return (a, b, rms) if status == OK else (0.0, 0.0, np.inf)
+    if status != OK or max(a, b) > LONGEST * scale:
+        return 0.0, 0.0, np.inf
+    return a, b, rms
 
 
 @compiled_later

@@ -20,7 +20,7 @@ def hazards(noise: Values) -> Values:
 
     Parameters
     ----------
-    noise : ndarray, shape (8,)
+    noise : ndarray, shape (9,)
         As in `element_terms`.
 
     Notes

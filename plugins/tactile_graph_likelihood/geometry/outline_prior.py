@@ -21,8 +21,9 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_oval
 
 LEFT, TOP, WIDTH, HEIGHT, SMALLEST, LARGEST, WHOLE, TURN, EXTRA = range(9)
-"""Places in a prior vector: the pad's edges in cm; the range of half sizes and radii in cm; 1 where
-the outline must lie on the pad; the angle about which a period is looked at; a constant to add."""
+"""Places in a prior vector: the pad's edges in cm; the range of half sizes and radii in cm; the
+probability that the outline must lie on the pad; the angle about which a period is looked at; a
+constant to add."""
 
 
 @compiled_as_is
@@ -39,7 +40,8 @@ def log_prior(kind: int, corners: int, p: Values, prior: Values) -> float:
     Notes
     -----
     An oval's is that of half axes and angle: `oval.log_stretch` makes it one of its own numbers.
-    With `WHOLE` the centre is uniform over what room the pad leaves it. A free polygon's n
+    As far as an outline is on the pad whole, by `WHOLE`, its centre is uniform over the room that
+    the pad leaves it; as far as it need not be, over the pad. A free polygon's n
     corners are n uniform points of the pad, given that they are in convex position, which they
     are with the probability ``(C(2n-2, n-1) / n!)**2`` (P. Valtr 1995, 10.1007/BF02574070).
     """
@@ -59,23 +61,18 @@ def log_prior(kind: int, corners: int, p: Values, prior: Values) -> float:
         if abs(p[2 + n] - prior[TURN]) > 0.5 * turn:
             return -math.inf
         total -= math.log(turn)
-    wide, high = prior[WIDTH], prior[HEIGHT]
+    x, y, wide, high = p[0] - prior[LEFT], p[1] - prior[TOP], prior[WIDTH], prior[HEIGHT]
+    chance = 0.0
+    if 0.0 <= x <= wide and 0.0 <= y <= high:
+        chance = (1.0 - prior[WHOLE]) / (wide * high)
     if prior[WHOLE] > 0.0:
         left, top, right, bottom = bounds(kind, corners, p)
-        if left < prior[LEFT] or right > prior[LEFT] + wide:
-            return -math.inf
-        if top < prior[TOP] or bottom > prior[TOP] + high:
-            return -math.inf
-        wide -= right - left
-        high -= bottom - top
-        if wide <= 0.0 or high <= 0.0:
-            return -math.inf
-    elif not (
-        0.0 <= p[0] - prior[LEFT] <= prior[WIDTH] and 0.0 <= p[1] - prior[TOP] <= prior[HEIGHT]
-    ):
-        return -math.inf
-    density: float = total - math.log(wide * high)
-    return density
+        across, down = wide - (right - left), high - (bottom - top)
+        on_pad = left >= prior[LEFT] and right <= prior[LEFT] + wide
+        on_pad = on_pad and top >= prior[TOP] and bottom <= prior[TOP] + high
+        if on_pad and across > 0.0 and down > 0.0:
+            chance += prior[WHOLE] / (across * down)
+    return total + math.log(chance) if chance > 0.0 else -math.inf
 
 
 @compiled_as_is
@@ -115,7 +112,7 @@ def _pulled_in(kind: int, corners: int, p: Values, prior: Values) -> None:
     """Do so for what is neither a free polygon nor an oval."""
     for k in range(2, 2 + sizes(kind)):
         p[k] = min(max(p[k], 1.001 * prior[SMALLEST]), 0.999 * prior[LARGEST])
-    if prior[WHOLE] <= 0.0:
+    if prior[WHOLE] < 1.0:
         p[0] = min(max(p[0], prior[LEFT]), prior[LEFT] + prior[WIDTH])
         p[1] = min(max(p[1], prior[TOP]), prior[TOP] + prior[HEIGHT])
         return

@@ -23,6 +23,7 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, rim_count, rim_shares, runs_of
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
+    OFF,
     ON,
     ROOT_TWO_PI,
     SIGMA,
@@ -129,9 +130,9 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
                     continue
                 for k in range(first):
                     along[k] = rise[k, at - 1] / max(its, SLIVER)
-                mu, log = math.log(its) + p[first], problem.logs[row, column]
-                score = score_of(state == ON, log, mu, noise, level)
-                add_noise_slopes(state == ON, score, problem, noise, out)
+                log = noise[LEAST] if state == OFF else problem.logs[row, column]
+                score = score_of(state, log, math.log(its) + p[first], noise, level)
+                add_noise_slopes(state, score, problem, noise, out)
                 add_outer(score, along, out)
     _add_whole(problem, whole, p, noise, box, runs, out)
     for k in range(p.shape[0]):
@@ -176,9 +177,10 @@ def _add_whole(
             for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
                 if problem.states[row, column] == UNKNOWN:
                     continue
-                on = problem.states[row, column] == ON
-                score = score_of(on, problem.logs[row, column], load, noise, level)
-                add_noise_slopes(on, score, problem, noise, out)
+                state = problem.states[row, column]
+                log = noise[LEAST] if state == OFF else problem.logs[row, column]
+                score = score_of(state, log, load, noise, level)
+                add_noise_slopes(state, score, problem, noise, out)
                 out.slope[first] += score[0]
                 out.matrix[first, first] += score[1]
     if not known:
@@ -186,11 +188,12 @@ def _add_whole(
     nodes = int(whole.numbers[NODES])
     for k in range(nodes + 1):
         on = k < nodes
+        state, log = (ON, whole.readings[k]) if on else (OFF, noise[LEAST])
         weight = whole.weights[k] if on else whole.numbers[OFFS]
-        score = score_of(on, whole.readings[k] if on else 0.0, load, noise, level)
+        score = score_of(state, log, load, noise, level)
         its.slope[:] = 0.0
         its.matrix[:] = 0.0
-        add_noise_slopes(on, score, problem, noise, its)
+        add_noise_slopes(state, score, problem, noise, its)
         its.slope[first] = score[0]
         its.matrix[first, first] = score[1]
         for m in range(first, p.shape[0]):

@@ -9,7 +9,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
-from tactile_graph_likelihood.large_pads.by_rim import surprise_by_rim
+from tactile_graph_likelihood.large_pads.by_rim import goodness_by_rim
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
     covered_around,
@@ -18,7 +18,7 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
-from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem
@@ -121,21 +121,21 @@ def _start(
 
 
 @compiled_as_is
-def _surprise(problem: Problem, p: Values) -> float:
-    """Return how surprising the image is with a large or small outline."""
+def _fit(problem: Problem, p: Values) -> GoodnessOfFit:
+    """Return how well the image fits a large or small outline."""
     whole = covered_around(problem, p)
     if whole.runs.shape[0] == 0:
-        return goodness_of_fit(problem, p).surprise
-    return surprise_by_rim(problem, whole, p)
+        return goodness_of_fit(problem, p)
+    return goodness_by_rim(problem, whole, p)
 
 
 @compiled_as_is
 def find_mode_on_large_pad(
     problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
     height: float,
-) -> tuple[float, bool]:  # fmt: skip
+) -> tuple[float, bool, GoodnessOfFit]:  # fmt: skip
     """Return what `search.find_mode` does, of a pad of more than 1024 elements."""
-    n = p.shape[0]
+    n, fit = p.shape[0], GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
     trial, its_root = np.zeros(n), np.zeros((n, n))
     blocks = coarsened(problem)
     for attempt in range(first, last):
@@ -150,6 +150,8 @@ def find_mode_on_large_pad(
             p[:] = trial
             for k in range(n):
                 root[k, :] = its_root[k]
-        if height > -math.inf and (_surprise(problem, p) > POOR or again):
-            return height, False
-    return height, last < ATTEMPTS
+        if height > -math.inf:
+            fit = _fit(problem, p)
+            if fit.surprise > POOR or again:
+                return height, False, fit
+    return height, last < ATTEMPTS, fit

@@ -99,7 +99,7 @@ def least_shown(logs: Values, states: States, noise: Values) -> float:
     ----------
     logs, states
         The image, as in `element_terms`.
-    noise : ndarray, shape (8,)
+    noise : ndarray, shape (9,)
         As there.
 
     Returns

@@ -82,7 +82,7 @@ class Scene:
     Parameters
     ----------
     readings : Readings
-    noise : ndarray, shape (8,)
+    noise : ndarray, shape (9,)
         As in `element_terms`.
     kinds : list of (int, int)
         Kinds of outlines and their corners, all alike likely beforehand.

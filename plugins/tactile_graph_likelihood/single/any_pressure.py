@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import weighted_moments
 from tactile_graph_likelihood.single.model import Model, Start
 from tactile_graph_likelihood.single.noise import FALL_GUESSED, GUESSED_FOAM
@@ -135,12 +136,12 @@ def asked_by(evens: Iterable[Posterior], others: Iterable[str]) -> list[str]:
     return [part for part in others if asked[part]]
 
 
-def chances(others: Mapping[str, Posterior | None]) -> dict[str, float]:
+def chances(others: Mapping[str, Posterior | GoodnessOfFit | None]) -> dict[str, float]:
     """Return the probability of each pressure before the loads' evidence is heard.
 
     Parameters
     ----------
-    others : mapping of str to Posterior or None
+    others : mapping of str to Posterior, GoodnessOfFit or None
         Those that were looked at, but the even one. A round face and foam are told apart by how
         alike neighbours are once the fall is explained; None where nobody knows.
     """

@@ -17,17 +17,22 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
 
-OFF, ON, UNKNOWN = range(3)
-"""What is known of an element: reads nothing, reads a load, broken or saturated."""
+OFF, ON, UNKNOWN, UNDER, OVER = range(5)
+"""What is known of an element: reads nothing, reads a load, broken or saturated, reads nothing, as
+far as its own least load goes, or a load at which readings end."""
 
 States: TypeAlias = NDArray[np.uint8]
 
-SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y = range(8)
+SIGMA, VOIDS, STRAYS, LEAST, FOAM, FALL, LEAN_X, LEAN_Y, CONTRAST = range(9)
 """Places in a noise vector: width of ln gain, share of voids, probability of a stray, logarithm
-of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean."""
+of the least load that shows, width of a foam blur in cells; `pressure`'s fall and lean; the power
+of coverage that readings go with, 1 where they are loads."""
 
 SPAN = math.log(1e4)
 """Width of the logarithm of a stray's load, and of the prior of a covered element's load."""
+
+HIGH = 0.5
+"""Share of strays that read the most that an element can."""
 
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 SQRT_HALF = math.sqrt(0.5)
@@ -38,6 +43,13 @@ def on_level(noise: Values) -> float:
     """Return the log of the densest reading's likelihood over a stray's."""
     peak = (1.0 - noise[STRAYS]) * (1.0 - noise[VOIDS]) / (noise[SIGMA] * ROOT_TWO_PI)
     return math.log(peak) - math.log(noise[STRAYS] / SPAN)
+
+
+@compiled_as_is
+def over_odds(noise: Values) -> float:
+    """Return how much likelier an element reads the most, where it bears that, than by a stray."""
+    odds: float = (1.0 - noise[STRAYS]) * (1.0 - noise[VOIDS]) / (HIGH * noise[STRAYS])
+    return odds
 
 
 @compiled_later
@@ -53,23 +65,25 @@ def terms(
     row, column : int
         Where the window begins.
     logs : ndarray, shape (all rows, all columns)
-        Logarithm of each reading that shows.
+        Logarithm of each reading that shows; of an element's own least load where it is `UNDER`, of
+        the load at which readings end where it is `OVER`.
     states : ndarray of uint8, the same shape
-        `OFF`, `ON` or `UNKNOWN`.
-    noise : ndarray, shape (8,)
-        As named by `SIGMA`, `VOIDS`, `STRAYS`, `LEAST`.
+        As named by `OFF`, `ON` and so on.
+    noise : ndarray, shape (9,)
+        As named by `SIGMA`, `VOIDS` and so on.
 
     Notes
     -----
     With mu = ln m, u = (ln l - mu) / sigma and z = (mu - ln l_least) / sigma, an element adds
     ``ln(1 + (1 - e) (1 - v) N(u) / sigma / (e / SPAN))`` where it reads l and
-    ``ln(1 - (1 - v) Phi(z))`` where it reads nothing.
+    ``ln(1 - (1 - v) Phi(z))`` where it reads nothing. Where it reads the most, it adds
+    ``ln(1 + (1 - e) (1 - v) Phi(z) / (e HIGH))``, z being from there.
     """
     # Factors are multiplied up, and their logarithm taken now and then.
-    sigma, present, least = noise[SIGMA], 1.0 - noise[VOIDS], noise[LEAST]
-    level = on_level(noise)
+    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
+    level, odds = on_level(noise), over_odds(noise)
     total, product = 0.0, 1.0
-    load, mu, off, off_known = -1.0, 0.0, 0.0, False
+    load, mu, off, known = -1.0, 0.0, 0.0, math.nan
     for i in range(expected.shape[0]):
         for j in range(expected.shape[1]):
             m = expected[i, j]
@@ -79,7 +93,7 @@ def terms(
             if state == UNKNOWN:
                 continue
             if m != load:
-                load, mu, off_known = m, math.log(m), False
+                load, mu, known = m, math.log(m), math.nan
             if state == ON:
                 u = (logs[row + i, column + j] - mu) / sigma
                 a = level - 0.5 * u * u
@@ -87,11 +101,15 @@ def terms(
                     total += a
                 elif a > -30.0:
                     product *= 1.0 + math.exp(a)
+            elif state == OVER:
+                z = (mu - logs[row + i, column + j]) / sigma
+                product *= 1.0 + odds * 0.5 * math.erfc(-SQRT_HALF * z)
             else:
-                if not off_known:
+                least = logs[row + i, column + j] if state == UNDER else noise[LEAST]
+                if least != known:
                     z = (mu - least) / sigma
                     off = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-                    off_known = True
+                    known = least
                 product *= off
             if not 1e-200 < product < 1e200:
                 total += math.log(product)
@@ -109,6 +127,6 @@ def bare(states: States, noise: Values) -> float:
         for j in range(states.shape[1]):
             if states[i, j] == ON:
                 total += stray
-            elif states[i, j] == OFF:
+            elif states[i, j] != UNKNOWN:
                 total += none
     return total

@@ -14,11 +14,13 @@ from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     ON,
+    OVER,
     ROOT_TWO_PI,
     SIGMA,
     SPAN,
     SQRT_HALF,
     STRAYS,
+    UNDER,
     UNKNOWN,
     VOIDS,
 )
@@ -230,7 +232,7 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
     residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
     for i in range(rows):
         for j in range(columns):
-            if states[i, j] == UNKNOWN:
+            if states[i, j] == UNKNOWN or states[i, j] == OVER:
                 continue
             on = states[i, j] == ON
             r, c = i - box[0], j - box[1]
@@ -241,7 +243,8 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
                 variance += var_bare
                 continue
             mu = math.log(share[r, c]) + p[first]
-            z = min(max((mu - here[LEAST]) / sigma, -40.0), 40.0)
+            least = logs[i, j] if states[i, j] == UNDER else here[LEAST]
+            z = min(max((mu - least) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
             off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
             if on:

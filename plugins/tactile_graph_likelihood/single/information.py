@@ -13,12 +13,15 @@ from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, un
 from tactile_graph_likelihood.single.element_terms import (
     FOAM,
     LEAST,
+    OFF,
     ON,
+    OVER,
     SIGMA,
     SQRT_HALF,
     UNKNOWN,
     VOIDS,
     on_level,
+    over_odds,
 )
 from tactile_graph_likelihood.single.load_shares import foam_margin, is_even, shares_of
 from tactile_graph_likelihood.single.log_posterior import noise_at
@@ -78,30 +81,38 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
 
 
 @compiled_as_is
-def score_of(on: bool, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
+def score_of(state: int, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
     """Return what an element's reading says of the logarithm mu of its expected load.
+
+    ``log`` is that of its reading, of the least load that shows where it reads nothing, of the load
+    at which readings end where it reads the most.
 
     Returns
     -------
     tuple of float
         The slope of its log likelihood, its information; the chance that it is no stray and its
-        residual, where it reads a load; the chance that its load shows, where it reads none.
+        residual, where it reads a load; the chance that its load shows, where it reads none or
+        the most.
     """
     sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
-    if on:
+    if state == ON:
         u = (log - mu) / sigma
         a = min(max(level - 0.5 * u * u, -700.0), 700.0)
         chance = 1.0 / (1.0 + math.exp(-a))
         return chance * u / sigma, chance / (sigma * sigma), chance, u, 0.0
-    z = (mu - noise[LEAST]) / sigma
+    z = (mu - log) / sigma
     tail = 0.5 * math.erfc(-SQRT_HALF * z)
+    if state == OVER:
+        odds = over_odds(noise)
+        score = odds * DENSITY * math.exp(-0.5 * z * z) / (sigma * (1.0 + odds * tail))
+        return score, score * score, odds * tail / (1.0 + odds * tail), z, tail
     score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * (1.0 - present * tail))
     return score, score * score, 1.0, z, tail
 
 
 @compiled_as_is
 def add_noise_slopes(
-    on: bool, score: tuple[float, ...], problem: Problem, noise: Values, out: Information
+    state: int, score: tuple[float, ...], problem: Problem, noise: Values, out: Information
 ) -> None:
     """Add what an element's reading says of the sigma and the voids that are estimated."""
     voids, chance, u, tail = noise[VOIDS], score[2], score[3], score[4]
@@ -110,11 +121,13 @@ def add_noise_slopes(
     for k in range(estimated.shape[0]):
         m = first + 1 + k
         if estimated[k] == SIGMA:
+            on = state == ON
             slope[m] += chance * (u * u - 1.0) if on else -score[0] * noise[SIGMA] * u
             matrix[m, m] += 2.0 * chance if on else 0.0
         elif estimated[k] == VOIDS:
             none = 1.0 - (1.0 - voids) * tail
-            slope[m] += -voids * chance if on else voids * (1.0 - voids) * tail / none
+            shows = state in (ON, OVER)
+            slope[m] += -voids * chance if shows else voids * (1.0 - voids) * tail / none
             matrix[m, m] += voids * (1.0 - voids)
 
 
@@ -156,9 +169,9 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             if its <= 0.0 or state == UNKNOWN:
                 continue
             mu = p[first] if its == 1.0 else math.log(its) + p[first]
-            on = state == ON
-            score = score_of(on, problem.logs[box[0] + i, box[1] + j], mu, noise, level)
-            add_noise_slopes(on, score, problem, noise, out)
+            log = noise[LEAST] if state == OFF else problem.logs[box[0] + i, box[1] + j]
+            score = score_of(state, log, mu, noise, level)
+            add_noise_slopes(state, score, problem, noise, out)
             edge = its < 1.0 or not plain
             for k in range(first):
                 along[k] = rise[k, i, j] / max(its, SLIVER)

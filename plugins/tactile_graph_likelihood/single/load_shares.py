@@ -1,7 +1,7 @@
 """What share of a fully covered element's load an outline brings to each element of a window.
 
 Its coverage, weighed by how the pressure varies, which leans to a side and falls or rises to the
-rim, and blurred as by foam.
+rim, and blurred as by foam; to a power, where readings are one of the load.
 
 With r the distance from the centre over that of the outline in the same direction, a place bears
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
@@ -29,7 +29,14 @@ from tactile_graph_likelihood.geometry.outlines import (
     corners_of,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse
-from tactile_graph_likelihood.single.element_terms import FALL, FOAM, LEAN_X, LEAN_Y, SQRT_HALF
+from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
+    FALL,
+    FOAM,
+    LEAN_X,
+    LEAN_Y,
+    SQRT_HALF,
+)
 
 FOAM_REACH = 3.5  # widths of the blur
 LEAST_FALL, MOST_FALL = -0.7, 3.0
@@ -57,7 +64,7 @@ def press(
     ----------
     kind, corners, p, grid, box
         As in `covered.covered`.
-    noise : ndarray, shape (8,)
+    noise : ndarray, shape (9,)
         As in `element_terms`; its fall and lean.
     shares : ndarray, shape (rows, columns)
         Coverage of the window; changed.
@@ -216,12 +223,19 @@ def shares_of(
     ----------
     kind, corners, p, grid, box
         As in `covered.covered`.
-    noise : ndarray, shape (8,)
-        As in `element_terms`; its foam, fall and lean.
+    noise : ndarray, shape (9,)
+        As in `element_terms`; its foam, fall, lean and contrast.
     rows, columns : int
         Of the whole image.
     """
     shares = covered(kind, corners, p, grid, box)
     if not is_even(noise):
         press(kind, corners, p, grid, noise, box, shares)
-    return blurred(shares, noise[FOAM], box, rows, columns) if noise[FOAM] > 0.0 else shares
+    if noise[FOAM] > 0.0:
+        shares = blurred(shares, noise[FOAM], box, rows, columns)
+    if noise[CONTRAST] != 1.0:
+        for i in range(shares.shape[0]):
+            for j in range(shares.shape[1]):
+                if 0.0 < shares[i, j] != 1.0:
+                    shares[i, j] = math.exp(noise[CONTRAST] * math.log(shares[i, j]))
+    return shares

@@ -13,11 +13,18 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
-from tactile_graph_likelihood.single.element_terms import FALL, SPAN, VOIDS, terms
+from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
+    FALL,
+    SPAN,
+    VOIDS,
+    terms,
+)
 from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 from tactile_graph_likelihood.single.problem import Problem
 
 LN_TWO_PI = math.log(2.0 * math.pi)
+LEAST_CONTRAST = 0.25  # it is a power: at 0, all that is covered would read alike
 
 
 @compiled_as_is
@@ -31,6 +38,7 @@ def noise_at(problem: Problem, p: Values) -> Values:
         if place < FALL:
             value = math.exp(min(max(value, -30.0), 30.0))
         found[place] = value / (1.0 + value) if place == VOIDS else value
+    found[CONTRAST] = min(max(found[CONTRAST], LEAST_CONTRAST), 1.0 / LEAST_CONTRAST)
     return found
 
 

@@ -139,12 +139,13 @@ def _share_of_step(step: Values, widths: Values, stride: float) -> float:
 
 
 @compiled_as_is
-def maximise_softly_first(problem: Problem, p: Values, root: Values) -> float:
-    """Maximise with elements that feel a little beyond their edge, then with the true ones.
+def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: bool) -> float:
+    """Maximise, if softly with elements that feel a little beyond their edge first.
 
     Otherwise a touched element that is not covered would not pull at all.
     """
-    maximise(softened(problem), None, p, root, ROUGH, math.inf)
+    if softly:
+        maximise(softened(problem), None, p, root, ROUGH, math.inf)
     return maximise(problem, None, p, root, ENOUGH, math.inf)
 
 

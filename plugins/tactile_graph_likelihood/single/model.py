@@ -26,14 +26,16 @@ from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.importance import weighted_moments
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
-from tactile_graph_likelihood.single.search import ATTEMPTS, find_mode, moments
+from tactile_graph_likelihood.single.search import ATTEMPTS, NEAR, find_mode, moments
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
@@ -49,12 +51,13 @@ class Likeliest(NamedTuple):
     """A most likely outline whose posterior is not yet sampled.
 
     ``evidence`` is the log evidence if the posterior were normal around it; ``unsure`` says whether
-    another attempt may do better.
+    another attempt may do better, ``fit`` how well the image fits it.
     """
 
     mode: Mode
     evidence: float
     unsure: bool
+    fit: GoodnessOfFit
 
 
 @dataclass(frozen=True)
@@ -68,8 +71,8 @@ class Model:
     noise : Noise
     gap_cm : float
         Distance of neighbouring elements' edges.
-    whole : bool
-        The outline lies fully on the pad; otherwise only its centre does.
+    whole : float
+        Probability beforehand that the outline lies fully on the pad; its centre always does.
     smallest_cm, largest_cm : float
         Range of radii, half axes and half sides, over which they are log-uniform; 0 and infinity
         for 0.4 pitches and the pad's diagonal.
@@ -86,7 +89,7 @@ class Model:
     corners: int = 0
     noise: Noise = field(default_factory=Noise)
     gap_cm: float = 0.3
-    whole: bool = False
+    whole: float = 0.0
     smallest_cm: float = 0.5
     largest_cm: float = 15.0
     precision: float = 0.15
@@ -128,38 +131,72 @@ class Model:
         """Return the same from readings."""
         problem = self._problem(readings, belief)
         table = self._table(problem)
-        mode, _ = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)
+        mode = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)[0]
         return self._sampled(readings, problem, table, mode)
 
     def likeliest(
         self, readings: Readings, before: Likeliest | None = None, start: Start = None
     ) -> Likeliest:
         """Return the most likely outline, by one attempt, or two more after an earlier one."""
-        problem = self._problem(readings, None)
         attempts, known = ((0, 1), None) if before is None else ((1, ATTEMPTS), before.mode)
+        return self._likeliest(readings, start, attempts, known)
+
+    def likeliest_near(self, readings: Readings, point: Values) -> Likeliest:
+        """Return the most likely outline near a point, shape (K,), that is nearly as likely."""
+        large = readings.states.size > LARGE_PAD
+        return self._likeliest(readings, point, (0, 1) if large else (NEAR, 0), None)
+
+    def _likeliest(
+        self, readings: Readings, start: Start, attempts: tuple[int, int], known: Mode | None
+    ) -> Likeliest:
+        problem = self._problem(readings, None)
         begin = self._begin(start, problem)
-        mode, unsure = self._find(problem, self._table(problem), begin, attempts, known)
+        mode, unsure, fit = self._find(problem, self._table(problem), begin, attempts, known)
         evidence = mode.height
         if evidence > -math.inf:
-            evidence += log_volume.call(problem.kind, mode.p, mode.root)
-        return Likeliest(mode, evidence, unsure)
+            evidence += _log_volume(problem.kind, mode)
+        return Likeliest(mode, evidence, unsure, fit)
 
     def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
         """Return the posterior around a mode."""
         problem = self._problem(readings, None)
         return self._sampled(readings, problem, self._table(problem), mode)
 
+    def point_of(self, top: Likeliest) -> Values:
+        """Return a most likely point in the outline's own numbers, shape (K,)."""
+        return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
+
+    def normal_around(self, top: Likeliest, count: int) -> Posterior:
+        """Return the posterior of a top's first numbers as if it were normal, the others known.
+
+        Parameters
+        ----------
+        top : Likeliest
+        count : int
+            How many: the outline's, its load, and what of the noise comes first.
+        """
+        p, spread = top.mode.p[:count], np.linalg.inv(top.mode.root[:count, :count])
+        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.table_of(count)[:BLOCK]
+        points, weights = p + steps @ spread, np.full(BLOCK, 1.0 / BLOCK)
+        likeliest, mean, covariance = p, p, spread.T @ spread
+        if self.kind == ELLIPSE:
+            likeliest, mean, covariance = _as_ellipses(p, points, weights)
+        return Posterior(
+            self.kind, self.corners, mean, covariance, points, weights, likeliest, top.evidence,
+            float(BLOCK), *top.fit,
+        )  # fmt: skip
+
     def _find(
         self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
         known: Mode | None,
-    ) -> tuple[Mode, bool]:  # fmt: skip
+    ) -> tuple[Mode, bool, GoodnessOfFit]:  # fmt: skip
         n = table.shape[1]
         p, root, height = np.zeros(n), np.zeros((n, n)), -math.inf
         if known is not None:
             p, root, height = known.p.copy(), known.root.copy(), known.height
         find = find_mode if problem.states.size <= LARGE_PAD else find_mode_on_large_pad
-        height, unsure = find.call(problem, table, begin, *attempts, p, root, height)
-        return Mode(p, root, height), unsure
+        height, unsure, fit = find.call(problem, table, begin, *attempts, p, root, height)
+        return Mode(p, root, height), unsure, GoodnessOfFit(*fit)
 
     def _sampled(
         self, readings: Readings, problem: Problem, table: Values, mode: Mode
@@ -177,6 +214,9 @@ class Model:
 
     def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
+        if readings.least_log is not None:
+            noise = noise.copy()
+            noise[LEAST] = readings.least_log
         kind, n = self.kind, unknowns.call(self.kind, self.corners)
         if kind == ELLIPSE and belief is None:
             kind = OVAL
@@ -216,7 +256,7 @@ class Model:
                 width,
                 height,
                 *self.range_cm(readings),
-                1.0 if self.whole else 0.0,
+                self.whole,
                 0.0,
                 0.0,
             ]
@@ -235,7 +275,10 @@ class Model:
         return {}
 
     def _table(self, problem: Problem) -> Values:
-        n = unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated)
+        return self.table_of(unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated))
+
+    def table_of(self, n: int) -> Values:
+        """Return evenly spread points of Student's t, shape (N, n), in whole blocks."""
         return _table(max(1, math.ceil(self.most_points / BLOCK)) * BLOCK, n, self.seed)
 
     def _begin(self, start: Start, problem: Problem) -> Values:
@@ -256,6 +299,13 @@ class Model:
         if problem.kind == OVAL:
             to_oval.call(begin)
         return begin
+
+
+def _log_volume(kind: int, mode: Mode) -> float:
+    """Return `sample.log_volume`, which is worth compiling for ovals alone."""
+    if kind == OVAL:
+        return log_volume.call(kind, mode.p, mode.root)
+    return sum(0.5 * LN_TWO_PI - math.log(width) for width in mode.root.diagonal().tolist())
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:

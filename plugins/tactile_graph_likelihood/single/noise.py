@@ -9,6 +9,7 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     FALL,
     FOAM,
     LEAN_X,
@@ -25,6 +26,7 @@ ESTIMATED = {
     "foam": (FOAM,),
     "fall": (FALL,),
     "lean": (LEAN_X, LEAN_Y),
+    "contrast": (CONTRAST,),
 }
 """What may be estimated with an object, and its places in a noise vector."""
 
@@ -32,9 +34,9 @@ LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS = 0.05, 1e-3, 0.9
 """What a model is held to: no pad is more even than this, and each element may fail."""
 
 DEVIATIONS = 5.0  # of the converter's noise that hardly any element of a frame exceeds
-SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7}
-"""Standard deviations of ln sigma, the voids' log odds, ln foam, and of the pressure's fall and
-lean (see `pressure`), before a frame is read."""
+SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7, CONTRAST: 0.2}
+"""Standard deviations of ln sigma, the voids' log odds, ln foam, of the pressure's fall and lean
+(see `load_shares`) and of the contrast, before a frame is read."""
 
 FALL_GUESSED = 0.5
 """The middle of the guess: a ball's (Hertz)."""
@@ -60,8 +62,11 @@ class Noise:
     foam_cm : float
         Width (standard deviation) over which foam spreads the load.
     estimated : tuple of str
-        Which of sigma, voids, foam, fall and lean are estimated with the object; the values here
-        are then the middle of the guess. A pressure whose fall or lean is not estimated has none.
+        Which of sigma, voids, foam, fall, lean and contrast are estimated with the object; the
+        values here are then the middle of the guess. A pressure whose fall or lean is not estimated
+        has none.
+    contrast : float
+        Power of an element's coverage that its reading goes with: 1 where readings are loads.
     """
 
     sigma: float = 0.5
@@ -70,6 +75,7 @@ class Noise:
     least: float = 0.0
     foam_cm: float = 0.0
     estimated: tuple[str, ...] = ()
+    contrast: float = 1.0
 
     def vector(self, pitch_cm: float) -> Values:
         """Return the numbers as the kernels take them."""
@@ -86,6 +92,7 @@ class Noise:
                 FALL_GUESSED if "fall" in self.estimated else 0.0,
                 0.0,
                 0.0,
+                self.contrast,
             ]
         )
 

@@ -104,11 +104,15 @@ class Posterior:
         nearest the mean made the mean, so by themselves they promise too much.
         """
         n = unknowns.call(self.kind, self.corners)
+        return max(self.reach_of_points(n), normal_reach(n, self.equal_points))
+
+    def reach_of_points(self, n: int) -> float:
+        """Return the squared distance within which 90 % of the weighted points lie."""
         distances = self._squared(self.points[:, :n])
         order = np.argsort(distances)
         passed = np.cumsum(self.weights[order])
         at = min(int(np.searchsorted(passed, CERTAIN)), len(order) - 1)
-        return max(float(distances[order][at]), normal_reach(n, self.equal_points))
+        return float(distances[order][at])
 
     def _squared(self, outlines: Values) -> Values:
         n = unknowns.call(self.kind, self.corners)

@@ -29,7 +29,7 @@ class Problem(NamedTuple):
         by which a search softens edges, zero otherwise.
     logs, states : ndarray, shape (rows, columns)
         The image, as in `element_terms`.
-    noise : ndarray, shape (8,)
+    noise : ndarray, shape (9,)
         As in `element_terms`.
     estimated : ndarray of int, shape (M,)
         Which of the noise is the point's own instead.

@@ -28,13 +28,17 @@ class Readings(NamedTuple):
     """What an image says, and where its elements lie.
 
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
-    zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`.
+    zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`. ``stretch`` is the
+    height of a cell over its width, where it is nearly 1 and was taken for that; ``least_log`` the
+    logarithm of the least load that shows, where the readings themselves say it.
     """
 
     grid: Values
     logs: Values
     states: States
     touched: int
+    stretch: float = 1.0
+    least_log: float | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:

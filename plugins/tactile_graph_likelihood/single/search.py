@@ -23,8 +23,8 @@ from tactile_graph_likelihood.geometry.outlines import (
     unknowns,
 )
 from tactile_graph_likelihood.geometry.oval import to_oval
-from tactile_graph_likelihood.single.element_terms import ON, States
-from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
+from tactile_graph_likelihood.single.element_terms import ON, OVER, States
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import maximise_softly_first
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem, with_prior
@@ -34,6 +34,7 @@ TRIMS = 8
 THINNEST = 0.05  # variance across an outline over the mean one: touched elements may be a line
 LIGHT_EDGE = 0.25  # ln of a full element's load over the mean, whose edge is partly covered
 ATTEMPTS = 3
+NEAR = -1
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR = -1.5  # surprise from which on there is no further attempt
 TRIES = 24  # outlines tried around the moments own, in attempts after the first
@@ -69,7 +70,7 @@ def _moments_within(grid: Values, logs: Values, states: States, far: float, out:
     for i in range(states.shape[0]):
         v = i - mean_y
         for j in range(states.shape[1]):
-            if states[i, j] != ON:
+            if states[i, j] != ON and states[i, j] != OVER:
                 continue
             u = j - mean_x
             if far < math.inf and a * u * u + b * u * v + c * v * v > far:
@@ -211,7 +212,7 @@ def _vary(problem: Problem, off: Values, p: Values) -> None:
 def find_mode(
     problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
     height: float,
-) -> tuple[float, bool]:  # fmt: skip
+) -> tuple[float, bool, GoodnessOfFit]:  # fmt: skip
     """Write the most likely outline after some attempts; tell whether another is worth its time.
 
     Parameters
@@ -223,30 +224,33 @@ def find_mode(
     start : ndarray, shape (0,) or (K,)
         Where to begin; empty for the touched elements' moments.
     first, last : int
-        The first attempt, from 0, and one past the last.
+        The first attempt and one past the last; 0 begins at the start if there is one, and so does
+        `NEAR`, which takes it for near the top.
     p, root, height : ndarray, shape (K,) and (K, K), and float
         The mode that earlier attempts found, of the height -inf if there were none; written where
         something better is. Not as a `Mode`: handing over a second record costs 15 us.
 
     Returns
     -------
-    (float, bool)
-        The mode's height, and whether another attempt may find a better one.
+    (float, bool, GoodnessOfFit)
+        The mode's height, whether another attempt may find a better one, and how well it fits.
     """
-    n = p.shape[0]
+    n, fit = p.shape[0], GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
     trial, its_root = np.zeros(n), np.zeros((n, n))
     for attempt in range(first, last):
-        if attempt == 0 and start.shape[0] == n:
+        if attempt <= 0 and start.shape[0] == n:
             trial[:] = start
         else:
             likeliest_start(problem, table, attempt * TRIES, trial)
-        here = maximise_softly_first(problem, trial, its_root)
+        here = maximise_softly_first(problem, trial, its_root, attempt >= 0)
         again = attempt > 0 and abs(here - height) < SAME
         if here > height:
             height = here
             p[:] = trial
             for k in range(n):
                 root[k, :] = its_root[k]
-        if height > -math.inf and (goodness_of_fit(problem, p).surprise > POOR or again):
-            return height, False
-    return height, last < ATTEMPTS
+        if height > -math.inf:
+            fit = goodness_of_fit(problem, p)
+            if fit.surprise > POOR or again:
+                return height, False, fit
+    return height, last < ATTEMPTS, fit

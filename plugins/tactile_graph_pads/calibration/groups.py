@@ -94,17 +94,29 @@ class GroupReader:
         if image.valid is not None and not image.valid.all():
             raise DataError(where, f"{int((~image.valid).sum())} elements are missing")
         recorded = np.asarray(image.values, dtype=np.float64)
-        values = self._converted(recorded, image.quantity, where)
+        quantity = self.recorded_as(image.quantity)
+        values = self._converted(recorded, quantity, where)
         corner = self._corner(values, where)
         rows, columns = self.group or values.shape
         block = (slice(corner[0], corner[0] + rows), slice(corner[1], corner[1] + columns))
         if not values[block].mean() > 0.0:
             got = f"{values[block].mean():.4g} on average"
             raise DataError(where, f"{total_g:g} g read nothing ({got}): did the load lie there?")
-        self._check_saturated(recorded[block], image.quantity, total_g, where)
+        self._check_saturated(recorded[block], quantity, total_g, where)
         # the same elements under an object put down anew are another placement
         place = (*corner, repr(frame.truth))
         return _Reading(total_g / (rows * columns), place, values[block].ravel(), where)
+
+    def recorded_as(self, quantity: str) -> str:
+        """Return what recorded values are: where a pad is named, its counts if nothing says."""
+        return "counts" if quantity == "raw" and self.pad is not None else quantity
+
+    def read_as(self, quantity: str) -> str:
+        """Return the quantity that the curve is to read, of recordings in one."""
+        recorded = self.recorded_as(quantity)
+        if self.pad is None or recorded not in ("counts", "volt"):
+            return recorded
+        return "siemens" if self.decouple else "volt"
 
     def _converted(self, recorded: Array, quantity: str, where: str) -> Array:
         """Return what the curve is to read: volts where a pad is known, else as recorded."""

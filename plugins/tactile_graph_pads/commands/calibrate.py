@@ -86,6 +86,11 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
         about=asked.about,
         provenance=_provenance(asked, observed),
     )
+    if observed.assumed:
+        click.echo(
+            f"recordings that do not say their quantity are taken for counts of pad "
+            f"{asked.pad_name}; frames of such a recording want --with quantity=counts"
+        )
     _say(made, fitted_g(made.fit, points, seen if fit == "sums" else ()), fit)
     if asked.output is not None:
         write_calibration(asked.output, made)
@@ -125,6 +130,8 @@ class _Observed(NamedTuple):
     origins: list[Origin]
     quantity: Any
     shape: tuple[int, int]
+    assumed: bool
+    """Whether recordings that do not say their quantity were taken for the pad's counts."""
 
 
 def _provenance(asked: _Options, observed: _Observed) -> Provenance:
@@ -188,10 +195,12 @@ def _observe(given: Sequence[Loaded], reader: GroupReader) -> _Observed:
     seen: list[Observation] = []
     origins: list[Origin] = []
     quantities: dict[str, str] = {}
+    assumed = False
     for path, load_g in given:
         frames, origin = _frames(path)
         for frame in frames:
-            quantities.setdefault(_read_as(frame.image.quantity, reader), str(path))
+            quantities.setdefault(reader.read_as(frame.image.quantity), str(path))
+            assumed |= reader.recorded_as(frame.image.quantity) != frame.image.quantity
         seen += reader.observations(frames, load_g, str(path))
         if origin not in origins:
             origins.append(origin)
@@ -205,13 +214,7 @@ def _observe(given: Sequence[Loaded], reader: GroupReader) -> _Observed:
         raise DataError(
             "calibration", f"only readings can be calibrated, these are {quantity} already"
         )
-    return _Observed(seen, origins, quantity, frames[0].image.shape)
-
-
-def _read_as(quantity: str, reader: GroupReader) -> str:
-    if reader.pad is None or quantity not in ("counts", "volt"):
-        return quantity
-    return "siemens" if reader.decouple else "volt"
+    return _Observed(seen, origins, quantity, frames[0].image.shape, assumed)
 
 
 def _made_by() -> str:

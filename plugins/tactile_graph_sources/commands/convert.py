@@ -1,69 +1,119 @@
-"""``tactile-graph convert``: a recording in another format."""
+"""``tactile-graph convert``: frames of any source in another format, with their truth."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 if TYPE_CHECKING:
+    from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
 
 KINDS = (".zarr", ".npz", ".csv")
 
 
 @click.command()
-@click.argument("source", type=click.Path(exists=True, path_type=Path))
-@click.argument("target", type=click.Path(path_type=Path))
+@click.argument(
+    "paths",
+    metavar="[RECORDING]... TARGET",
+    nargs=-1,
+    required=True,
+    type=click.Path(path_type=Path),
+)
+@click.option("--source", metavar="STEP", help="Take frames from this source step instead.")
+@click.option(
+    "--with",
+    "settings",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="A setting of the source, such as order=columns; can be repeated.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
+              help="Seed of everything random.")  # fmt: skip
+@click.option("--frames", "n_frames", type=click.IntRange(min=1), help="Only the first so many.")
 @click.option("--rows", type=click.IntRange(min=1), help="Rows, where the file cannot tell.")
 @click.option("--columns", type=click.IntRange(min=1), help="Columns, likewise.")
 @click.option("--pitch-cm", type=click.FloatRange(min=0, min_open=True), help="Pitch, likewise.")
 @click.option("--quantity", help="What the values mean, likewise.")
+@click.option(
+    "--truth",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="What truly lay on the pad: a table of one object a line, or JSON.",
+)
 def convert(
-    source: Path,
-    target: Path,
-    rows: int | None,
-    columns: int | None,
-    pitch_cm: float | None,
-    quantity: str | None,
+    paths: tuple[Path, ...],
+    source: str | None,
+    settings: tuple[str, ...],
+    seed: int,
+    n_frames: int | None,
+    truth: Path | None,
+    **told: Any,
 ) -> None:
-    """Convert the recording SOURCE to TARGET: .zarr, .npz or .csv by its name.
+    """Convert recordings, or the frames of a source, to TARGET: .zarr, .npz or .csv by its name.
 
-    SOURCE is a Zarr store or any file that the source 'recording' reads.
+    RECORDING is a Zarr store or any file that the source 'recording' reads. With --source the
+    frames are those of any other source, a simulated one or a plugin's.
     """
     from tactile_graph.errors import UsageError
-    from tactile_graph.files import check_target
     from tactile_graph.steps.injected import Report
-    from tactile_graph_sources.recording import recording
 
-    if target.suffix not in KINDS:
-        raise click.UsageError(f"TARGET must end in {', '.join(KINDS)}, got {target.name!r}")
-    if target.exists():
-        raise click.UsageError(f"{target} is there already")
-    check_target("TARGET", target)
-    told: dict[str, Any] = {
-        "rows": rows,
-        "columns": columns,
-        "pitch_cm": pitch_cm,
-        "quantity": quantity,
-    }
-    report = Report()
-    kept = _Kept()
+    *recordings, target = paths
+    _check(recordings, target, source)
+    report, kept = Report(), _Kept()
     try:
-        frames = recording(path=source, report=report, **told)
-        n = _write(target, kept.watch(frames), source)
+        frames = _frames(recordings, source, settings, told, seed, report)
+        frames = islice(frames, n_frames)
+        if truth is not None:
+            from tactile_graph_sources.readers.truth_file import with_truth
+
+            frames = with_truth(frames, truth)
+        about = source or ", ".join(r.name for r in recordings)
+        n = _write(target, kept.watch(frames), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
     click.echo(f"{target}: {n} frame{'s' if n != 1 else ''}")
-    for where, what in report.troubles:
-        click.echo(f"{where}: {what}", err=True)
+    for what, count in report.counts.items():
+        if what.startswith("recordings"):
+            click.echo(f"{what}: {count}", err=True)
+    for where, trouble in report.troubles:
+        click.echo(f"{where}: {trouble}", err=True)
     if target.suffix == ".csv" and kept.names:
         click.echo(f"left out, as a table has no place for it: {', '.join(kept.names)}", err=True)
 
 
-def _write(target: Path, frames: Iterator[Frame], source: Path) -> int:
+def _check(recordings: list[Path], target: Path, source: str | None) -> None:
+    from tactile_graph.files import check_target
+
+    if target.suffix not in KINDS:
+        raise click.UsageError(f"TARGET must end in {', '.join(KINDS)}, got {target.name!r}")
+    if bool(recordings) == (source is not None):
+        raise click.UsageError("give recordings before TARGET, or --source, and not both")
+    if target.exists():
+        raise click.UsageError(f"{target} is there already")
+    check_target("TARGET", target)
+
+
+def _frames(
+    recordings: list[Path],
+    source: str | None,
+    settings: tuple[str, ...],
+    told: dict[str, Any],
+    seed: int,
+    report: Report,
+) -> Iterator[Frame]:
+    from tactile_graph_sources.commands.any_source import frames_of_source, given_settings
+
+    given = {**given_settings(settings), **{k: v for k, v in told.items() if v is not None}}
+    if source is None:
+        given["path"] = [str(r) for r in recordings]
+    return frames_of_source(source or "recording", given, report, seed)
+
+
+def _write(target: Path, frames: Iterator[Frame], about: str) -> int:
     from tactile_graph_sources.writers.write_csv import write_csv
     from tactile_graph_sources.writers.write_npz import write_npz
     from tactile_graph_sources.writers.write_store import StoreWriter
@@ -72,7 +122,7 @@ def _write(target: Path, frames: Iterator[Frame], source: Path) -> int:
         return write_npz(target, frames)
     if target.suffix == ".csv":
         return write_csv(target, frames)
-    with StoreWriter(target, about={"converted_from": source.name}) as store:
+    with StoreWriter(target, about={"converted_from": about}) as store:
         for frame in frames:
             store.write(frame)
     return store.n_frames

@@ -1,4 +1,4 @@
-"""``tactile-graph record``: a pad on a serial port into a Zarr store."""
+"""``tactile-graph record``: a pad on a serial port, or any other source, into a Zarr store."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Generator, Iterator
+from itertools import islice
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -19,13 +20,22 @@ if TYPE_CHECKING:
     from tactile_graph_sources.writers.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
+UNTOLD = ("bytes", "good frames", "frames", "troubles")
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 
 
 @click.command()
 @click.argument("target", type=click.Path(path_type=Path))
-@click.option("--port", required=True, help="Device or pyserial URL; see 'ports'.")
-@click.option("--preset", required=True, help="The kit's name, or a YAML file.")
+@click.option("--port", help="Device or pyserial URL; see 'ports'.")
+@click.option("--preset", help="The kit's name, or a YAML file.")
+@click.option("--source", metavar="STEP", help="Take frames from this source step instead.")
+@click.option(
+    "--with",
+    "settings",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="A setting of that source, as under 'with:' in YAML; can be repeated.",
+)
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
 @click.option("--frames", "n_frames", type=click.IntRange(min=1), help="End after so many.")
 @click.option("--seconds", type=click.FloatRange(min=0, min_open=True), help="End after so long.")
@@ -45,8 +55,10 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 )
 def record(
     target: Path,
-    port: str,
-    preset: str,
+    port: str | None,
+    preset: str | None,
+    source: str | None,
+    settings: tuple[str, ...],
     baud: int | None,
     n_frames: int | None,
     seconds: float | None,
@@ -55,7 +67,7 @@ def record(
     chunk: int,
     give_up: float | None,
 ) -> None:
-    """Record every frame of a pad into the Zarr store TARGET, until Ctrl-C.
+    """Record every frame of a pad, or of another source, into the Zarr store TARGET, until Ctrl-C.
 
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
     lost. A pad that is unplugged is waited for.
@@ -65,8 +77,10 @@ def record(
     from tactile_graph_sources.serial_port import serial
     from tactile_graph_sources.writers.write_store import StoreWriter
 
+    _check_source(port, preset, source)
     _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
+<<<<<<< HEAD
     frames = serial(
         port=port,
         preset=preset,
@@ -76,10 +90,23 @@ def record(
         give_up_s=give_up,
         report=report,
     )
+=======
+    if source is not None:
+        frames = _of_source(source, settings, n_frames, report)
+    else:
+        frames = serial(
+            port=port or "",
+            preset=preset or "",
+            baud=baud,
+            n_frames=n_frames,
+            give_up_s=give_up,
+            report=report,
+        )
+>>>>>>> main
     failure: Exception | None = None
     with _Ended() as ended:
         try:
-            about = {"preset": preset, "pad": pad, "port": port}
+            about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
                 _keep(frames, store)
         except KeyboardInterrupt:
@@ -89,12 +116,30 @@ def record(
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    if failure is None or report.counts["good frames"]:
+    if failure is None or report.counts["good frames"] or report.counts["frames"]:
         _tell(store, report)
     if failure is not None:
         raise failure
     if ended.by:
         click.get_current_context().exit(128 + ended.by)
+
+
+def _check_source(port: str | None, preset: str | None, source: str | None) -> None:
+    """Refuse a command line that names no pad and no other source, or both."""
+    if source is not None and (port or preset):
+        raise click.UsageError("give --port and --preset, or --source, and not both")
+    if source is None:
+        for option, value in (("--port", port), ("--preset", preset)):
+            if value is None:
+                raise click.UsageError(f"Missing option '{option}' (or '--source').")
+
+
+def _of_source(
+    step: str, settings: tuple[str, ...], n_frames: int | None, report: Report
+) -> Iterator[Frame]:
+    from tactile_graph_sources.commands.any_source import frames_of_source, given_settings
+
+    return islice(frames_of_source(step, given_settings(settings), report), n_frames)
 
 
 def _check_target(target: Path) -> None:
@@ -161,6 +206,6 @@ def _tell(store: StoreWriter, report: Report) -> None:
         click.echo(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
     click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
-    names = [n for n in sorted(report.counts) if n not in ("bytes", "good frames", "troubles")]
+    names = [n for n in sorted(report.counts) if n not in UNTOLD]
     for name in names:
         click.echo(f"  {name}: {report.counts[name]}", err=True)

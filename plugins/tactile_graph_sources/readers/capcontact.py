@@ -13,7 +13,9 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Ellipse, Frame, TrueObject
 from tactile_graph_sources.readers.reading import Reading
 
+SHAPE = (41, 72)
 PITCH_CM = (0.479, 0.476)
+DEVICE = "the CapContact panel"
 CONTACT = 0
 
 
@@ -46,10 +48,12 @@ def frames(reading: Reading, cap: NDArray[Any], ftir: NDArray[Any]) -> Iterator[
         raise DataError(where, f"'ftir' {ftir.shape} is no finer grid of 'cap' {cap.shape}")
     reading.told.agree(where, *cap.shape)
     reading.report.expect(1)
-    pitch = reading.told.pitch_cm or PITCH_CM
+    own = reading.published(PITCH_CM, DEVICE) if cap.shape == SHAPE else None
+    pitch = reading.told.pitch_cm or own or (1.0, 1.0)
     x0, y0 = reading.told.origin_cm or (0.0, 0.0)
     found = contacts_of(ftir == CONTACT, (pitch[0] / finer, pitch[1] / finer), (x0, y0))
-    yield reading.frame(cap, pitch_cm=PITCH_CM, truth=tuple(TrueObject(e) for e in found))
+    reading.recognised("arrays 'cap' and 'ftir', the second a whole number of times finer")
+    yield reading.frame(cap, pitch_cm=own, truth=tuple(TrueObject(e) for e in found))
 
 
 def contacts_of(

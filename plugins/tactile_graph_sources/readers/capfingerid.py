@@ -8,12 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 
 NAME = "CapFingerId .txt"
 SHAPE = (27, 15)
+DEVICE = "the CapFingerId phone"
 PITCH_CM = (0.41, 0.41)
 """Of the phone used: 27 x 15 sensors of 4.1 mm (Le, Mayer, Henze, 2019)."""
 _LINE = re.compile(r"[^;,]*;[^;,]*;[^;,]*;[^;,]*;[^;,]*;\s*\d+,\d+,")
@@ -31,6 +32,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     """
     rows, columns = reading.told.rows or SHAPE[0], reading.told.columns or SHAPE[1]
     reading.told.agree(str(reading.path), rows, columns)
+    reading.recognised("lines of participant;hand;finger;task;-1;sec,nsec,values")
+    own = reading.published(PITCH_CM, DEVICE) if (rows, columns) == SHAPE else None
     reading.report.expect(reading.count_bytes(b"\n"))
     started: int | None = None
     for number, line in reading.text():
@@ -47,7 +50,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         if reading.wants(who):
             yield reading.frame(
                 values.reshape(rows, columns),
-                pitch_cm=PITCH_CM,
+                pitch_cm=own,
                 time_s=(time_ns - started) * 1e-9,
                 device_time_s=time_ns * 1e-9,
                 sensor=who,

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.units import length_cm
 
 NAME = "novel emed .lst"

@@ -9,12 +9,12 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import (
     capfingerid,
-    csv_flat,
-    csv_long,
-    csv_stacked,
     emed,
+    hdf5,
+    json_stack,
     npy,
     npz,
+    pictures,
     pliance,
     popu_bed,
     tekscan,
@@ -22,6 +22,7 @@ from tactile_graph_sources.readers import (
 )
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables import flat, long, stacked
 
 
 class Reader(Protocol):
@@ -39,16 +40,19 @@ class Reader(Protocol):
 # The surest marks first; plain tables last, as any of the others could look like one.
 READERS: tuple[Reader, ...] = (
     npy,
+    pictures,
     npz,
+    hdf5,
     popu_bed,
     xsensor,
     tekscan,
     pliance,
     emed,
     capfingerid,
-    csv_long,
-    csv_stacked,
-    csv_flat,
+    json_stack,
+    long,
+    stacked,
+    flat,
 )
 
 

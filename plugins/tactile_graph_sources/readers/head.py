@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tactile_graph_sources.readers.told import Told
 
 if TYPE_CHECKING:
-    from tactile_graph_sources.readers.csv_layout import Layout
+    from tactile_graph_sources.readers.tables.layout import Layout
 
 SAMPLE = 1 << 20
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
@@ -52,7 +52,7 @@ class Head:
     @cached_property
     def layout(self) -> Layout | None:
         """How the numbers lie in a plain table; None where it is no table."""
-        from tactile_graph_sources.readers.csv_layout import layout_of
+        from tactile_graph_sources.readers.tables.decide import layout_of
 
         return layout_of(self.lines, self.told, self.whole)
 

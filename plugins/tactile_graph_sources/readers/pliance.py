@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.told import MOST_CELLS
 from tactile_graph_sources.readers.units import pressure_unit
 
@@ -114,7 +114,10 @@ def _mat(reading: Reading, n_values: int) -> _Mat:
                 str(reading.path),
                 f"no table of corners says how its {n_values} cells lie; give rows and columns",
             )
-        rows, columns = told.shape_of(str(reading.path), n_values)
+        shape = told.fits(n_values)
+        if shape is None:
+            raise DataError(str(reading.path), told.misfit(n_values))
+        rows, columns = shape
         # The vendor counts down the columns.
         places = np.arange(n_values).reshape(rows, columns, order="F").argsort(axis=None)
         return _Mat((rows, columns), places, None)

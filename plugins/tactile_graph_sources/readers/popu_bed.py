@@ -44,6 +44,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     rows = _size(record, "tactilus_rows", reading.told.rows or SHAPE[0])
     columns = _size(record, "tactilus_columns", reading.told.columns or SHAPE[1])
     reading.told.agree(where, rows, columns)
+    reading.recognised("a JSON object with snapshots of tactilus_readings")
     reading.report.expect(len(listed))
     for name, entry in listed:
         values = _values(entry)

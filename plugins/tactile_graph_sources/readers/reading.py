@@ -39,7 +39,8 @@ class Reading:
         self.path: Path = head.path
         self.told = told
         self.report = report
-        self.index = index
+        self.index = self.start = index
+        self.why = ""
         self.label = label
         self.sensors: dict[str, None] = {}
         self.first_damage = ""
@@ -74,6 +75,16 @@ class Reading:
                     return
                 place += len(block)
                 tail = block[-len(needle) :]
+
+    def recognised(self, why: str, assumed: Iterable[str] = ()) -> None:
+        """Note how the format was recognised, and what about it nobody said."""
+        self.why = why
+        for what in assumed:
+            self.assume(what)
+
+    def assume(self, what: str) -> None:
+        """Note, once for the file, what nobody said and is taken to be so."""
+        self._once(f"recordings with {what}")
 
     def at(self, line: int | str) -> str:
         """Return a place in the file for messages."""
@@ -137,6 +148,7 @@ class Reading:
         else:
             mask = good
             values[~good] = 0.0  # a NaN left in place would spread through the first sum
+        values, mask = self._turned(values, mask, truth)
         image = Image(
             values,
             self._pitch(pitch_cm),
@@ -151,11 +163,33 @@ class Reading:
         self.index += 1
         return frame
 
+    def _turned(
+        self, values: NDArray[Any], mask: NDArray[np.bool_] | None, truth: object
+    ) -> tuple[NDArray[Any], NDArray[np.bool_] | None]:
+        told = self.told
+        if not (told.transpose or told.flip):
+            return values, mask
+        if truth is not None:
+            raise DataError(
+                str(self.path), "its truth lies as its cells do; leave out transpose and flip"
+            )
+        values = np.ascontiguousarray(told.turned(values))
+        return values, None if mask is None else np.ascontiguousarray(told.turned(mask))
+
     def _pitch(self, own: tuple[float, float] | None) -> tuple[float, float]:
         pitch = self.told.pitch_cm or own
         if pitch is None:
             self._once("recordings whose pitch is assumed to be 1 cm")
-        return pitch or (1.0, 1.0)
+            return 1.0, 1.0
+        turned = self.told.transpose and self.told.pitch_cm is None
+        return (pitch[1], pitch[0]) if turned else pitch
+
+    def published(self, pitch_cm: tuple[float, float], device: str) -> tuple[float, float]:
+        """Return a pitch that the file does not say, noting whose it is unless one is told."""
+        if self.told.pitch_cm is None:
+            x, y = pitch_cm
+            self.assume(f"the pitch assumed to be that of {device}, {x:g} x {y:g} cm")
+        return pitch_cm
 
     def _quantity(self, own: str) -> str:
         told = self.told.quantity

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isqrt
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,11 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.reading import Reading
+
+SMALLEST_SURE_SQUARE = 36
+LONGEST_UNTOLD = 4
+LAST_IS_TIME = 4
+"""Times the other two: a last axis longer than that is more likely the frames'."""
 
 
 def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
@@ -45,6 +51,42 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
             where,
             f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read",
         )
+    if rows is None or columns is None:
+        _refuse_two_readings(where, array, name)
+    told = "as rows and columns say" if rows and columns else "a matrix along each first index"
+    reading.recognised(f"{name} of shape {array.shape}, {told}")
     array = array[None] if array.ndim == 2 else array
     reading.told.agree(where, array.shape[1], array.shape[2])
     return array
+
+
+def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
+    """Refuse an array whose axes another reading fits as well or better; it is named."""
+    shape = array.shape
+    if array.ndim == 2:
+        lines, cells = shape
+        side = isqrt(cells)
+        square = side * side == cells and lines not in (1, cells)
+        long = max(shape) > LONGEST_UNTOLD * min(shape)
+        if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
+            as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
+            raise DataError(
+                where,
+                f"{name} has shape {shape}: one matrix, or {as_frames} with their cells in a row; "
+                "give rows and columns",
+            )
+        return
+    n, rows, columns = shape
+    if columns in (3, 4) and min(n, rows) > 4:
+        raise DataError(
+            where,
+            f"{name} has shape {shape}: {n} frames of {rows} x {columns}, or a picture of "
+            f"{columns} colours; give rows and columns, or save one colour",
+        )
+    last_is_time = (n == rows != columns) or columns > LAST_IS_TIME * max(n, rows)
+    if last_is_time and min(n, rows) > 1:
+        raise DataError(
+            where,
+            f"{name} has shape {shape}: {n} frames of {rows} x {columns}, or {columns} frames of "
+            f"{n} x {rows} along the last axis; give rows and columns",
+        )

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.tables.names import NOTHING_TOLD, ColumnsTold
 
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """The settings of a recording; None where the file is to be believed."""
+    """The settings of a recording; None where the file is to be believed.
+
+    ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
+    ``skip`` how many frames are left out in front.
+    """
 
     rows: int | None = None
     columns: int | None = None
@@ -19,6 +27,33 @@ class Told:
     origin_cm: tuple[float, float] | None = None
     quantity: str | None = None
     sensor: str = ""
+    of_columns: ColumnsTold = NOTHING_TOLD
+    order: str = "rows"
+    transpose: bool = False
+    flip: str = ""
+    skip: int = 0
+
+    @classmethod
+    def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:
+        """Return what settings say, by their names; a pitch may be one number."""
+        pitch = settings.get("pitch_cm")
+        if isinstance(pitch, int | float):
+            settings["pitch_cm"] = (float(pitch), float(pitch))
+        return cls(of_columns=columns_told, **settings)
+
+    def laid_out(self, cells: NDArray[Any], rows: int, columns: int) -> NDArray[Any]:
+        """Return cells in a row as a matrix, by the order in which they come."""
+        if self.order == "columns":
+            return cells.reshape(columns, rows).T
+        return cells.reshape(rows, columns)
+
+    def turned(self, matrix: NDArray[Any]) -> NDArray[Any]:
+        """Return a matrix as the pad is to be seen."""
+        if self.transpose:
+            matrix = matrix.T
+        if self.flip in ("rows", "both"):
+            matrix = matrix[::-1]
+        return matrix[:, ::-1] if self.flip in ("columns", "both") else matrix
 
     def agree(self, where: str, rows: int, columns: int) -> None:
         """Refuse a shape that is not the one told, or is none at all.
@@ -42,27 +77,22 @@ class Told:
                 f"rows={self.rows}, columns={self.columns}; leave them out",
             )
 
-    def shape_of(self, where: str, n_values: int) -> tuple[int, int]:
-        """Return rows and columns of a frame that comes as ``n_values`` in a row.
+    def with_said(self, rows: int | None, columns: int | None) -> Told:
+        """Return the settings with a shape that the file says where they say none."""
+        return replace(self, rows=self.rows or rows, columns=self.columns or columns)
 
-        Raises
-        ------
-        DataError
-            If the settings do not fit, or nothing is told and the number is no square.
-        """
-        rows, columns = self.rows, self.columns
-        side = round(n_values**0.5)
-        if rows is None and columns is None and side * side == n_values:
-            rows = columns = side
-        elif rows is None and columns is not None:
-            rows = n_values // columns
-        elif columns is None and rows is not None:
-            columns = n_values // rows
-        if rows is None or columns is None or rows * columns != n_values or n_values == 0:
-            said = f"rows={self.rows}, columns={self.columns}" if rows or columns else "nothing"
-            raise DataError(
-                where,
-                f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
-                "give rows and columns whose product is that number",
-            )
-        return rows, columns
+    def fits(self, n_values: int) -> tuple[int, int] | None:
+        """Return rows and columns of so many values, by either or both; None where none fit."""
+        rows = self.rows or n_values // (self.columns or 1)
+        columns = self.columns or (n_values // rows if rows else 0)
+        return (rows, columns) if rows * columns == n_values > 0 else None
+
+    def misfit(self, n_values: int) -> str:
+        """Return what to say of values in a row that the told shape does not fit."""
+        said = (
+            f"rows={self.rows}, columns={self.columns}" if self.rows or self.columns else "nothing"
+        )
+        return (
+            f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
+            "give rows and columns whose product is that number"
+        )

@@ -19,6 +19,12 @@ _KILOPASCAL = {
     "g/cm2": 0.0980665,
     "atm": 101.325,
 }
+_VALUES = {
+    "v": ("volt", 1.0), "volt": ("volt", 1.0), "volts": ("volt", 1.0), "mv": ("volt", 1e-3),
+    "g": ("gram", 1.0), "gram": ("gram", 1.0), "grams": ("gram", 1.0), "kg": ("gram", 1e3),
+    "count": ("counts", 1.0), "counts": ("counts", 1.0), "adc": ("counts", 1.0),
+    "lsb": ("counts", 1.0), "siemens": ("siemens", 1.0),
+}  # fmt: skip
 _CENTIMETRES = {"mm": 0.1, "cm": 1.0, "m": 100.0, "in": 2.54, "inch": 2.54, "inches": 2.54}
 _CENTIMETRES |= {f"{n}met{e}": f for n, f in (("milli", 0.1), ("centi", 1.0)) for e in ("er", "re")}
 _LENGTH = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([a-zA-Z]+)")
@@ -41,6 +47,28 @@ def pressure_unit(text: str) -> tuple[str, float]:
     name = name.removesuffix("s") if name not in _KILOPASCAL else name
     factor = _KILOPASCAL.get(name)
     return ("raw", 1.0) if factor is None else ("kilopascal", factor)
+
+
+def value_unit(text: str) -> tuple[str, float]:
+    """Return the quantity that a unit or a name of values stands for, and the factor to it.
+
+    Parameters
+    ----------
+    text : str
+        ``mV``, ``kPa``, ``g``, ``adc``.
+
+    Returns
+    -------
+    (str, float)
+        ``("volt", 1e-3)`` and so on; ``("raw", 1.0)`` for anything else.
+    """
+    return _VALUES.get(text.strip().lower(), pressure_unit(text))
+
+
+def length_unit(name: str) -> float | None:
+    """Return the centimetres of the unit a name ends with, as ``x_mm`` or ``y [cm]`` do."""
+    unit = re.split(r"[_\s(\[]+", name.strip().rstrip(")]").lower())[-1]
+    return _CENTIMETRES.get(unit)
 
 
 def length_cm(text: str, unit: str = "") -> float | None:

@@ -10,9 +10,9 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.dialect import Dialect
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import Dialect
 from tactile_graph_sources.readers.units import length_cm, pressure_unit
 
 NAME = "XSENSOR .csv"

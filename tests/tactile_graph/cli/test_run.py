@@ -132,7 +132,7 @@ def test_json_lines_hold_outputs_errors_and_truth(tmp_path):
     assert frames[0]["errors"]["circle"]["radius_cm"] == pytest.approx(0.12838, abs=1e-5)
     assert frames[0]["truth"][2] == {
         "kind": "Circle",
-        "shape": {"x_cm": 1.0, "y_cm": 2.0, "radius_cm": 1.0},
+        "shape": {"kind": "Circle", "x_cm": 1.0, "y_cm": 2.0, "radius_cm": 1.0},
         "weight_g": None,
         "name": "disc",
     }

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from helpers_cli import call, install
-from tactile_graph import Circle, Image
+from tactile_graph import Circle, Degenerate, Image
 
 
 def nowhere(image: Image) -> Circle:
@@ -44,7 +44,17 @@ def silent(image: Image) -> float:
     raise ValueError
 
 
-STEPS = {f.__name__: f for f in (nowhere, endless, InPlace, wordy, silent)}
+def three(image: Image) -> list[int]:
+    return [1, 2, 3]
+
+
+def odd(number: int) -> float:
+    if number == 2:
+        raise Degenerate("2 is even")
+    return number / 2
+
+
+STEPS = {f.__name__: f for f in (nowhere, endless, InPlace, wordy, silent, three, odd)}
 
 
 @pytest.fixture(autouse=True)
@@ -87,3 +97,17 @@ def test_a_wordy_failure_takes_one_line_and_a_silent_one_only_its_type() -> None
     assert len(told) < 500
     assert " in wordy)" in told
     assert "first in frame 0: ValueError (" in run("silent").stdout
+
+
+def test_an_item_of_a_list_that_failed_is_named_and_the_frame_is_not_whole() -> None:
+    nodes = "{a: {step: three, in: frame}, b: {step: odd, in: a, each: true}}"
+    Path("p.yaml").write_text(f"{{pipeline: p, nodes: {nodes}, outputs: [b]}}")
+    done = call("run", "p.yaml", "--source", "made", "--frames", 3, "-o", "out.csv")
+    assert "failed   b in 3 frames, first in frame 0 (item 2): 2 is even" in done.stderr
+    assert "0 with all outputs, 3 with items missing" in done.stderr
+    assert done.exit_code == 1
+    assert Path("out.csv").read_text().splitlines()[1] == "0,0.0,,item 2 failed: 2 is even,2"
+    assert json.loads(Path("out.csv.meta.json").read_text())["result"]["frames_lacking_items"] == 3
+    line = json.loads(call("run", "p.yaml", "--source", "made", "-o", "-").stdout.splitlines()[0])
+    lacking = {"failed": "2 is even", "origin": "b", "kind": "degenerate", "item": "2"}
+    assert line["outputs"]["b"] == [0.5, lacking, 1.5]

@@ -22,7 +22,7 @@ from tactile_graph.draw.display import (
     is_picture,
     truth_list,
 )  # fmt: skip
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.wires import TrueObject
 
 ON = Mask(np.ones((1, 2), bool), (2.0, 1.0), (10.0, 5.0))
@@ -80,6 +80,29 @@ def test_an_outline_is_in_cm_and_keeps_its_circle() -> None:
     assert isinstance(outline, Outline)
     assert outline.circle is circle
     np.testing.assert_allclose(np.hypot(*(outline.xy_cm - (1.0, 2.0)).T), 3.0)
+
+
+class Stroke:
+    outline_closed = False
+
+    def outline_cm(self) -> np.ndarray:
+        return np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]])
+
+
+def test_a_line_is_closed_unless_its_record_says_it_is_open() -> None:
+    (stroke,) = display_list(Stroke())
+    box = display_list(Rectangle(4, 5, 6, 7, 0.0))[0]
+    assert isinstance(stroke, Outline)
+    assert isinstance(box, Outline)
+    assert stroke.drawn_cm.tolist() == [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]
+    assert box.drawn_cm[0].tolist() == box.drawn_cm[-1].tolist()
+
+
+def test_an_item_that_failed_keeps_its_number_and_says_why() -> None:
+    failed = Failed("circles", ValueError("no"), item=(1,))
+    shown = display_list([Circle(1, 2, 3), failed, Circle(4, 5, 6)])
+    assert [r.text for r in shown if isinstance(r, Number)] == ["1", "3"]
+    assert [r.value for r in shown if isinstance(r, Note)] == ["item 2 failed: ValueError: no"]
 
 
 @pytest.mark.parametrize("value", [3, "a", True, [], [1, 2], (1.0,)])

@@ -11,7 +11,7 @@ import pytest
 
 from tactile_graph import Circle, Image, Mask, Points
 from tactile_graph.draw.colours import MASK_OFF, MASK_ON
-from tactile_graph.draw.display import display_list
+from tactile_graph.draw.display import Outline, display_list
 from tactile_graph.draw.grid_png import (
     BROKEN,
     HEAT,
@@ -89,6 +89,15 @@ def test_a_circle_is_drawn_exactly_and_one_that_is_nowhere_not_at_all() -> None:
     assert lines[1] == '<circle cx="100" cy="50" r="40" class="ink"></circle>'
     assert lines[3] == '<path d="M94.0 50.0h12M100.0 44.0v12" class="ink"></path>'
     assert SvgPicture(view, display_list(Circle(math.nan, 2.5, 2.0))).lines == []
+
+
+def test_an_open_line_does_not_return_to_its_start() -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]])
+    for closed, last in ((True, "Z"), (False, "0")):
+        lines = SvgPicture(
+            View.of(Image(np.zeros((4, 4)))), [Outline(corners, closed=closed)]
+        ).lines
+        assert [line.split('"')[1][-1] for line in lines] == [last, last]
 
 
 def test_notes_carry_the_names_of_their_fields() -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import pytest
 
@@ -152,3 +153,48 @@ def test_the_image_of_a_frame_is_there_whoever_reads_it_or_nobody() -> None:
     asked = p.run(one, only=["frame.image", "r"])
     assert asked["frame.image"] is one.image
     assert asked["r"].n == 3
+
+
+# -- fields of the items of a list -----------------------------------------------------------------
+
+
+class Part(Record):
+    provides: ClassVar[Mapping[type, str]] = {float: "inverse"}
+
+
+class Sided(Record):
+    provides: ClassVar[Mapping[type, str]] = {float: "sign"}
+
+
+def parts(image: Image) -> list[Part]:
+    return [Part(n) for n in (2, 0, 4)]
+
+
+def sided(image: Image) -> list[Sided]:
+    return [Sided(n) for n in (2, 0, -4)]
+
+
+def doubled(x: float) -> float:
+    return 2 * x
+
+
+def each_of(step: str) -> Any:
+    nodes = f"{{p: {{step: {step}, in: frame}}, d: {{step: doubled, in: p, each: true}}}}"
+    steps = {"parts": parts, "sided": sided, "doubled": doubled}
+    return loads(f"{{pipeline: p, nodes: {nodes}, outputs: [p, d]}}", "p", registry(steps))
+
+
+def test_an_item_whose_field_cannot_be_had_fails_in_its_place() -> None:
+    result = each_of("parts").run(frame(1))
+    first, failed, last = result["d"]
+    assert (first, last) == (1.0, 0.5)
+    assert isinstance(failed, Failed)
+    assert (failed.item, failed.reason) == ((1,), "ZeroDivisionError: division by zero")
+    assert [type(p) for p in result["p"]] == [Part] * 3
+
+
+def test_an_item_whose_field_is_not_known_is_skipped_in_its_place() -> None:
+    first, skipped, last = each_of("sided").run(frame(1))["d"]
+    assert (first, last) == (2, -2)
+    assert isinstance(skipped, Skipped)
+    assert (skipped.item, skipped.reason) == ((1,), "its sign is not known")

@@ -92,3 +92,20 @@ def test_a_run_that_settled_too_little_is_told_by_what_it_lacks() -> None:
 def test_a_node_the_recorded_plan_lacks_is_an_error() -> None:
     with pytest.raises(KeyError, match="spare"):
         replay("spare")(pipeline().run(frame(3), only=["number"]))
+
+
+def test_items_without_a_value_are_told_in_the_plans_own_names() -> None:
+    lists = """\
+pipeline: p
+nodes:
+  number: {step: read, in: frame}
+  items: {step: many, in: number}
+  some: {step: picky, in: items, each: true, with: {bad: 2}}
+outputs: [some]
+"""
+    plan = make_plan(loads(lists, "p.yaml", registry(STEPS)), ("some",))
+    recorded = loads(lists.replace("some", "few"), "p.yaml", registry(STEPS)).run(frame(3))
+    alone = Replay(plan, {"number": "number", "items": "items", "some": "few"})(recorded)
+    first, failed, last = alone["some"]
+    assert (first, failed.origin, failed.item, last) == (3, "some", (1,), 5)
+    assert [(f.origin, f.item) for f in alone.failures] == [("some", (1,))]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from helpers_graphs import CALLS, STEPS, frame, registry
-from tactile_graph import Degenerate, Frame, Image, loads
+from tactile_graph import Degenerate, Frame, Image, Skip, loads
 from tactile_graph.engine.outcome import DONE, Failed, Skipped
 from tactile_graph.engine.outcomes import NoResult
 from tactile_graph.errors import UsageError
@@ -86,6 +87,20 @@ def images(image: Image) -> list[Image]:
     return [image.with_values(image.values + i) for i in range(int(image.values[0, 0]))]
 
 
+def at_least(a: int, *, least: int = 0) -> int:
+    if a < least:
+        raise Skip(f"{a} is too small")
+    return a
+
+
+def told(items: Sequence[int | None]) -> str:
+    return " ".join("-" if i is None else str(i) for i in items)
+
+
+def zipped(a: list[int], b: list[int]) -> int:
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
 MORE = {
     **STEPS,
     "write": write,
@@ -98,6 +113,9 @@ MORE = {
     "arrays": arrays,
     "nothing": nothing,
     "images": images,
+    "at_least": at_least,
+    "told": told,
+    "zipped": zipped,
 }
 
 
@@ -411,15 +429,58 @@ def test_each_runs_a_step_over_the_items_of_a_list() -> None:
     assert run(p)["e"] == (9, 10, 11)
 
 
-def test_items_that_fail_are_left_out_but_reported() -> None:
+def test_an_item_that_fails_keeps_its_place_and_is_named() -> None:
     p = make(
         f"{V}\nm: {{step: many, in: v}}\ne: {{step: picky, in: m, each: true, with: {{bad: 2}}}}",
         "e",
     )
     result = run(p)
-    assert result["e"] == (3, 5)
-    assert [f.reason for f in result.failures] == ["ValueError: 4!"]
+    first, failed, last = result["e"]
+    assert (first, last) == (3, 5)
+    assert (failed.origin, failed.item, failed.reason) == ("e", (1,), "ValueError: 4!")
+    assert [(f.item, f.reason) for f in result.failures] == [((1,), "ValueError: 4!")]
+    assert result.gaps == {"e": [failed]}
+    assert not result.ok
     assert run(p, 1).failures == []
+
+
+LISTS = (
+    f"{V}\nm: {{step: many, in: v}}\ns: {{step: at_least, in: m, each: true, with: {{least: 4}}}}"
+)
+FAILING = f"{V}\nm: {{step: many, in: v}}\ns: {{step: picky, in: m, each: true, with: {{bad: 2}}}}"
+
+
+def test_a_step_that_skips_is_no_failure_and_skips_what_depends_on_it() -> None:
+    p = make(
+        f"{V}\ns: {{step: at_least, in: v, with: {{least: 4}}}}\nw: {{step: add1, in: s}}", "w"
+    )
+    result = run(p)
+    assert (result.outcome("w").origin, result.outcome("w").reason) == ("s", "3 is too small")
+    assert result.failures == []
+    assert run(p, 4)["w"] == 5
+
+
+def test_a_node_over_a_list_hands_on_the_outcome_in_an_empty_place() -> None:
+    p = make(f"{LISTS}\ne: {{step: add2, in: [s, m], each: true}}", "e")
+    skipped, *rest = run(p)["e"]
+    assert (skipped.origin, skipped.item, skipped.reason) == ("s", (0,), "3 is too small")
+    assert rest == [12, 15]
+
+
+def test_a_step_whose_port_says_its_items_may_be_none_is_told_of_empty_places() -> None:
+    assert run(make(f"{LISTS}\nt: {{step: told, in: s}}", "t"))["t"] == "- 4 5"
+    assert run(make(f"{FAILING}\nt: {{step: told, in: s}}", "t"))["t"] == "3 - 5"
+
+
+def test_other_steps_get_a_list_without_skipped_items_and_fail_with_a_failed_one() -> None:
+    assert run(make(f"{LISTS}\nt: {{step: total, in: s}}", "t"))["t"] == 9
+    failed = run(make(f"{FAILING}\nt: {{step: total, in: s}}", "t")).outcome("t")
+    assert (failed.origin, failed.item) == ("s", (1,))
+
+
+def test_a_step_of_two_lists_is_skipped_rather_than_given_lists_out_of_step() -> None:
+    skipped = run(make(f"{LISTS}\nz: {{step: zipped, in: [s, m]}}", "z")).outcome("z")
+    assert (skipped.origin, skipped.reason) == ("z", "item 1 of s was skipped: 3 is too small")
 
 
 def test_each_over_no_items_skips_and_over_failures_only_fails() -> None:
@@ -489,10 +550,12 @@ def test_nodes_inside_can_be_asked_for(tmp_path: Any) -> None:
 def test_each_runs_a_pipeline_over_a_list_and_keeps_the_results_of_its_items(tmp_path: Any) -> None:
     p = using(tmp_path, "i: {step: images, in: frame}\nu: {use: inner, in: i, each: true}", "u")
     result = run(p)
-    assert result["u"].s == (5, 6)
-    assert result["u"].t == (3, 4)
+    skipped, *rest = result["u"].s
+    assert (rest, skipped.origin, skipped.item) == ([5, 6], "s", (0,))
+    *rest, failed = result["u"].t
+    assert (rest, failed.origin, failed.item) == ([3, 4], "t", (2,))
     assert [r.frame.image.peak for r in result.inner["u"]] == [3, 4, 5]
-    assert [f.origin for f in result.failures] == ["t"]
+    assert [(f.origin, f.item) for f in result.failures] == [("t", (2,))]
     assert run(p, 0).outcome("u").reason == "no items to run for"
 
 

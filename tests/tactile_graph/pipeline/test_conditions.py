@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tactile_graph import Frame, loads
 from tactile_graph.pipeline.conditions import compile_condition, names_in
+from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.wiring import Ref
 
 
@@ -20,7 +21,8 @@ class Found(NamedTuple):
     any: Any
 
 
-TYPES = {"a": int, "b": float, "found": Found, "text": str, "frame": int}
+Kind = Literal["disc", "rectangle"]
+TYPES = {"kind": Kind, "a": int, "b": float, "found": Found, "text": str, "frame": int}
 VALUES = {"a": 3, "b": 0.5, "found.count": 2, "found.names": ("x", "y"), "text": "on"}
 
 
@@ -48,6 +50,22 @@ def holds(text: str, named: dict[str, str] | None = None) -> bool:
 )
 def test_a_condition_gives_what_python_would(text: str, expected: bool) -> None:
     assert holds(text) is expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["kind == 'disk'", "'disk' != kind", "kind in ('disk',)", "kind not in ['disk']"],
+)
+def test_a_text_that_a_field_never_holds_is_refused(text: str) -> None:
+    words = "kind is never 'disk'; it is one of 'disc', 'rectangle'; did you mean 'disc'"
+    with pytest.raises(ConditionError, match=words):
+        compile_condition(text, TYPES)
+    assert compile_condition(text.replace("disk", "disc"), TYPES).refs == (Ref("kind"),)
+
+
+def test_a_text_is_not_compared_with_a_number() -> None:
+    with pytest.raises(ConditionError, match="kind is a text and 1 is a number"):
+        compile_condition("kind == 1", TYPES)
 
 
 def test_each_value_is_read_once_in_order() -> None:

@@ -144,6 +144,6 @@ def test_a_file_that_may_not_be_read_is_not_called_missing(
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "exists", forbidden)  # root may read anything
-    monkeypatch.setattr(Path, "read_text", forbidden)
+    monkeypatch.setattr(Path, "open", forbidden)
     with pytest.raises(UsageError, match=r"'files/a\.yaml' cannot be read: Permission denied$"):
         load("files/a.yaml", reg)

@@ -240,6 +240,19 @@ BAD_NODES = [
         "'when': m.count is a number and 'b' is a text: they cannot be compared",
     ),
     (M + "n: {step: finer, in: m, when: 0 < m.count < 'b'}", "they cannot be compared"),
+    (M + "n: {step: finer, in: m, when: 1 > 2}", "'when': 1 > 2 reads no node: it is always false"),
+    (M + "n: {step: finer, in: m, when: m.count > 0 or 2 > 1}", "2 > 1 reads no node: .* true"),
+    (M + "n: {step: finer, in: m, when: m.count = 1}", "invalid syntax; to compare, write '=='"),
+    (M + "n: {step: finer, in: m, when: m.count > 1 && m}", "write 'and' for '&&'"),
+    (M + "n: {step: finer, in: m, when: m.count > 1 || m}", r"write 'or' for '\|\|'"),
+    (
+        "m: {step: threshold, in: frame, with: {level_v: '0.2'}}",
+        "must be a number or null, got the text '0.2'; without the quotes it is a number",
+    ),
+    (
+        "m: {step: threshold, in: frame, with: {level_v:0.2}}",
+        "unknown setting 'level_v:0.2'; a space is missing behind the colon: level_v: 0.2",
+    ),
     (
         M + "n: {step: finer, in: m, when: qqq.count > 1}",
         "no node named 'qqq'; there are: frame, m, n",

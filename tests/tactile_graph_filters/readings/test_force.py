@@ -8,7 +8,8 @@ from hypothesis.extra.numpy import arrays
 
 import references_filters as references
 from helpers_filters import image_of, same_grid
-from tactile_graph.errors import DataError
+from tactile_graph import Frame, load, loads
+from tactile_graph.errors import DataError, PipelineError, RuleError
 from tactile_graph_filters.readings.force import Force, floored
 
 
@@ -94,11 +95,24 @@ outputs: [grams]
     ("scene", "weight_g"), [("empty", 0.0), ("disc-1", 1860.0), ("disc-2", 6360.0)]
 )
 def test_a_pads_counts_weigh_what_lies_on_it_and_an_empty_pad_nothing(scene, weight_g):
-    from tactile_graph import load, loads
 
     source = load("circle-3").with_source("simulate", scene=scene, frames=3, output="counts")
     for frame in source.frames(seed=0):
         assert loads(CHAIN).run(frame)["grams"].total == pytest.approx(weight_g, rel=0.03)
+
+
+def test_a_law_on_volts_is_refused_when_the_file_is_loaded():
+    nodes = "{v: {step: volts, in: frame}, f: {step: force, in: v%s}}"
+    text = f"{{pipeline: p, nodes: {nodes}, outputs: [f]}}"
+    with pytest.raises(PipelineError, match="'force' takes siemens at port 'image', got volt"):
+        loads(text % "")
+    assert loads(text % ", with: {curve: [[1, 100]]}").outputs
+
+
+def test_a_law_on_a_frame_of_volts_is_refused_before_it_is_computed():
+    pipeline = loads("{pipeline: p, nodes: {f: {step: force, in: frame}}, outputs: [f]}")
+    with pytest.raises(RuleError, match="takes siemens at port 'image', got a frame of volt"):
+        pipeline.run(Frame(image_of([[1.0]], "volt")))
 
 
 def test_loads_below_the_floor_are_none_at_all():

@@ -6,6 +6,7 @@ import pytest
 import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
 from tactile_graph.errors import DataError
+from tactile_graph_filters.readings.force import Force
 from tactile_graph_filters.readings.load import LoadOf, measure
 
 
@@ -28,7 +29,7 @@ def test_force_is_given_where_the_unit_has_one():
 
 def test_an_unloaded_pad_has_no_centre_and_is_no_error():
     found = LoadOf()(image_of(np.zeros((3, 3)), "gram"))
-    assert found == (False, 0.0, 0.0, 0.0, 0.0, None, None)
+    assert found == (False, 0.0, 0.0, 0.0, 0.0, None, None, 0)
 
 
 def test_cells_at_or_below_above_count_for_nothing():
@@ -41,6 +42,13 @@ def test_invalid_cells_count_for_nothing():
     found = LoadOf(above=-1.0)(image_of([[0.0, 2.0]], valid=[[False, True]]))
     assert found.contact_area_cm2 == pytest.approx(PITCH[0] * PITCH[1])
     assert found.total == 2.0
+    assert found.n_left_out == 1
+
+
+def test_cells_beyond_a_calibration_are_counted_as_left_out():
+    grams = Force(curve=[(1.0, 100.0)])(image_of([[0.5, 1.5, 0.0]], "volt"))
+    found = LoadOf()(grams)
+    assert (found.total, found.n_left_out) == (50.0, 1)
 
 
 def test_only_negative_readings_are_no_load():

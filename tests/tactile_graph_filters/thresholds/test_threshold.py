@@ -1,4 +1,5 @@
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -109,12 +110,59 @@ def test_any_at_least_plain_and_compiled(number):
     assert any_at_least.loops(values, 1.0) == any_at_least.compiled(values, 1.0) == expected
 
 
-@pytest.mark.parametrize(
-    ("given_levels", "got"), [({}, "neither"), ({"level_v": 1.0, "level": 1.0}, "both")]
-)
-def test_exactly_one_level_must_be_given(given_levels, got):
-    with pytest.raises(ValueError, match=f"exactly one of level_v and level .* got {got}"):
-        Threshold(**given_levels)
+def test_a_level_must_be_given():
+    with pytest.raises(ValueError, match="level_v or level must be given, got neither"):
+        Threshold()
+
+
+def test_of_both_levels_one_is_for_volts_and_one_for_all_else():
+    values = np.array([[0.5, 2.0]])
+    step = Threshold(level_v=1.0, level=0.1)
+    assert step(Image(values, quantity="volt")).count == 1
+    assert step(Image(values, quantity="counts")).count == 2
+
+
+def test_a_level_in_volts_alone_is_for_volts():
+    with pytest.raises(ValueError, match="level_v is for images in volts, got gram"):
+        Threshold(level_v=1.0)(Image(np.ones((1, 2)), quantity="gram"))
+
+
+def test_auto_finds_what_stands_out_of_the_noise_and_says_the_level():
+    rng = np.random.default_rng(2)
+    values = 700.0 + rng.normal(0.0, 3.0, (20, 30))
+    values[4:9, 5:12] += 400.0
+    mask = Threshold(level="auto")(Image(values, quantity="counts"))
+    assert mask.count == 35
+    assert 715.0 < mask.level < 760.0
+    assert (
+        mask.assumed
+        == f"cells from {mask.level:.4g} counts on, which is above the frame's own noise"
+    )
+    again = pickle.loads(pickle.dumps(mask))
+    assert (again.level, again.quantity, again.count) == (mask.level, "counts", 35)
+    shifted = Threshold(level="auto")(Image(3.0 * values - 50.0))
+    assert np.array_equal(shifted.values, mask.values)
+
+
+@pytest.mark.parametrize("values", [np.zeros((4, 4)), np.full((4, 4), 7.0), np.zeros((1, 1))])
+def test_auto_finds_nothing_where_nothing_differs(values):
+    assert Threshold(level="auto")(Image(values)).count == 0
+
+
+def test_auto_finds_nothing_in_noise_alone():
+    for seed in range(30):
+        noise = np.random.default_rng(seed).normal(0.0, 1.0, (16, 16))
+        assert Threshold(level="auto")(Image(noise)).count == 0
+
+
+def test_auto_leaves_invalid_cells_out_of_account():
+    values = np.zeros((4, 4))
+    values[0, 0], values[1, 1] = 1e6, 1.0
+    valid = np.ones((4, 4), bool)
+    valid[0, 0] = False
+    assert np.argwhere(Threshold(level="auto")(Image(values, valid=valid)).values).tolist() == [
+        [1, 1]
+    ]
 
 
 def test_the_level_must_be_finite():

@@ -83,3 +83,20 @@ def test_the_angle_given_with_the_centre_does_not_matter():
 def test_says_why_there_is_no_ellipse(xy, words):
     with pytest.raises(Degenerate, match=words):
         ellipse_sweep(Points(np.array(xy, float)))
+
+
+def test_points_that_say_nothing_of_an_axis_give_no_endless_ellipse():
+    """A hull with a stray cell far from its centre has runaway minima at some orientations."""
+    hull = np.array([[-3.0, -1.0], [3.0, -1.1], [3.0, 1.0], [-3.0, 1.1], [0.0, 9.0], [0.4, 9.0]])
+    centre = Orientation(0.0, 0.0, 0.0, 0.5, 0.0, False)
+    rng = np.random.default_rng(1)
+    n_answers = 0
+    for _ in range(60):
+        xy = hull + rng.normal(0.0, 1.5, hull.shape)
+        try:
+            got = ellipse_sweep(Points(xy), centre)
+        except Degenerate:
+            continue
+        n_answers += 1
+        assert got.semi_major_cm <= 3.0 * np.hypot(*xy.T).max() * math.sqrt(2.0)
+    assert n_answers > 20

@@ -16,7 +16,7 @@ def prior(whole, turn=0.3, smallest=0.5, largest=4.0):
     return np.array([*PAD, smallest, largest, whole, turn, 0.0])
 
 
-@pytest.mark.parametrize("whole", [0.0, 1.0])
+@pytest.mark.parametrize("whole", [0.0, 0.9, 1.0])
 @pytest.mark.parametrize(
     ("kind", "corners", "sizes", "turns"),
     [(DISC, 0, 1, 0), (RECTANGLE, 0, 2, 1), (ELLIPSE, 0, 2, 1), (REGULAR, 5, 1, 1)],

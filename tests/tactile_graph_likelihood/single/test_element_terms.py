@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 import references_likelihood as references
-from tactile_graph_likelihood.single.element_terms import OFF, ON, SPAN, UNKNOWN, bare, terms
+from tactile_graph_likelihood.single.element_terms import (
+    HIGH,
+    OFF,
+    ON,
+    OVER,
+    SPAN,
+    UNDER,
+    UNKNOWN,
+    bare,
+    terms,
+)
 
 NOISE = np.array([0.48, 0.16, 1e-3, math.log(5.0), 0.0])
 
@@ -43,11 +53,31 @@ def test_a_reading_far_from_what_is_expected_is_a_stray(kernel):
     assert one(kernel, 6.0, 9.0, ON) == pytest.approx(math.log(1e-3 / SPAN), abs=1e-3)
 
 
+def test_an_element_reads_nothing_as_far_as_its_own_least_load_goes(kernel):
+    here, elsewhere = math.log(50.0), NOISE.copy()
+    elsewhere[3] = here
+    assert one(kernel, 40.0, here, UNDER) == pytest.approx(one(kernel, 40.0, 0.0, OFF, elsewhere))
+    assert one(kernel, 40.0, here, UNDER) > one(kernel, 40.0, 0.0, OFF)
+
+
+@pytest.mark.parametrize(("expected", "chance"), [(1e4, 0.84 * 0.999), (50.0, 0.42 * 0.999)])
+def test_an_element_reads_the_most_as_likely_as_it_bears_that(kernel, expected, chance):
+    found = kernel(
+        np.array([[expected]]),
+        0,
+        0,
+        np.array([[math.log(50.0)]]),
+        np.array([[OVER]], np.uint8),
+        NOISE,
+    )
+    assert found == pytest.approx(math.log1p(chance / (HIGH * 1e-3)), rel=1e-4)
+
+
 def test_twins_agree_on_windows_of_an_image():
     rng = np.random.default_rng(3)
     for _ in range(20):
         logs = rng.normal(3.0, 1.5, (9, 8))
-        states = rng.integers(0, 3, (9, 8)).astype(np.uint8)
+        states = rng.integers(0, 5, (9, 8)).astype(np.uint8)
         expected = np.exp(rng.normal(3.0, 2.0, (4, 5))) * (rng.random((4, 5)) < 0.7)
         noise = np.array([rng.uniform(0.05, 1), rng.uniform(0.01, 0.5), 1e-3, 1.6, 0.0])
         args = (expected, 3, 2, logs, states, noise)

@@ -10,7 +10,7 @@ from helpers_modes import plainly
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import packed
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.information import Information, information
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.noise import Noise
@@ -34,7 +34,9 @@ def test_twins_agree(shape):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
-@pytest.mark.parametrize("estimated", [(), ("sigma", "voids"), ("foam",), ("fall", "lean")])
+@pytest.mark.parametrize(
+    "estimated", [(), ("sigma", "voids"), ("foam",), ("fall", "lean"), ("contrast", "sigma")]
+)
 def test_slopes_are_those_of_the_likelihood(shape, estimated):
     noise = Noise(0.48, 0.16, 1e-9, 5.0, 0.6 if "foam" in estimated else 0.0, estimated)
     problem, p = problem_and_point(shape, 60.0, np.random.default_rng(2), noise)
@@ -42,6 +44,12 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
     share = covered.reference(problem.kind, problem.corners, p, problem.grid, (0, 0, 16, 16))
     if "foam" not in estimated:
         problem.states[share < (0.3 if "fall" in estimated else 0.15)] = UNKNOWN
+    if "contrast" in estimated:
+        untouched, ceiling = problem.states == OFF, 4.5
+        problem.logs[untouched] = np.random.default_rng(3).normal(1.6, 0.3, int(untouched.sum()))
+        problem.states[untouched & (problem.states != UNKNOWN)] = UNDER
+        high = (problem.states == ON) & (problem.logs > ceiling)
+        problem.states[high], problem.logs[high] = OVER, ceiling
     p = np.append(p, noise.guess(1.3)[:, 0])
     n = len(p)
     slope, matrix = out = Information(np.empty(n), np.empty((n, n)))

@@ -105,6 +105,20 @@ def test_a_list_calibrates(tmp_path: Path) -> None:
     assert "fit of 8 loads" in run("--loads", tmp_path / "l.csv")
 
 
+def test_recordings_that_do_not_say_their_quantity_are_counts_of_the_pad_named(
+    tmp_path: Path,
+) -> None:
+    pad = counting_pad()
+    given = []
+    for grams in GRAMS:
+        counts = frame(pad, grams, quantity="counts").image.values
+        np.save(tmp_path / f"{grams:g}.npy", counts[None])
+        given.append(f"{tmp_path / f'{grams:g}.npy'}={grams}")
+    said = run(*given, "--pad", "thesis", "-o", tmp_path / "c.yaml")
+    assert "that do not say their quantity are taken for counts of pad thesis" in said
+    assert load_calibration(tmp_path / "c.yaml").reading == "volt"
+
+
 # -- what is refused -------------------------------------------------------------------------
 
 

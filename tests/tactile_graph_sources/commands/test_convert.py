@@ -76,3 +76,54 @@ def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:
     result = CliRunner().invoke(cli, args)
     assert result.exit_code == 2
     assert "a.txt: no recording" in result.output
+
+
+def test_frames_of_any_source_are_converted_with_their_truth(tmp_path: Path) -> None:
+    args = ("--source", "simulate", "--with", "scene=discs", "--frames", 3, "--seed", 4)
+    assert "3 frames" in run(tmp_path / "a.npz", *args)
+    run(tmp_path / "b.zarr", *args)
+    one, other = (
+        list(recording(path=tmp_path / name, report=Report())) for name in ("a.npz", "b.zarr")
+    )
+    assert len(one) == 3
+    for a, b in zip(one, other, strict=True):
+        assert a.truth == b.truth
+        assert a.truth
+        np.testing.assert_array_equal(a.image.values, b.image.values)
+
+
+def test_truth_of_a_file_is_attached(tmp_path: Path, made: list[Frame]) -> None:
+    truth = tmp_path / "truth.csv"
+    truth.write_text("frames,kind,x_cm,y_cm,radius_cm,name\n0-2,circle,1,2,0.5,cup\n3-5,none,,,,\n")
+    run(tmp_path / "a.npz", tmp_path / "b.npz", "--truth", truth)
+    read = list(recording(path=tmp_path / "b.npz", report=Report()))
+    assert [[o.name for o in f.truth or ()] for f in read] == [["cup"]] * 3 + [[]] * 3
+    assert [f.time_s for f in read] == [f.time_s for f in made]
+
+
+def test_several_recordings_and_any_setting_of_their_reader(
+    tmp_path: Path, made: list[Frame]
+) -> None:
+    run(tmp_path / "a.npz", tmp_path / "a.npz", tmp_path / "b.npz", "--with", "flip=rows")
+    read = list(recording(path=tmp_path / "b.npz", report=Report()))
+    assert len(read) == 12
+    np.testing.assert_array_equal(read[6].image.values, made[0].image.values[::-1])
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["b.npz"], "give recordings before TARGET, or --source"),
+        (["a.npz", "b.npz", "--source", "simulate"], "and not both"),
+        (["b.npz", "--source", "simulat"], "did you mean 'simulate'"),
+        (["b.npz", "--source", "threshold"], "this step is no source"),
+        (["b.npz", "--source", "simulate", "--with", "scen=discs"], "did you mean 'scene'"),
+    ],
+)
+def test_a_source_that_will_not_do_is_refused(
+    tmp_path: Path, made: list[Frame], args: list[str], message: str
+) -> None:
+    paths = [str(tmp_path / a) if a.endswith(".npz") else a for a in args]
+    result = CliRunner().invoke(cli, ["convert", *paths])
+    assert result.exit_code == 2
+    assert message in result.output

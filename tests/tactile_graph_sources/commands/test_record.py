@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -172,3 +173,36 @@ def test_frames_of_another_pad_are_not_appended(tmp_path: Path, pad: FakePad, se
     assert result.exit_code == 2
     told = "holds 3 x 2 cells of 1.3 x 1 cm from (0, 0) cm on, volt; this one is 8 x 8 cells of 1 x"
     assert told in result.output
+
+
+def test_frames_of_any_source_are_recorded_with_their_truth(tmp_path: Path) -> None:
+    args = ["record", str(tmp_path / "a.zarr"), "--source", "simulate", "--with", "scene=discs"]
+    result = CliRunner().invoke(cli, [*args, "--frames", "3"])
+    assert result.exit_code == 0, result.output
+    assert result.output == f"{tmp_path / 'a.zarr'}: 3 frames\n"
+    frames = list(read_store(tmp_path / "a.zarr"))
+    assert len(frames) == 3
+    assert all(f.truth for f in frames)
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        ([], "Missing option '--port' (or '--source')"),
+        (["--port", "/dev/no"], "Missing option '--preset'"),
+        (["--port", "/dev/no", "--source", "simulate"], "and not both"),
+    ],
+)
+def test_a_pad_or_another_source_is_named(args: list[str], message: str, tmp_path: Path) -> None:
+    result = CliRunner().invoke(cli, ["record", str(tmp_path / "a.zarr"), *args])
+    assert result.exit_code == 2
+    assert message in result.output
+
+
+def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> None:
+    began = time.monotonic()
+    result = run(pad, tmp_path / "a.zarr", "--seconds", "0.5")
+    assert time.monotonic() - began < 5.0
+    assert result.exit_code == 0
+    assert "no frame came, and nothing was written" in result.output
+    assert not (tmp_path / "a.zarr").exists()

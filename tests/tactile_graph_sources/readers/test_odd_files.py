@@ -10,7 +10,7 @@ import pytest
 
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
-from tactile_graph_sources.readers.dialect import Dialect
+from tactile_graph_sources.readers.tables.dialect import Dialect
 from tactile_graph_sources.recording import recording
 
 
@@ -23,7 +23,7 @@ def refused(path: Path) -> str:
 def test_a_quoted_number_with_a_comma_is_no_number_and_never_two(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text('"1,000","2,000","3,000","4,000"\n')
-    assert "holds no whole frame (line 1: '1,000' is no number)" in refused(path)
+    assert "line 1, column 1: '1,000' is no number" in refused(path)
     path.write_text('"0.5","1.5"\n2.5,3.5\n')
     assert [f.image.values.tolist() for f in recording(path=path, report=Report())] == [
         [[0.5, 1.5], [2.5, 3.5]]

@@ -195,11 +195,11 @@ def test_a_damaged_line_is_skipped_counted_and_named(line: str, what: str, tmp_p
     assert [f.gap for f in frames] == [False, False, True, False, False]
 
 
-def test_start_up_garbage_before_the_frames_is_reported_not_read(tmp_path: Path) -> None:
+def test_half_a_line_before_the_frames_is_reported_and_words_are_not(tmp_path: Path) -> None:
     path = write(tmp_path, "17,23\nready 1.0\n" + flat_text(VALUES))
     frames, report = frames_of(path)
     np.testing.assert_array_equal([f.image.values for f in frames], VALUES)
-    assert [place for place, _ in report.troubles] == [f"{path}:1", f"{path}:2"]
+    assert report.troubles == [(f"{path}:1", "2 values, not 64")]
 
 
 def test_a_matrix_of_the_wrong_height_is_skipped(tmp_path: Path) -> None:
@@ -249,9 +249,13 @@ def test_what_cannot_be_told_is_asked_for(
         frames_of(path, **settings)
 
 
-def test_a_square_number_of_values_is_a_square_frame(tmp_path: Path) -> None:
-    frames, _ = frames_of(write(tmp_path, flat_text(blobs(30, 5, 20))))
+def test_a_square_number_of_values_is_a_square_frame_unless_the_cells_lie_otherwise(
+    tmp_path: Path,
+) -> None:
+    frames, _ = frames_of(write(tmp_path, flat_text(blobs(30, 10, 10))))
     assert frames[0].image.shape == (10, 10)
+    with pytest.raises(DataError, match=r"of 5 x 20 cells, as they lie\); give the settings rows"):
+        frames_of(write(tmp_path, flat_text(blobs(30, 5, 20))))
 
 
 def test_a_lying_shape_is_refused(tmp_path: Path) -> None:

@@ -116,7 +116,10 @@ def test_pliance_force_and_centre_of_pressure_are_the_vendors(real: bool, tmp_pa
     frames, report = frames_of(path)
     said = pliance_says(path)
     assert len(frames) == (281 if real else 6)
-    assert report.counts == {"summary rows left out": 2}
+    assert report.counts == {
+        "recordings read as novel pliance .asc": 1,
+        "summary rows left out": 2,
+    }
     for frame in frames:
         image = frame.image
         assert (image.shape, image.quantity) == ((29, 28), "kilopascal")
@@ -221,3 +224,20 @@ def test_capcontact_image_peaks_where_the_truth_lies(real: bool, tmp_path: Path)
                 offsets.append((x - thing.shape.x_cm, y - thing.shape.y_cm))
     assert len(offsets) > (80 if real else 20)
     assert np.abs(np.median(offsets, axis=0)).max() < 0.1
+
+
+def test_the_pitch_of_research_sets_is_assumed_and_said(tmp_path: Path) -> None:
+    cap = np.zeros((41, 72), dtype=np.int16)
+    path = write(tmp_path, npz_bytes(cap=cap, ftir=np.full((328, 576), 255.0)))
+    (frame,), report = frames_of(path)
+    assert frame.image.pitch_cm == (0.479, 0.476)
+    said = "recordings with the pitch assumed to be that of the CapContact panel, 0.479 x 0.476 cm"
+    assert report.counts[said] == 1
+    assert said not in frames_of(path, pitch_cm=0.5)[1].counts
+    other = write(tmp_path, npz_bytes(cap=cap[:20], ftir=np.full((160, 576), 255.0)))
+    (frame,), report = frames_of(other)
+    assert frame.image.pitch_cm == (1.0, 1.0)
+    assert report.counts["recordings whose pitch is assumed to be 1 cm"] == 1
+    values = np.random.default_rng(0).integers(0, 90, (3, 27, 15))
+    _, report = frames_of(write(tmp_path, capfingerid_text(values)))
+    assert any("the CapFingerId phone, 0.41 x 0.41 cm" in what for what in report.counts)

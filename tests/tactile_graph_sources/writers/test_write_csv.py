@@ -53,7 +53,7 @@ def test_settings_go_before_the_comment_unless_they_contradict_it(tmp_path: Path
     assert next(recording(path=path, pitch_cm=1.3, report=Report())).image.pitch_cm == (1.3, 1.3)
     with pytest.raises(DataError, match="its values are volt, the settings say gram"):
         next(recording(path=path, quantity="gram", report=Report()))
-    with pytest.raises(DataError, match="3 rows and 5 columns, the settings say rows=5"):
+    with pytest.raises(DataError, match="say 3 x 5 cells, the settings 5 x 3"):
         next(recording(path=path, rows=5, columns=3, report=Report()))
 
 

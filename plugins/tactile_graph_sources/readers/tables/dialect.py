@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import datetime
 import math
 import re
 from collections.abc import Sequence
@@ -12,24 +13,79 @@ MISSING = frozenset({"", "b", "nan", "na", "n/a", "null"})
 _NUMERIC = re.compile(r"[-+.\d,;\s\"eEnaNIifB]+")
 _DIGIT = re.compile(r"\d")
 _QUOTED_COMMA = re.compile(r'(?:^|,)\s*"[^",]*,[^"]*"\s*(?:,|$)')
+_WORDY = re.compile(r"[naNIifB]\d|(?<![\d.])[eE][-+]?\d")
+_BRACKETS = str.maketrans("", "", "[](){}")
+_WORD = re.compile(r"[^\s,;|]+")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_ARROW = "->"
+_CLOCK = re.compile(
+    r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
+    r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?"
+)
+_DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 
 
 def is_numeric(line: str) -> bool:
     """Return whether a line could be a row of numbers."""
-    return _NUMERIC.fullmatch(line) is not None and _DIGIT.search(line) is not None
+    return (
+        _NUMERIC.fullmatch(line) is not None
+        and _DIGIT.search(line) is not None
+        and (line.lower() == line.upper() or _WORDY.search(line) is None)
+    )
+
+
+def is_row(line: str) -> bool:
+    """Return whether a line is a row of numbers, be a date, label or bracket among them or not."""
+    if is_numeric(line):
+        return True
+    words = _WORD.findall(line.translate(_BRACKETS).replace('"', ""))
+    n = sum(1 for w in words if _NUMBER.fullmatch(w))
+    return n >= 3 and 5 * n >= 3 * len(words)
+
+
+def clock_s(text: str) -> float | None:
+    """Return a date and time of day, or a time of day alone, in seconds; None where it is none.
+
+    Only differences mean anything.
+    """
+    found = _CLOCK.fullmatch(text.strip().strip('"'))
+    if found is None:
+        return None
+    year, month, day, day2, month2, year2, hour, minute, second, part = found.groups()
+    days = 0
+    if year or year2:
+        try:
+            date = datetime.date(int(year or year2), int(month or month2), int(day or day2))
+        except ValueError:
+            return None
+        days = date.toordinal() - _DAY_0
+    whole = days * 86400 + int(hour) * 3600 + int(minute) * 60 + int(second)
+    return whole + (float(f"0.{part}") if part else 0.0)
 
 
 class Dialect(NamedTuple):
-    """Separator (None: any white space) and whether a comma marks the decimals."""
+    """How a line is taken apart.
+
+    ``separator`` None is any white space. ``brackets`` are left out. ``arrow`` parts the time
+    that a serial monitor puts before each line from the line itself.
+    """
 
     separator: str | None = ","
     decimal_comma: bool = False
+    brackets: bool = False
+    arrow: bool = False
 
     @classmethod
     def of(cls, lines: Sequence[str]) -> Dialect:
         """Return the dialect of some numeric lines."""
-        for separator in (";", "\t"):
+        half = len(lines) / 2
+        arrow = sum(_ARROW in line for line in lines) > half
+        brackets = sum("[" in line or "(" in line for line in lines) > half
+        if arrow or brackets:
+            plain = [line.rpartition(_ARROW)[2].translate(_BRACKETS) for line in lines]
+            return cls.of(plain)._replace(brackets=brackets, arrow=arrow)
+        for separator in (";", "\t", "|"):
             if 2 * sum(separator in line for line in lines) > len(lines):
                 rest = "".join(lines)
                 return cls(separator, "," in rest)
@@ -41,6 +97,11 @@ class Dialect(NamedTuple):
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
+        if self.arrow and _ARROW in line:
+            stamp, _, rest = line.partition(_ARROW)
+            return [stamp.strip(), *self._replace(arrow=False).fields(rest)]
+        if self.brackets:
+            line = line.translate(_BRACKETS)
         if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
             # Of thousands, or decimal? Kept together it is told as no number, never as two.
             return next(csv.reader([line]))
@@ -59,6 +120,16 @@ class Dialect(NamedTuple):
             If there are fewer or more of them, or one is no number.
         """
         refuse_underscore(line)
+        return floats(self.texts(line, width))
+
+    def texts(self, line: str, width: int) -> list[str]:
+        """Return the ``width`` texts of a line.
+
+        Raises
+        ------
+        ValueError
+            If there are fewer or more of them.
+        """
         fields = self.fields(line)
         if len(fields) != width:
             extra = fields[width:]
@@ -66,7 +137,7 @@ class Dialect(NamedTuple):
                 n = sum(1 for f in fields if f.strip()) if extra else len(fields)
                 raise ValueError(f"{n} values, not {width}")
             del fields[width:]
-        return floats(fields)
+        return fields
 
 
 def refuse_underscore(line: str) -> None:

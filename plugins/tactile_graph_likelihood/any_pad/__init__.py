@@ -1,0 +1,1 @@
+"""Outlines on pads that nobody described: noise, threshold and unevenness from the frame itself."""

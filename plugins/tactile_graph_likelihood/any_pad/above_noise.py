@@ -1,0 +1,107 @@
+"""Step ``above_noise``: what is touched, by the noise in the frame itself."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from annotated_types import Gt
+from numpy.typing import NDArray
+
+from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.thresholds.thresholded import Thresholded
+from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.readings import LARGEST
+from tactile_graph_pads.pad import Pad, load_pad
+
+SHOWS = 4.0
+"""Standard deviations of noise above zero from which on a reading is one."""
+
+
+class Risen(NamedTuple):
+    """Readings above the frame's zero, 0 where no more than noise, and what is more, in its unit.
+
+    ``least`` is what a reading must exceed, of all elements or of each; ``shows`` where it does.
+    """
+
+    above: Values
+    least: float | Values
+    shows: NDArray[np.bool_]
+    zero: float
+
+
+def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
+    """Return what rises above the noise of an image.
+
+    Parameters
+    ----------
+    image : Image
+        In any quantity that rises with load.
+    pad : Pad
+        Whose noise is taken, where it was learned from recordings of this quantity.
+    deviations : float
+        Standard deviations of noise that count as none.
+
+    Raises
+    ------
+    ValueError
+        If a valid cell is not finite or beyond 1e100.
+    """
+    values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
+    if not np.abs(values).max(initial=0.0) <= LARGEST:
+        raise ValueError(f"readings must be finite and at most {LARGEST:g}")
+    readings = values.ravel() if image.valid is None else values[image.valid]
+    noise = frame_noise(readings) if readings.size else FrameNoise(0.0, 0.0, 0.0)
+    told = told_noise(pad, image.quantity, values.shape)
+    sigma = noise.sigma if told is None else told
+    least = np.maximum(deviations * sigma, 0.5 * noise.step)
+    above = values - noise.zero
+    shows = above > least
+    if image.valid is not None:
+        shows &= image.valid
+    return Risen(np.where(shows, above, 0.0), least, shows, noise.zero)
+
+
+class AboveNoise:
+    """Return the footprint of what rises above the noise in a frame.
+
+    Parameters
+    ----------
+    pad : str or mapping
+        Name of a pad, its YAML file, or the pad itself: what noise it has learned is taken.
+    deviations : float
+        Standard deviations of noise that count as none.
+
+    Notes
+    -----
+    The zero and the noise are those of the frame's own closest quarter of readings, which is taken
+    to be untouched. ``level`` is the largest that any element must reach, in the image's unit.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        pad: str | dict[str, Any] = "thesis",
+        deviations: Annotated[float, Gt(0)] = SHOWS,
+    ) -> None:
+        self._pad, self._deviations = load_pad(pad), deviations
+
+    def __call__(self, image: Image) -> Thresholded:
+        """Return the footprint and its level.
+
+        Parameters
+        ----------
+        image : Image
+            Readings that rise with load, in any quantity; invalid cells are not touched.
+
+        Raises
+        ------
+        ValueError
+            If a valid cell is not finite or beyond 1e100.
+        """
+        found = risen(image, self._pad, self._deviations)
+        mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
+        return Thresholded(mask, found.zero + float(np.max(found.least)))

@@ -1,0 +1,118 @@
+"""``locate``: one object of any of some shapes on any pad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from annotated_types import Len
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.steps import Spread
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
+from tactile_graph_likelihood.any_pad.locate import QUICK
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.single.fit_footprint import KINDS
+from tactile_graph_likelihood.single.likely import Likely, likely
+from tactile_graph_likelihood.single.model import Likeliest
+from tactile_graph_likelihood.single.readings import Readings
+
+Name = Literal["disc", "ellipse", "rectangle"]
+
+
+class Located(NamedTuple):
+    """The likeliest shape, its probability among those asked for, and theirs."""
+
+    shape: Likely
+    name: str
+    probability: float
+    disc: float
+    ellipse: float
+    rectangle: float
+
+
+class Locate:
+    """Return the likeliest shape on a pad that need not be as it is told, and its place.
+
+    Parameters
+    ----------
+    shapes : list
+        The shapes to choose from, equally likely beforehand.
+    settings : FootprintSettings
+
+    Notes
+    -----
+    By Bayes' rule over the shapes' evidence, over all pressures that were looked at, worth as many
+    times less as neighbouring elements hang together. See `locate_disc` for what is estimated.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
+        settings: Annotated[
+            FootprintSettings,
+            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
+        ] = QUICK,
+    ) -> None:
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
+        self._every: dict[str, AnyPad] = {
+            name: AnyPad(settings.model(KINDS[name])) for name in dict.fromkeys(shapes)
+        }
+
+    def __call__(self, image: Image) -> Located:
+        """Return the choice.
+
+        Parameters
+        ----------
+        image : Image
+            Readings that rise with load, in any quantity; invalid cells say nothing.
+
+        Raises
+        ------
+        ValueError
+            If the image's cells are not nearly square.
+        Degenerate
+            If nothing rises above the noise, or none of the shapes explains what does.
+        """
+        return self.chosen(observed(image, self._pad, self._gap_cm))
+
+    def chosen(self, readings: Readings) -> Located:
+        """Return the choice by some readings; errors as of a call."""
+        tops: dict[str, dict[str, Likeliest]] = {}
+        reason = Degenerate("none of the shapes explains what is touched")
+        for name, any_pad in self._every.items():
+            try:
+                tops[name] = any_pad.tops(readings)
+            except Degenerate as why:
+                reason = why
+        if not tops:
+            raise reason
+        chance = probabilities(tops, readings)
+        best = max(chance, key=chance.__getitem__)
+        shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
+        shape = likely(self._every[best].around(readings, tops[best]))
+        return Located(
+            shape, best, chance[best], shares["disc"], shares["ellipse"], shares["rectangle"]
+        )
+
+
+def probabilities(
+    tops: Mapping[str, Mapping[str, Likeliest]], readings: Readings
+) -> dict[str, float]:
+    """Return the probability of each shape by its fits, given that it is one of them."""
+    shared = shared_by((t for its in tops.values() for t in its.values()), readings.touched)
+    logs = {
+        name: float(np.logaddexp.reduce(list(log_chances(its, shared).values())))
+        for name, its in tops.items()
+    }
+    best = max(logs.values())
+    weights = {name: math.exp(log - best) for name, log in logs.items()}
+    total = sum(weights.values())
+    return {name: weight / total for name, weight in weights.items()}

@@ -1,0 +1,88 @@
+"""What a frame's own readings say of the noise in them, from the part that nothing touches."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_pads.pad import Pad
+
+UNTOUCHED = 0.25
+"""Share of a frame that is taken to be untouched at least: its closest readings are the zero."""
+
+WIDTH = 0.637
+"""Of that stretch, in standard deviations of normal noise, were all of the frame untouched: where
+much is touched the noise comes out up to twice too large, never too small."""
+
+MOST = 4096
+"""Readings that are looked at, at the least, of a pad that has as many."""
+
+FEWEST = 4
+"""Readings below zero, for there to be any noise."""
+
+
+class FrameNoise(NamedTuple):
+    """Zero and noise of a frame's readings, in the readings' unit.
+
+    Parameters
+    ----------
+    zero : float
+        What untouched elements read.
+    sigma : float or ndarray, shape (rows, columns)
+        Standard deviation of a reading around it.
+    step : float
+        Least difference of two readings: a converter's step, next to nothing without one.
+    """
+
+    zero: float
+    sigma: float | Values
+    step: float
+
+
+def told_noise(pad: Pad, quantity: str, shape: tuple[int, ...]) -> Values | None:
+    """Return each element's noise as recordings have taught it, if the pad was learned from such.
+
+    Parameters
+    ----------
+    pad : Pad
+        Its section ``learned`` is asked, if it has one.
+    quantity : str
+        Of the image; noise that was learned in another unit says nothing.
+    shape : (int, int)
+        Of the image.
+    """
+    learned = pad.learned
+    if learned is None or learned.reading != quantity or (learned.rows, learned.columns) != shape:
+        return None
+    return np.asarray(np.hypot(learned.table.noise, learned.drift))
+
+
+def frame_noise(readings: Values) -> FrameNoise:
+    """Return zero and noise of the readings of a frame.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (N,)
+        Of all elements that work, raw.
+
+    Notes
+    -----
+    The zero is the middle of the shortest stretch that holds a quarter of the readings; the noise
+    is what lies below it, and the stretch's own width.
+    """
+    values = np.sort(readings[:: max(len(readings) // MOST, 1)])
+    n = len(values)
+    steps = np.diff(values)
+    steps = steps[steps > 0.0]
+    step = float(steps.min()) if len(steps) else 0.0
+    many = max(int(UNTOUCHED * n), 1)
+    widths = values[many - 1 :] - values[: n - many + 1]
+    at = int(widths.argmin())
+    zero = 0.5 * float(values[at] + values[at + many - 1])
+    below = zero - values[: int(np.searchsorted(values, zero))]
+    if len(below) < FEWEST:
+        return FrameNoise(zero, 0.0, step)
+    return FrameNoise(zero, max(math.sqrt(below @ below / len(below)), widths[at] / WIDTH), step)

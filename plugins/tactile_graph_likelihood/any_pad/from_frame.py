@@ -1,0 +1,129 @@
+"""What the fit of an outline says of the pad: its unevenness, its strays, what hangs together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.covered import covered, window
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
+from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
+from tactile_graph_likelihood.single.readings import Readings
+
+LAW = 0.35
+"""Of ln sigma that is not as told, the share that is the law's exponent, not the gains'."""
+
+FITTED = 3.0
+"""Numbers of an outline, by which fewer residuals than readings are free."""
+
+NORMAL = 1.4826
+"""Standard deviation over the median distance from the median."""
+
+FEWEST = 6
+"""Readings, for sigma to be taken from them."""
+
+TOLD_STRAYS = 50.0
+"""Bare elements that what is told of strays is worth."""
+
+MOST_STRAYS = 0.3
+
+PAIRS = 1.6
+"""Pairs of neighbours for each touched element."""
+
+CHANCE = 1.0
+"""Standard deviations of neighbours' likeness that are put down to chance."""
+
+LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
+"""Correlation of neighbours below which it is none, and to which it is held."""
+
+
+def learned(told: Noise, scatter: Values, touched: int, strays: float) -> Noise:
+    """Return the noise that a fit has found.
+
+    Parameters
+    ----------
+    told : Noise
+    scatter : ndarray, shape (2,)
+        Ln sigma and the voids' log odds.
+    touched : int
+        Readings that show.
+    strays : float
+
+    Notes
+    -----
+    Readings that scatter more or less than told may do so since gains do, or since the law's
+    exponent is another: that share of it is the contrast's.
+    """
+    sigma = math.exp(scatter[0]) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
+    voids = 1.0 / (1.0 + math.exp(-scatter[1]))
+    contrast = 1.0 + LAW * math.log(sigma / told.sigma)
+    return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+
+
+def scatter_of_covered(model: Model, readings: Readings, p: Values) -> Values:
+    """Return ln sigma and the voids' log odds of the elements that an outline covers whole."""
+    rows, columns = readings.states.shape
+    box = window.call(model.kind, model.corners, p, readings.grid, rows, columns, 0.0)
+    whole = covered.call(model.kind, model.corners, p, readings.grid, box) >= 1.0
+    part = slice(box[0], box[0] + box[2]), slice(box[1], box[1] + box[3])
+    states, logs = readings.states[part][whole], readings.logs[part][whole]
+    shown, known = logs[states == ON], int(np.count_nonzero(states != UNKNOWN))
+    sigma = model.noise.sigma
+    if len(shown) >= FEWEST:
+        sigma = max(NORMAL * float(np.median(np.abs(shown - np.median(shown)))), LEAST_SIGMA)
+    voids = (known - len(shown) + model.noise.voids) / (known + 1.0)
+    return np.array([math.log(sigma), math.log(voids / (1.0 - voids))])
+
+
+def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
+    """Return the share of strays, by what reads beyond the box around an outline."""
+    x, y = p[:2].tolist()
+    left, top, pitch, side, *_ = readings.grid.tolist()
+    wide, high = _half_extents(model.kind, p)
+    inside = readings.states[
+        _lines(y - top, high, pitch, side), _lines(x - left, wide, pitch, side)
+    ]
+    beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
+    bare = readings.states.size - inside.size
+    found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
+    return min(found, MOST_STRAYS)
+
+
+def _half_extents(kind: int, p: Values) -> tuple[float, float]:
+    """Return half the width and height of an outline: no kernel, which would take a second more."""
+    if kind == DISC:
+        return float(p[2]), float(p[2])
+    cos, sin = abs(math.cos(p[4])), abs(math.sin(p[4]))
+    if kind == RECTANGLE:
+        return p[2] * cos + p[3] * sin, p[2] * sin + p[3] * cos
+    return math.hypot(p[2] * cos, p[3] * sin), math.hypot(p[2] * sin, p[3] * cos)
+
+
+def _lines(middle: float, half: float, pitch: float, side: float) -> slice:
+    """Return the rows or columns of elements that a stretch touches."""
+    first = math.ceil((middle - half - side) / pitch)
+    return slice(max(first, 0), max(math.floor((middle + half) / pitch) + 1, 0))
+
+
+def variance_inflation(neighbours: float, touched: int) -> float:
+    """Return by how much what hangs together widens an outline's variance, at least 1.
+
+    Parameters
+    ----------
+    neighbours : float
+        How alike neighbours' residuals are, as in `GoodnessOfFit`.
+    touched : int
+
+    Notes
+    -----
+    Where neighbours correlate by rho, and further elements as under a Gaussian, elements along a
+    rim are worth ``sqrt(pi / -ln rho)`` times fewer.
+    """
+    alike = (neighbours - CHANCE) / math.sqrt(PAIRS * max(touched, 1))
+    if alike <= LEAST_ALIKE:
+        return 1.0
+    return max(1.0, math.sqrt(math.pi / -math.log(min(alike, MOST_ALIKE))))

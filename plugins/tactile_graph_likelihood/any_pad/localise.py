@@ -1,0 +1,253 @@
+"""``AnyPad``: the posterior of an outline on a pad that need not be the one that is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.from_frame import (
+    learned,
+    scatter_of_covered,
+    strays_beyond,
+    variance_inflation,
+)
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
+from tactile_graph_likelihood.single.any_pressure import (
+    EVEN,
+    FIRST,
+    WIDER,
+    chances,
+    log_of,
+    mixed,
+)
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.maximise import Mode
+from tactile_graph_likelihood.single.model import Likeliest, Model, Start
+from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.readings import Readings
+
+LEANS, FALLS, ALIKE = 1.0, 0.4, 2.5
+"""Patterns that an even face leaves over, in standard deviations, from which on another pressure is
+worth its time."""
+
+NEGLIGIBLE = 0.03
+"""Probability over the likeliest pressure's below which one is left out."""
+
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
+"""Share that is added to the variance where a pressure of one or two numbers explains the load: no
+face presses quite like that, and foam shares gains that the fit takes for the outline's."""
+
+PATTERN = 3.0
+"""Pattern left over from which on an outline on a large pad, where no pressure is looked at, is not
+taken to press evenly."""
+
+MANY = 8.0
+"""Times what is told of strays from which on an outline is searched for anew, knowing of them."""
+
+FEW, LOOSE = 20, 0.3
+"""Touched elements of an outline so small that a void looks like its rim, and the deviation in
+pitches that is added to where its posterior is first looked for."""
+
+PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
+"""What each pressure estimates beside an even face's numbers, where its fit begins."""
+
+
+@dataclass(frozen=True)
+class AnyPad:
+    """Fits of an outline that take law, gains, voids, strays and pressure from the frame itself.
+
+    Parameters
+    ----------
+    told : Model
+        An outline on the pad as told: the middle of every guess.
+
+    Notes
+    -----
+    The outline is fitted with sigma and voids; also under each pressure that an even face leaves a
+    pattern of. On a pad of more than 1024 elements sigma and voids are those of what it covers
+    whole, and a pattern only widens the posterior. The likeliest of these fits is sampled with the
+    noise that it has found, an even face with the law's exponent; the others stand for themselves
+    as normal distributions, by their evidence over what neighbouring elements share.
+    """
+
+    told: Model
+
+    @cached_property
+    def _fits(self) -> dict[str, Model]:
+        """By pressure, the models that estimate sigma and voids with the outline."""
+        return {
+            name: self._search(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
+            for name in PRESSURES
+        }
+
+    @cached_property
+    def _count(self) -> int:
+        return unknowns.call(self.told.kind, self.told.corners) + 1
+
+    def _with(self, noise: Noise, *estimated: str) -> Model:
+        return replace(self.told, noise=replace(noise, estimated=estimated))
+
+    def _search(self, noise: Noise, *estimated: str) -> Model:
+        """Return a model that goes over the pad's edge, unless it must not, as if there were none.
+
+        Where the edge makes a step in the prior, a search would be caught before it.
+        """
+        whole = 1.0 if self.told.whole >= 1.0 else 0.0
+        return replace(self._with(noise, *estimated), whole=whole)
+
+    def posterior(self, readings: Readings, start: Start = None) -> Posterior:
+        """Return the posterior of the outline.
+
+        Parameters
+        ----------
+        readings : Readings
+            As `observed` gives them.
+        start : Shape or ndarray, optional
+            Where to begin: an outline of this kind.
+
+        Raises
+        ------
+        ValueError
+            If ``start`` is of another kind.
+        Degenerate
+            If no outline of this kind is possible.
+        """
+        return self.around(readings, self.tops(readings, start))
+
+    def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, the even face's first."""
+        large = readings.states.size > LARGE_PAD
+        model = self._search(self.told.noise) if large else self._fits[EVEN]
+        its, even = self, model.likeliest(readings, start=start)
+        if even.unsure:
+            even = model.likeliest(readings, before=even)
+        if even.mode.height == -math.inf:
+            raise Degenerate(
+                f"{readings.touched} touched elements: no such outline on the pad explains them"
+            )
+        point = self.told.point_of(even)
+        strays = strays_beyond(self.told, readings, point)
+        if strays > MANY * self.told.noise.strays and not large:
+            its = AnyPad(replace(self.told, noise=replace(self.told.noise, strays=strays)))
+            even = its._fits[EVEN].likeliest_near(readings, point)
+            even = its._fits[EVEN].likeliest(readings, before=even)
+        found = {EVEN: even}
+        for part in [] if large else asked_by(even.fit):
+            top = its._pressed(part, readings, even)
+            if top.mode.height > -math.inf:
+                found[part] = top
+        return found
+
+    def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
+        n, p = self._count, self.told.point_of(even)
+        begin = np.concatenate([p[:n], PRESSURES[part], p[n:]])
+        if part == "fall":
+            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
+        return self._fits[part].likeliest_near(readings, begin)
+
+    def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
+        """Return the posterior around the most likely outlines, over all pressures."""
+        logs = log_chances(tops, shared_by(tops.values(), readings.touched))
+        best = max(logs, key=logs.__getitem__)
+        shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
+        found = {best: self._looked_at(best, readings, tops[best])}
+        for part, share in shares.items():
+            if part != best and share > NEGLIGIBLE:
+                found[part] = self._normal(part, tops[part])
+        its = found[best]
+        if len(found) > 1:
+            weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
+            its = mixed(weighed, dict.fromkeys(weighed, 1.0))
+        elif best != EVEN:
+            its = replace(its, pressures={best: 1.0})
+        inflation = variance_inflation(its.neighbours, readings.touched)
+        total = sum(shares.values())
+        inflation *= 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
+        pitch = float(readings.grid[2])
+        evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        its = on_any_pad(its, evidence, inflation, self.told.noise.sigma * pitch**1.5)
+        if readings.states.size > LARGE_PAD and its.alike > PATTERN:
+            its = unexplained(its, pitch)
+        if readings.stretch == 1.0:
+            return its
+        return stretched(its, float(readings.grid[1]), readings.stretch)
+
+    def _normal(self, part: str, top: Likeliest) -> Posterior:
+        return self.told.normal_around(top, self._count + len(PRESSURES[part]))
+
+    def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
+        """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
+
+        That has nine unknowns and more, for which few points are worse than none. Nor is a sample
+        taken whose points are worth fewer than there are unknowns, as where strays explain all
+        there is: it would promise far too much.
+        """
+        if part == EVEN or self.told.kind == DISC:
+            try:
+                found = self._sampled(part, readings, top)
+            except Degenerate:
+                return self._normal(part, top)
+            if found.equal_points > self._count:
+                return found
+        return self._normal(part, top)
+
+    def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
+        """Return the posterior under a pressure, with the noise that its fit has found."""
+        point = self.told.point_of(top)
+        large = readings.states.size > LARGE_PAD
+        scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
+        strays = strays_beyond(self.told, readings, point)
+        noise = learned(self.told.noise, scatter, readings.touched, strays)
+        if part == EVEN and not large:
+            model = self._with(noise, "contrast")
+            begin = np.append(point[: self._count], noise.contrast)
+            mode = self._search(noise, "contrast").likeliest_near(readings, begin).mode
+        else:
+            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+            p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
+            mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
+        return model.posterior_around(readings, loosened(mode, readings))
+
+
+def asked_by(fit: GoodnessOfFit) -> list[str]:
+    """Return which pressures may explain what an even face leaves over."""
+    fall, alike = fit.fall >= FALLS, fit.neighbours >= ALIKE
+    asked = {"lean": fit.lean >= LEANS, "fall": fall, "foam": fall or alike}
+    return [part for part in FIRST if asked[part]]
+
+
+def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
+    """Return by how much elements count for less, since neighbours hang together in any fit."""
+    return min(variance_inflation(top.fit.neighbours, touched) for top in tops)
+
+
+def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float]:
+    """Return the log probability of each pressure with its fit, up to a constant.
+
+    Evidence takes elements for independent; it is worth as many times less as they are ``shared``.
+    """
+    before = {EVEN: 1.0}
+    if len(tops) > 1:
+        before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
+    return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
+
+
+def loosened(mode: Mode, readings: Readings) -> Mode:
+    """Return a mode whose outline is less certain where few elements are touched."""
+    few = 1.0 - readings.touched / FEW
+    if few <= 0.0:
+        return mode
+    spread = np.linalg.inv(mode.root)
+    covariance = spread.T @ spread
+    for k in range(3):
+        covariance[k, k] += few * (LOOSE * readings.grid[2]) ** 2
+    root = np.asarray(np.linalg.cholesky(np.linalg.inv(covariance)), np.float64)
+    return mode._replace(root=root)

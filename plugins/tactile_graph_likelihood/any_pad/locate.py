@@ -1,0 +1,110 @@
+"""``locate_disc``, ``locate_rectangle``, ``locate_ellipse``: an outline on any pad."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from tactile_graph.steps import Spread
+from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
+from tactile_graph_likelihood.any_pad.localise import AnyPad
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
+from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.single.likely import (
+    LikelyCircle,
+    LikelyEllipse,
+    LikelyRectangle,
+    likely,
+)
+from tactile_graph_likelihood.single.posterior import Posterior
+
+QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
+"""Points enough for a mean whose own error does not matter beside the posterior's deviation."""
+
+
+class Located:
+    """What the three have in common.
+
+    Parameters
+    ----------
+    settings : FootprintSettings
+    """
+
+    stateless = True
+    _kind = DISC
+
+    def __init__(
+        self,
+        settings: Annotated[
+            FootprintSettings,
+            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
+        ] = QUICK,
+    ) -> None:
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
+        self._any_pad = AnyPad(settings.model(self._kind))
+
+    def posterior(
+        self, image: Image, start: Circle | Ellipse | Rectangle | None = None
+    ) -> Posterior:
+        """Return the outline's posterior; parameters and errors as of a call."""
+        readings = observed(image, self._pad, self._gap_cm)
+        return self._any_pad.posterior(readings, start)
+
+
+class LocateDisc(Located):
+    """Return the posterior mean of a disc on a pad that need not be as it is told.
+
+    Notes
+    -----
+    What counts as touched follows from the noise in the frame itself; law, gains, voids, strays and
+    pressure are estimated with the outline, what the pad says being the middle of the guess. Any
+    quantity that rises with load will do. ``fits`` is False where the readings leave the centre
+    2.5 times as uncertain as those of a pad as told would, or are less likely than the model's own.
+    """
+
+    _kind = DISC
+
+    def __call__(self, image: Image, start: Circle | None = None) -> LikelyCircle:
+        """Return the disc.
+
+        Parameters
+        ----------
+        image : Image
+            Readings that rise with load, in any quantity; invalid cells say nothing.
+        start : Circle, optional
+            Where to begin; the touched elements' moments otherwise.
+
+        Raises
+        ------
+        ValueError
+            If the image's cells are not nearly square.
+        Degenerate
+            If nothing rises above the noise, or no disc on the pad explains what does.
+        """
+        found = likely(self.posterior(image, start))
+        assert isinstance(found, LikelyCircle)
+        return found
+
+
+class LocateRectangle(Located):
+    """Return the posterior mean of a rectangle on any pad; settings as of `locate_disc`."""
+
+    _kind = RECTANGLE
+
+    def __call__(self, image: Image, start: Rectangle | None = None) -> LikelyRectangle:
+        """Return the rectangle; parameters and errors as for a disc."""
+        found = likely(self.posterior(image, start))
+        assert isinstance(found, LikelyRectangle)
+        return found
+
+
+class LocateEllipse(Located):
+    """Return the posterior mean of an ellipse on any pad; settings as of `locate_disc`."""
+
+    _kind = ELLIPSE
+
+    def __call__(self, image: Image, start: Ellipse | None = None) -> LikelyEllipse:
+        """Return the ellipse; parameters and errors as for a disc."""
+        found = likely(self.posterior(image, start))
+        assert isinstance(found, LikelyEllipse)
+        return found

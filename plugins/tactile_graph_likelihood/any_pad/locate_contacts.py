@@ -1,0 +1,106 @@
+"""``locate_contacts``: one object for each contact, on any pad."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from annotated_types import Len
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.steps import Spread
+from tactile_graph.wires import Image
+from tactile_graph_filters.contacts.contacts import Contact
+from tactile_graph_likelihood.any_pad.choose import Locate, Name
+from tactile_graph_likelihood.any_pad.locate import QUICK
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.likely import Likely
+from tactile_graph_likelihood.single.readings import Readings
+
+
+class LocatedContacts(NamedTuple):
+    """The outlines of contacts, those of most cells first, and how many there are."""
+
+    shapes: tuple[Likely, ...]
+    names: tuple[str, ...]
+    count: int  # type: ignore[assignment]  # hides tuple.count, which nobody asks a record for
+
+
+class LocateContacts:
+    """Return an outline for each contact of a footprint, on a pad that need not be as it is told.
+
+    Parameters
+    ----------
+    shapes : list
+        The shapes to choose from for each, equally likely beforehand.
+    settings : FootprintSettings
+
+    Notes
+    -----
+    Cells of other contacts say nothing of a contact; what shows beyond all of them may be a stray.
+    A contact that no shape explains is left out. See `locate_disc` for what is estimated.
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
+        settings: Annotated[
+            FootprintSettings,
+            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
+        ] = QUICK,
+    ) -> None:
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
+        self._locate = Locate(shapes=shapes, settings=settings)
+
+    def __call__(self, image: Image, contacts: Sequence[Contact]) -> LocatedContacts:
+        """Return the outlines.
+
+        Parameters
+        ----------
+        image : Image
+            All readings, that rise with load, in any quantity.
+        contacts : sequence of Contact
+            On the same grid.
+
+        Raises
+        ------
+        ValueError
+            If the image's cells are not nearly square.
+        Degenerate
+            If nothing rises above the noise.
+        """
+        readings = observed(image, self._pad, self._gap_cm)
+        owner = np.zeros(readings.states.shape, np.int64)
+        for k, contact in enumerate(contacts, 1):
+            top, bottom, left, right = contact.box
+            owner[top:bottom, left:right][contact.mask.values] = k
+        found = []
+        for k in sorted(range(len(contacts)), key=lambda k: -contacts[k].n_cells):
+            try:
+                found.append(self._locate.chosen(alone(readings, owner, k + 1)))
+            except Degenerate:
+                continue
+        shapes, names = tuple(f.shape for f in found), tuple(f.name for f in found)
+        return LocatedContacts(shapes, names, len(found))
+
+
+def alone(readings: Readings, owner: np.ndarray, number: int) -> Readings:
+    """Return readings in which other contacts' cells say nothing.
+
+    Raises
+    ------
+    Degenerate
+        If none of the contact's own shows.
+    """
+    others = (owner > 0) & (owner != number)
+    states = np.where(others, UNKNOWN, readings.states).astype(np.uint8)
+    touched = int(np.count_nonzero((states == ON) | (states == OVER)))
+    if not touched:
+        raise Degenerate(f"contact {number}: no reading rises above the noise")
+    return readings._replace(states=states, touched=touched)

@@ -1,0 +1,111 @@
+"""``AnyPadPosterior``: a posterior whose flag is about how far off it may be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
+from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
+
+USUAL, ALONG = 0.36, 1.25
+"""Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that
+of an outline with two sizes is, whose ends are short."""
+
+VAGUE = 2.5
+"""Times the usual deviation from which on an answer counts as vague."""
+
+
+HIDDEN = 0.25
+"""Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
+
+EVENLY = 2.0
+"""Independent points that one of a disc's evenly spread points is worth; in five dimensions and
+more they are too far apart."""
+
+
+LEAST = 1e-6  # cm: a size that is none
+_FIELDS = [field.name for field in fields(Posterior)]
+
+
+@dataclass(frozen=True, eq=False)
+class AnyPadPosterior(Posterior):
+    """A posterior on a pad that need not be the one that is told.
+
+    Parameters
+    ----------
+    usual_std_cm : float
+        Deviation of the centre that readings as even as told would leave.
+    """
+
+    usual_std_cm: float = math.inf
+
+    @cached_property
+    def reach(self) -> float:
+        """Squared Mahalanobis distance within which 90 % of the posterior lies.
+
+        That of the weighted points, but no less than that of a normal distribution that is known
+        from as many.
+        """
+        n = unknowns.call(self.kind, self.corners)
+        return max(
+            self.reach_of_points(n),
+            normal_reach(n, (EVENLY if n == 3 else 1.0) * self.equal_points),
+        )
+
+    @property
+    def fits(self) -> bool:
+        """Whether the readings place the outline about as well as they should.
+
+        They do not where they are less likely than the model's own, whatever is estimated with the
+        outline; where strays on a bare pad explain them as well; or where the centre's deviation is
+        two and a half times the usual one.
+        """
+        if self.surprise <= UNLIKELY or self.log_evidence <= 0.0:
+            return False
+        return self.centre_std_cm < VAGUE * self.usual_std_cm
+
+
+def on_any_pad(
+    found: Posterior, log_evidence: float, inflation: float, unevenness: float
+) -> AnyPadPosterior:
+    """Return a posterior with another evidence, its variance inflated, its usual deviation told.
+
+    Parameters
+    ----------
+    found : Posterior
+    log_evidence : float
+    inflation : float
+        Of its variance, at least 1.
+    unevenness : float
+        Standard deviation of ln gain, as told, times the pitch in cm to the power 3/2.
+    """
+    size, usual = float(found.mean[2]), USUAL
+    if found.kind != DISC:
+        size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
+    values = {name: getattr(found, name) for name in _FIELDS}
+    values["log_evidence"] = log_evidence
+    if inflation > 1.0:
+        values["covariance"] = inflation * found.covariance
+        values["points"] = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
+
+
+def unexplained(found: AnyPadPosterior, pitch_cm: float) -> AnyPadPosterior:
+    """Return a posterior whose lengths may be off by what a pattern of the load hides."""
+    lengths = 2 + sizes.call(found.kind)
+    covariance = found.covariance.copy()
+    covariance[range(lengths), range(lengths)] += (HIDDEN * pitch_cm) ** 2
+    return replace(found, covariance=covariance)
+
+
+def stretched(found: AnyPadPosterior, top_cm: float, stretch: float) -> AnyPadPosterior:
+    """Return a posterior whose places lie so many times further below the top."""
+    mean, points, likeliest = found.mean.copy(), found.points.copy(), found.most_likely.copy()
+    covariance = found.covariance.copy()
+    for y in (mean[1:2], points[:, 1], likeliest[1:2]):
+        y += (stretch - 1.0) * (y - top_cm)
+    covariance[1] *= stretch
+    covariance[:, 1] *= stretch
+    return replace(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)

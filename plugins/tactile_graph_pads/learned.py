@@ -1,0 +1,197 @@
+"""``Learned``: what recordings have taught about a pad, as its YAML file and table say it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from annotated_types import Ge, Gt
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, one_of
+from tactile_graph.files import write_whole
+
+Array = NDArray[np.float64]
+Reading = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level"]
+Positive = Annotated[float, Gt(0)]
+GOOD = "good"
+STATES = (GOOD, "dead", "stuck", "noisy", "missing")
+"""Of an element: as it should be; silent under loads, or without any noise; loaded when nothing
+lies on it; scattering far more than the others; never read at all."""
+COLUMNS = ("row", "column", "offset", "noise", "gain", "state")
+
+
+class Elements(NamedTuple):
+    """What each element is like; every array has the shape (rows, columns).
+
+    ``offset`` and ``noise`` (one standard deviation of a reading) are in the unit of the readings,
+    ``gain`` has no unit and a median of 1, ``state`` holds one of `STATES`.
+    """
+
+    offset: Array
+    noise: Array
+    gain: Array
+    state: NDArray[np.str_]
+
+    @property
+    def good(self) -> NDArray[np.bool_]:
+        """Which elements can be believed, shape (rows, columns)."""
+        return np.asarray(self.state == GOOD)
+
+
+@dataclass(frozen=True)
+class TurnOn:
+    """The least reading that shows beside nothing at all.
+
+    Parameters
+    ----------
+    reading : float
+        Where the distribution of readings under objects begins, in the unit of ``of``.
+    of : str
+        Quantity of these readings: as recorded, or grams where a pad's circuit and law were told.
+    contrast : float
+        How much denser readings are just above than just below, in standard deviations.
+    """
+
+    reading: Positive
+    of: Reading
+    contrast: float = 0.0
+    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
+
+
+@dataclass(frozen=True)
+class Learned:
+    """What recordings have taught about a pad; the section ``learned`` of its file.
+
+    Parameters
+    ----------
+    reading : str
+        Quantity of the recordings; offset, noise and levels are in its unit.
+    rows, columns : int
+    pitch_cm, origin_cm : (float, float)
+        The grid as the recordings say it.
+    elements : str
+        The table of offset, noise, gain and state of each element: a CSV file beside the pad's.
+    noise : float
+        Standard deviation of a reading, median of the good elements.
+    touched_from : float
+        Reading above the offset from which an element counts as touched.
+    drift : float
+        How far the empty pad's readings moved from the first to the last frame, median of the
+        elements.
+    saturated_from : float, optional
+        Reading as recorded at which elements stop.
+    gain_of : str, optional
+        Quantity that the gains belong to: that of the recordings, or grams where a pad's circuit
+        and law were told. None where no gains stand out from chance.
+    turn_on : TurnOn, optional
+    curve : tuple of (float, float)
+        Rising law from a reading above the offset to grams on the element; empty for none.
+    place : str
+        The correction of place: a file beside the pad's; empty for none.
+    """
+
+    reading: Reading
+    rows: Annotated[int, Ge(1)]
+    columns: Annotated[int, Ge(1)]
+    pitch_cm: tuple[Positive, Positive]
+    origin_cm: tuple[float, float]
+    elements: str
+    noise: Annotated[float, Ge(0)]
+    touched_from: Positive
+    drift: float = 0.0
+    saturated_from: float | None = None
+    gain_of: Reading | None = None
+    turn_on: TurnOn | None = None
+    curve: tuple[tuple[float, float], ...] = ()
+    place: str = ""
+    __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
+
+    def beside(self, folder: Path) -> Learned:
+        """Return the same with its files named from a folder on."""
+        place = str(folder / self.place) if self.place else ""
+        return replace(self, elements=str(folder / self.elements), place=place)
+
+    @cached_property
+    def table(self) -> Elements:
+        """Every element, read from the file ``elements``.
+
+        Raises
+        ------
+        DataError
+            If the file is not there, or not a table of this pad.
+        """
+        return read_elements(Path(self.elements), (self.rows, self.columns))
+
+
+def write_elements(path: Path, elements: Elements) -> None:
+    """Write the table of elements as CSV, one a line, whole or not at all."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for row, column in np.ndindex(elements.offset.shape):
+        offset, noise, gain = (f"{a[row, column]:.6g}" for a in elements[:3])
+        writer.writerow((row, column, offset, noise, gain, elements.state[row, column]))
+    write_whole(path, text.getvalue())
+
+
+def read_elements(path: Path, shape: tuple[int, int]) -> Elements:
+    """Return the table of elements that a CSV file holds.
+
+    Parameters
+    ----------
+    path : Path
+    shape : (int, int)
+        Rows and columns that the table must have.
+
+    Raises
+    ------
+    DataError
+        If it cannot be read, or lacks an element, or holds what no element can be.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            lines = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise DataError(str(path), f"the table of elements cannot be read: {error}") from error
+    if lines and (missing := set(COLUMNS) - set(lines[0])):
+        raise DataError(
+            f"{path}:1", f"needs the columns {one_of(COLUMNS)}; lacks {sorted(missing)}"
+        )
+    numbers = np.full((3, *shape), np.nan)
+    state = np.full(shape, "", dtype="U8")
+    for n, line in enumerate(lines, 2):
+        row, column, *values = _entry(line, f"{path}:{n}", shape)
+        numbers[:, row, column] = values
+        state[row, column] = line["state"]
+    if np.isnan(numbers).any():
+        row, column = np.argwhere(np.isnan(numbers).any(axis=0))[0].tolist()
+        raise DataError(str(path), f"lacks the element in row {row}, column {column}")
+    offset, noise, gain = numbers
+    return Elements(offset, noise, gain, state)
+
+
+def _entry(
+    line: dict[str, str], where: str, shape: tuple[int, int]
+) -> tuple[int, int, float, float, float]:
+    try:
+        row, column = int(line["row"]), int(line["column"])
+        offset, noise, gain = (float(line[name]) for name in COLUMNS[2:5])
+    except (TypeError, ValueError) as error:
+        raise DataError(where, f"is no element: {error}") from error
+    if not (0 <= row < shape[0] and 0 <= column < shape[1]):
+        raise DataError(
+            where, f"row {row}, column {column} is not on a pad of {shape[0]} x {shape[1]}"
+        )
+    if not (np.isfinite([offset, noise, gain]).all() and noise >= 0.0 and gain > 0.0):
+        raise DataError(
+            where, f"noise must be 0 or more and gain above 0, got {noise:g} and {gain:g}"
+        )
+    if line["state"] not in STATES:
+        raise DataError(where, f"state must be one of {one_of(STATES)}, got {line['state']!r}")
+    return row, column, offset, noise, gain

@@ -1,0 +1,1 @@
+"""A pad's record made from recordings of it."""

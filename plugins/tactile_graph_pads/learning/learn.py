@@ -1,0 +1,378 @@
+"""All that recordings teach about a pad, one thing after another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph_pads.defects import Defects
+from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
+from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
+from tactile_graph_pads.learning.gains import LEAST_PLACEMENTS, Gains, gains
+from tactile_graph_pads.learning.place_fit import (
+    LEAST_GROUPS,
+    LEAST_PLACES,
+    LearnedPlace,
+    known_contacts,
+    learned_place,
+)
+from tactile_graph_pads.learning.recordings import Stack
+from tactile_graph_pads.learning.resting import (
+    Resting,
+    resting,
+    resting_among_objects,
+    step_of,
+)
+from tactile_graph_pads.learning.silent import Silence, silence
+from tactile_graph_pads.learning.touching import best_level, filled, least_level, placements
+from tactile_graph_pads.learning.turn_on import turn_on_of
+from tactile_graph_pads.pad import Pad
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+SATURATED = 10
+"""Readings equal to the largest one from which on that is full scale and no chance."""
+LEAST_LEVELS = 50
+"""Steps below the largest reading; coarser ones repeat by themselves."""
+PRESSED = 3.0
+"""Times the least reading that shows: between two such elements there is no valley of silence."""
+STEPS = 8.0
+"""Of the converter, below which single steps pass for where readings begin."""
+DRIFTS = 3.0
+"""Noises that the empty pad may move before it is said."""
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedPad:
+    """A pad's record, and what it was made from, for whoever judges it.
+
+    Parameters
+    ----------
+    learned : Learned
+        Without the names of its files.
+    elements : Elements
+    resting : Resting
+    silence : Silence, optional
+        None where no objects were recorded, as for the next three.
+    gains : Gains, optional
+    loads : "gram" or the recordings' own quantity
+        What the gains and the turn-on were learned in.
+    under : ndarray
+        Readings of elements under objects, for the distribution behind the turn-on.
+    curve : ForceCurve, optional
+    place : LearnedPlace, optional
+    counted_right : float, optional
+        Share of the frames with known places in which as many contacts are found.
+    notes : tuple of str
+        What could not be learned, and why; what is odd.
+    """
+
+    learned: Learned
+    elements: Elements
+    resting: Resting
+    silence: Silence | None = None
+    gains: Gains | None = None
+    loads: Reading = "raw"
+    under: Array | None = None
+    curve: ForceCurve | None = None
+    place: LearnedPlace | None = None
+    counted_right: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = None) -> LearnedPad:
+    """Return what recordings teach.
+
+    Parameters
+    ----------
+    empty : Stack, optional
+        Of the pad with nothing on it. Without it each element is taken where it is untouched.
+    objects : Stack, optional
+        With objects on it, known or not.
+    base : Pad, optional
+        A pad whose converter, circuit and law are those of the recorded one: gains and turn-on
+        are then learned in grams.
+
+    Raises
+    ------
+    DataError
+        If the recordings do not hold what is needed.
+    """
+    notes: list[str] = []
+    rest = _resting(empty, objects, notes)
+    stack = objects if objects is not None else empty
+    assert stack is not None
+    if base is not None and base.geometry.shape != stack.shape:
+        raise DataError(
+            "--pad",
+            f"has {base.geometry.rows} x {base.geometry.columns} elements, the recordings have "
+            f"{stack.shape[0]} x {stack.shape[1]}",
+        )
+    bare, step = _bare(stack, rest), step_of(stack.values)
+    shows_from = least_level(rest.noise[rest.good], max(step, rest.step), bare)
+    rest = rest.stepped(step)
+    if objects is None:
+        notes.append("No objects were recorded: dead elements, gains and all else are not known.")
+        return _of_empty(stack, rest, shows_from, notes)
+    known = _known_pad(base, stack, rest)
+    return _of_objects(objects, bare, shows_from, known, notes)
+
+
+def _known_pad(base: Pad | None, stack: Stack, rest: Resting) -> _KnownPad:
+    """Return the pad that was told without its turn-on, which is to be learned."""
+    if base is not None:
+        base = replace(base, law=replace(base.law, turn_on_bend=0.0), defects=Defects())
+    return _KnownPad(base, stack.image.quantity, rest)  # type: ignore[arg-type]
+
+
+class _KnownPad(NamedTuple):
+    """The pad that was told, if any, and what it makes of readings."""
+
+    base: Pad | None
+    quantity: Reading
+    rest: Resting
+
+    @property
+    def loads(self) -> Reading:
+        """Quantity of what `load_of` gives."""
+        told = self.base is not None and self.quantity in ("volt", "counts")
+        return "gram" if told else self.quantity
+
+    def load_of(self, recorded: Array, touched: Flags) -> Array:
+        """Return grams where the pad is told, else readings above the offset; 0 if untouched."""
+        above = np.where(self.rest.good, recorded - self.rest.offset, 0.0)
+        if self.base is None or self.loads != "gram":
+            return np.where(touched, above, 0.0)
+        scale = self.base.converter.step_v if self.quantity == "counts" else 1.0
+        # A stuck element shadows its column as it reads; the zero of the others is no voltage.
+        volts = scale * np.where(self.rest.stuck, recorded, np.where(touched, above, 0.0))
+        loads = np.stack([self.base.backward(np.maximum(frame, 0.0)).load_g for frame in volts])
+        return np.where(touched, loads, 0.0)
+
+    def least_load(self, shows_from: float) -> float:
+        """Return what one element alone bears that just shows, in the unit of `load_of`."""
+        recorded, touched = self.rest.offset.copy(), np.zeros(self.rest.good.shape, np.bool_)
+        alone = tuple(int(n) for n in np.argwhere(self.rest.good)[0])
+        touched[alone] = True
+        recorded[alone] += shows_from
+        return float(self.load_of(recorded[None], touched[None])[0][alone])
+
+
+def _resting(empty: Stack | None, objects: Stack | None, notes: list[str]) -> Resting:
+    if empty is not None:
+        rest = resting(empty.values, ", ".join(empty.names[:3]))
+        if rest.left_out:
+            notes.append(f"{rest.left_out} frames of the empty pad are left out: touched.")
+        if abs(rest.drift) > DRIFTS * max(rest.usual_noise, rest.step) > 0.0:
+            notes.append(
+                f"The empty pad drifts by {rest.drift:.3g} over the recording, "
+                f"{abs(rest.drift) / max(rest.usual_noise, rest.step):.0f} times the noise: let it "
+                "warm up, or put the step tare with drift_s before everything else."
+            )
+        return rest
+    assert objects is not None
+    notes.append(
+        "No recording of the empty pad: offset and noise are those of each element where it is "
+        "untouched."
+    )
+    return resting_among_objects(objects.values, ", ".join(objects.names[:3]))
+
+
+def _bare(stack: Stack, rest: Resting) -> Array:
+    """Return readings above the offset, 0 where an element is no good or was not read."""
+    above = np.where(rest.good, stack.values - rest.offset, 0.0)
+    return np.where(np.isnan(above), 0.0, above)
+
+
+def _of_empty(stack: Stack, rest: Resting, level: float, notes: list[str]) -> LearnedPad:
+    elements = _elements(rest, None, np.ones(stack.shape))
+    return LearnedPad(
+        _record(stack, rest, level), elements, rest, loads=stack.image.quantity,  # type: ignore[arg-type]
+        notes=tuple(notes),
+    )  # fmt: skip
+
+
+class _Pressed(NamedTuple):
+    """What objects say of the elements, and all frames with that taken into account."""
+
+    silence: Silence
+    gains: Gains
+    good: Flags
+    under: Array
+    turn_on: TurnOn | None
+    evened: Array
+    placements: int
+
+
+def _pressed(objects: Stack, bare: Array, shows_from: float, known: _KnownPad) -> _Pressed:
+    rest, touched = known.rest, bare >= shows_from
+    _refuse_untouched(touched, objects)
+    new = placements(touched)
+    silent = silence(touched[new], bare[new] >= PRESSED * shows_from, rest.good)
+    good = rest.good & ~silent.dead
+    recorded = np.where(np.isnan(objects.values[new]), rest.offset, objects.values[new])
+    loads = known.load_of(recorded, touched[new])
+    found = gains(loads, touched[new], good)
+    under = loads[touched[new] & good]
+    begins = known.least_load(max(shows_from, STEPS * rest.step))
+    evened = bare / found.gain if known.loads == objects.image.quantity else bare
+    return _Pressed(
+        silent, found, good, under, turn_on_of(under, begins, known.loads), filled(evened, good),
+        len(new),
+    )  # fmt: skip
+
+
+def _of_objects(
+    objects: Stack, bare: Array, shows_from: float, known: _KnownPad, notes: list[str]
+) -> LearnedPad:
+    rest, seen = known.rest, _pressed(objects, bare, shows_from, known)
+    if not seen.gains.stand_out:
+        notes.append(_no_gains(seen.gains, seen.placements))
+    curve = force_curve(seen.evened[:, seen.good], objects.weight_g, shows_from)
+    places = _places(objects)
+    level, right = _level(seen.evened, places, shows_from)
+    learned = replace(
+        _record(objects, rest, level),
+        gain_of=known.loads if seen.gains.stand_out else None,
+        turn_on=seen.turn_on,
+        curve=() if curve is None else curve.points,
+        saturated_from=_full_scale(objects.values, rest),
+    )
+    place = _place(objects, seen, places, learned.touched_from, notes)
+    notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
+    return LearnedPad(
+        learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
+        known.loads, seen.under, curve, place, right, tuple(notes),
+    )  # fmt: skip
+
+
+def _level(
+    evened: Array, places: Sequence[Array | None], shows_from: float
+) -> tuple[float, float | None]:
+    """Return from where on contacts are to be looked for, and how often their number is right."""
+    told = [(f, p) for f, p in zip(evened, places, strict=True) if p is not None]
+    if not told:
+        return shows_from, None
+    return best_level([f for f, _ in told], [p for _, p in told], shows_from)
+
+
+def _refuse_untouched(touched: Flags, objects: Stack) -> None:
+    if touched.any():
+        return
+    raise DataError(
+        ", ".join(objects.names[:3]),
+        "nothing lies on the pad in any frame: every reading is within the empty pad's noise",
+    )
+
+
+def _place(
+    objects: Stack, seen: _Pressed, places: Sequence[Array | None], level: float, notes: list[str]
+) -> LearnedPlace | None:
+    told = [k for k, p in enumerate(places) if p is not None]
+    if not told:
+        notes.append("No places are known: no correction of place.")
+        return None
+    known = known_contacts(
+        [seen.evened[k] for k in told],
+        [p for p in places if p is not None],
+        _groups(objects.recording)[told],
+        level,
+    )
+    n, n_groups = len(known.true), len(np.unique(known.group))
+    if n < LEAST_PLACES or n_groups < LEAST_GROUPS:
+        notes.append(
+            f"{n} known places in {n_groups} recordings or stretches of one: at least "
+            f"{LEAST_PLACES} in {LEAST_GROUPS} are needed for a correction of place."
+        )
+        return None
+    learned = learned_place(known, np.ones_like(seen.good))  # the bad ones are filled
+    if not learned.helps:
+        notes.append(
+            "A correction of place would not help: recordings held out come out "
+            f"{learned.halves.off.mean():.3g} cells off with it and "
+            f"{learned.halves.off_before.mean():.3g} without; it is left out."
+        )
+    return learned
+
+
+def _groups(recording: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return which frames are held out together: a recording, or stretches of a few long ones."""
+    names, counts = np.unique(recording, return_counts=True)
+    if len(names) >= LEAST_GROUPS:
+        return recording
+    stretches = -(-2 * LEAST_GROUPS // len(names))
+    group = np.empty(len(recording), np.int64)
+    for k, (name, n) in enumerate(zip(names, counts, strict=True)):
+        group[recording == name] = k * stretches + np.arange(n) * stretches // n
+    return group
+
+
+def _places(objects: Stack) -> list[Array | None]:
+    """Return known places as (column, row) in cells from the first cell's middle."""
+    pitch, origin = np.array(objects.image.pitch_cm), np.array(objects.image.origin_cm)
+    return [
+        None if p is None else (np.array(p).reshape(-1, 2) - origin) / pitch - 0.5
+        for p in objects.places_cm
+    ]
+
+
+def _elements(rest: Resting, silent: Silence | None, gain: Array) -> Elements:
+    state = np.full(rest.offset.shape, GOOD, dtype="U8")
+    if silent is not None:
+        state[silent.dead] = "dead"
+    state[rest.still] = "dead"
+    state[rest.noisy], state[rest.stuck], state[rest.missing] = "noisy", "stuck", "missing"
+    return Elements(rest.offset, rest.noise, np.where(state == GOOD, gain, 1.0), state)
+
+
+def _record(stack: Stack, rest: Resting, level: float) -> Learned:
+    image = stack.image
+    return Learned(
+        reading=image.quantity,  # type: ignore[arg-type]
+        rows=image.rows,
+        columns=image.columns,
+        pitch_cm=image.pitch_cm,
+        origin_cm=image.origin_cm,
+        elements="",
+        noise=rest.usual_noise,
+        touched_from=level,
+        drift=rest.drift,
+    )
+
+
+def _full_scale(values: Array, rest: Resting) -> float | None:
+    """Return the reading at which elements stop, if any do."""
+    read = values[:, rest.good]
+    top = float(np.nanmax(read))
+    at_top = read == top
+    if rest.step == 0.0 or top - float(np.nanmin(read)) < LEAST_LEVELS * rest.step:
+        return None
+    return top if at_top.sum() >= SATURATED and at_top.any(axis=0).sum() > 1 else None
+
+
+def _no_gains(found: Gains, n_placements: int) -> str:
+    alike = f"two halves of {n_placements} placements agree on them by {found.alike:.2f} only"
+    least = (
+        f"{n_placements} placements touch too few elements often enough, or always in one place; "
+        f"put objects down all over the pad, {LEAST_PLACEMENTS} times at least"
+    )
+    return f"Gains are not told: {alike if found.alike else least}."
+
+
+def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:
+    if curve is not None:
+        return []
+    n = int(np.isfinite(objects.weight_g).sum())
+    if n == 0:
+        return ["No weights are known: no law from readings to grams."]
+    return [f"{n} known weights are too few or too much alike: no law from readings to grams."]
+
+
+def _turn_on_note(found: TurnOn | None) -> list[str]:
+    none = "No turn-on is seen: readings begin in the noise, or come on slowly."
+    return [] if found is not None else [none]

@@ -1,0 +1,53 @@
+"""Any source step as command lines name it: its settings checked, its frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from tactile_graph.engine.sources import open_source
+from tactile_graph.errors import Mark, UsageError
+from tactile_graph.pipeline.document import assignment
+from tactile_graph.pipeline.graph import Source
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps.injected import Report
+from tactile_graph.steps.settings import validate_settings
+from tactile_graph.steps.signature import Kind
+from tactile_graph.wires.frame import Frame
+
+
+def frames_of_source(
+    step: str, settings: Mapping[str, Any], report: Report, seed: int = 0
+) -> Iterator[Frame]:
+    """Return the frames of a source step of any plugin.
+
+    Raises
+    ------
+    UsageError
+        If there is no such step, it is no source, or a setting is wrong.
+    """
+    signature = installed().step(step)
+    if signature.kind is not Kind.SOURCE:
+        raise UsageError(f"--source {step}: this step is no source: it yields no frames")
+    source = Source(signature, _checked(step, settings), Mark("<command line>", 1, 1))
+    return open_source(source, seed, report)
+
+
+def given_settings(texts: Sequence[str]) -> dict[str, Any]:
+    """Return settings from texts such as ``rows=12``; raises UsageError if one is none."""
+    return dict(assignment("--with", text) for text in texts)
+
+
+def reader_settings(texts: Sequence[str]) -> dict[str, Any]:
+    """Return the settings of ``recording`` that texts give, checked; raises UsageError."""
+    given = given_settings(texts)
+    checked = _checked("recording", {"path": "recording", **given})
+    return {k: v for k, v in checked.items() if k in given}
+
+
+def _checked(step: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    values, troubles = validate_settings(installed().step(step), dict(given))
+    lines = [f"source {step}, {'.'.join(map(str, p)) + ': ' if p else ''}{m}" for p, m in troubles]
+    if lines:
+        raise UsageError("\n".join(lines))
+    return values

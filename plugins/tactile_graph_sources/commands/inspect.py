@@ -1,0 +1,152 @@
+"""``tactile-graph inspect``: what a recording is, what is in it, and which commands work on it."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from tactile_graph.wires.frame import Frame
+    from tactile_graph_sources.inspection.look import Looked
+
+MOST_SHOWN = 6
+
+
+class _Works(NamedTuple):
+    """Which pipelines take a frame, and the first reason of those that do not."""
+
+    names: tuple[str, ...]
+    about: dict[str, str]
+    reasons: dict[str, str]
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--with",
+    "settings",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="A setting of the source 'recording', such as rows=12; can be repeated.",
+)
+@click.option("--picture", type=click.Path(path_type=Path), help="Draw it (.png, .svg, .pdf).")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a file, for programs.")
+def inspect(
+    files: tuple[Path, ...], settings: tuple[str, ...], picture: Path | None, as_json: bool
+) -> None:
+    """Say what the recordings FILE… are and hold, and which commands work on them.
+
+    The format and how it was recognised, frames, grid, pitch, quantity, rate, range, noise,
+    offset, broken cells, contacts; what of it is assumed; a picture; commands ready to paste.
+    """
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph_sources.commands.any_source import reader_settings
+    from tactile_graph_sources.inspection.look import look_into
+    from tactile_graph_sources.inspection.picture import save_picture
+    from tactile_graph_sources.inspection.words import data_of
+
+    if picture is not None and len(files) > 1:
+        raise click.UsageError("--picture draws one recording; give one FILE")
+    told = reader_settings(settings)
+    failed: TactileGraphError | None = None
+    for k, path in enumerate(files):
+        try:
+            looked = look_into(path, told)
+        except TactileGraphError as error:
+            if len(files) == 1:
+                raise
+            failed = error
+            click.echo(json.dumps({"file": str(path), "error": str(error)}) if as_json else error)
+            continue
+        works = _works(looked.sensors[0].frames[0])
+        if as_json:
+            click.echo(
+                json.dumps({**data_of(looked), "commands": _commands(looked, works, settings)})
+            )
+        else:
+            if k:
+                click.echo()
+            _tell(looked, works, settings)
+        if picture is not None:
+            save_picture(looked, picture)
+            click.echo(f"picture: {picture}", err=as_json)
+    if failed is not None:
+        click.get_current_context().exit(1)
+
+
+def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
+    from tactile_graph_sources.inspection.words import lines_of, shades_of
+
+    for line in lines_of(looked):
+        click.echo(line)
+    for line in shades_of(looked.sensors[0]):
+        click.echo(line)
+    click.echo("  takes it:")
+    for command in _commands(looked, works, settings)[: MOST_SHOWN + 1]:
+        click.echo(f"    {command}")
+    if len(works.names) > MOST_SHOWN:
+        click.echo(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
+    for reason, names in works.reasons.items():
+        click.echo(f"  not {names}: {reason}")
+    if looked.pitch_assumed:
+        click.echo("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
+
+
+def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[str]:
+    """Return command lines that work on a recording, the reader's settings with them."""
+    told = "".join(f" --with {shlex.quote(s)}" for s in settings)
+    path = shlex.quote(str(looked.path))
+    runs = [f"tactile-graph run {name} {path}{told}" for name in works.names[:MOST_SHOWN]]
+    target = shlex.quote(looked.path.stem + ".zarr")
+    return [*runs, f"tactile-graph convert {path} {target}{told}"]
+
+
+def _works(frame: Frame) -> _Works:
+    """Return which of the installed pipelines take a frame such as this."""
+    names, about = [], {}
+    reasons: dict[str, list[str]] = {}
+    for name, text, trouble in _tried(frame):
+        about[name] = text
+        if trouble:
+            reasons.setdefault(trouble, []).append(name)
+        else:
+            names.append(name)
+    # The plainest first: what says of itself that it is for any recording.
+    names.sort(key=lambda n: ("any" not in about[n], n))
+    return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()})
+
+
+def _tried(frame: Frame) -> Iterator[tuple[str, str, str]]:
+    """Yield each pipeline's name, what it is about, and why it does not take the frame."""
+    from tactile_graph.api.pipeline import load
+    from tactile_graph.engine.plan import make_plan
+    from tactile_graph.engine.runner import check_frame
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.plugins.registry import installed
+
+    found = installed()
+    for name in found.names("pipelines"):
+        try:
+            pipeline = load(name, found).with_source("recording", path="recording")
+            about = pipeline.about
+        except TactileGraphError:
+            continue  # what cannot be loaded says so wherever it is asked for
+        try:
+            check_frame(frame.image, make_plan(pipeline, tuple(pipeline.outputs)))
+        except TactileGraphError as error:
+            yield name, about, _reason(str(error))
+        else:
+            yield name, about, ""
+
+
+def _reason(text: str) -> str:
+    """Return why a pipeline refuses a frame, without its own name, so that reasons can be alike."""
+    _, _, rest = text.partition(": ")
+    takes = rest[rest.find(" takes ") + 1 :] if " takes " in rest else rest
+    return takes.replace(" at port 'image'", "")

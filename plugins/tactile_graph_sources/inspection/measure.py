@@ -1,0 +1,270 @@
+"""What the frames of one sensor are like: range, noise, offset, broken cells, contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.wires import Frame
+
+Stack = NDArray[np.float64]
+MAD_TO_SD = 1.4826
+IDLE_QUANTILE = 0.1
+QUIET = 0.25
+FEWEST_CHANGES = 0.25
+FEWEST_FRAMES = 5
+"""Frames from which on a cell that never changes says something."""
+TOUCHED = 0.2
+"""Share of the peak above the offset that a cell's neighbours must have seen to call it dead."""
+STUCK, MOST_STUCK, FEWEST_TO_STICK = 0.05, 0.2, 30
+"""Share of the peak above the offset at which a cell that never changes is stuck; the most of all
+such cells that can be; and the frames it takes."""
+NOISY = 5.0
+ABOVE_NOISE = 5.0
+SHARE_OF_PEAK = 0.05
+SMALLEST_CONTACT = 2
+FULL_SCALES = (255, 511, 1023, 2047, 4095, 8191, 16383, 32767, 65535)
+Cells = tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What one sensor's frames are like; levels in the recording's own unit.
+
+    Parameters
+    ----------
+    n_frames : int
+    shape : (int, int)
+        Rows and columns.
+    rate_hz, jitter : float, optional
+        Frames a second, and the spread of the steps over their median; None without times.
+    duration_s : float, optional
+    lowest, highest : float
+        Of all valid cells.
+    step : float, optional
+        The smallest difference of two readings, where all are whole multiples of it.
+    full_scale : int, optional
+        Where readings are whole and reach the end of a converter's range.
+    noise : float, optional
+        Standard deviation of a cell at rest from frame to frame, that of the quieter quarter of
+        the cells: the others may be pressed all the time. None with fewer than five frames.
+    offset, offset_spread : float
+        Level of a cell at rest (its lowest tenth), the median of the cells and the distance of
+        the tenth from the ninetieth percentile.
+    dead, stuck, noisy, missing : tuple of (int, int)
+        Row and column, from 0, of cells that never change while those around them are pressed, of
+        those that rest far above the others, that are several times as noisy, that hold no value.
+    n_contacts : tuple of int
+        Patches of two cells or more above ``contact_level``, for each frame.
+    contact_level : float
+        Above the offset: five times the noise, or a twentieth of the highest reading.
+    n_gaps, n_truths : int
+        Frames that follow a gap, and that carry truth.
+    """
+
+    n_frames: int
+    shape: tuple[int, int]
+    rate_hz: float | None
+    jitter: float | None
+    duration_s: float | None
+    lowest: float
+    highest: float
+    step: float | None
+    full_scale: int | None
+    noise: float | None
+    offset: float
+    offset_spread: float
+    dead: Cells
+    stuck: Cells
+    noisy: Cells
+    missing: Cells
+    n_contacts: tuple[int, ...]
+    contact_level: float
+    n_gaps: int
+    n_truths: int
+
+
+def stack_of_frames(frames: Sequence[Frame]) -> Stack:
+    """Return values of frames of one shape, (frames, rows, columns); NaN where a cell has none."""
+    return np.stack([f.image.filled(np.nan) for f in frames]).astype(np.float64)
+
+
+def measure(frames: Sequence[Frame]) -> Measured:
+    """Return what frames of one sensor and one shape are like.
+
+    Notes
+    -----
+    Noise is taken from the median of each cell's differences from frame to frame, so that the
+    minority of frames in which it is being pressed or let go do not count. Where three in four
+    readings repeat it comes out as 0, which says only that it is far below one step.
+    """
+    stack = stack_of_frames(frames)
+    with np.errstate(over="ignore", invalid="ignore"):
+        known = np.asarray(np.isfinite(stack).any(axis=0))
+        filled = np.where(np.isfinite(stack), stack, np.nan_to_num(_median(stack)))
+        idle = _idle(filled, known)
+        values = stack[np.isfinite(stack)]
+        step = _step(values)
+        sigma = _noise(filled, step or 0.0)
+        lowest, highest = _ends(values)
+        noise = (
+            None if sigma is None or not known.any() else float(np.quantile(sigma[known], QUIET))
+        )
+        offset = float(np.median(idle[known])) if known.any() else 0.0
+        level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
+        dead, stuck = _still(filled, idle, known, _Levels(offset, highest, noise or 0.0))
+        rate, jitter, duration = _rate(frames)
+        spread = np.quantile(idle[known], [0.1, 0.9]) if known.any() else np.zeros(2)
+        return Measured(
+            len(frames),
+            (stack.shape[1], stack.shape[2]),
+            rate,
+            jitter,
+            duration,
+            lowest,
+            highest,
+            step,
+            _full_scale(values, step, highest),
+            noise,
+            offset,
+            float(spread[1] - spread[0]),
+            _cells(dead),
+            _cells(stuck),
+            _cells(_noisy(sigma, noise, known & ~dead & ~stuck)),
+            _cells(~known),
+            tuple(_contacts(f - idle, level) for f in filled),
+            level,
+            sum(f.gap for f in frames),
+            sum(f.truth is not None for f in frames),
+        )
+
+
+def _median(stack: Stack) -> Stack:
+    """Return each cell's median over time; 0 where it never has a value."""
+    known = np.isfinite(stack)
+    if known.all():
+        return np.asarray(np.median(stack, axis=0))
+    middle = np.zeros(stack.shape[1:])
+    some = known.any(axis=0)
+    middle[some] = np.nanmedian(stack[:, some], axis=0)
+    return middle
+
+
+def _idle(filled: Stack, known: NDArray[np.bool_]) -> Stack:
+    """Return each cell's level at rest; with too few frames the same for all, their median."""
+    if len(filled) >= FEWEST_FRAMES:
+        return np.asarray(np.quantile(filled, IDLE_QUANTILE, axis=0))
+    level = float(np.median(filled[:, known])) if known.any() else 0.0
+    return np.full(filled.shape[1:], level)
+
+
+def _noise(filled: Stack, step: float) -> Stack | None:
+    """Return each cell's standard deviation at rest; None with too few frames.
+
+    Readings in steps are spread over their step at random, and what that adds is taken off again:
+    the median of whole numbers would be one itself. A cell of which three in four readings repeat
+    has none that could be measured.
+    """
+    if len(filled) < FEWEST_FRAMES:
+        return None
+    change = np.diff(filled, axis=0)
+    trembles = (change != 0.0).mean(axis=0) >= FEWEST_CHANGES
+    spread = change + step * np.random.default_rng(0).uniform(-0.5, 0.5, change.shape)
+    sigma = MAD_TO_SD * np.median(np.abs(spread), axis=0) / np.sqrt(2.0)
+    added = MAD_TO_SD * 0.25 * step / np.sqrt(2.0)
+    return np.where(trembles, np.sqrt(np.maximum(sigma**2 - added**2, 0.0)), 0.0)
+
+
+def _ends(values: Stack) -> tuple[float, float]:
+    return (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+
+
+def _step(values: Stack) -> float | None:
+    """Return the step that all readings are whole multiples of, where they have one."""
+    if not values.size or np.abs(values).max() > 1e12:
+        return None
+    levels = np.unique(values[:: max(1, len(values) // 200_000)])
+    if len(levels) < 2:
+        return None
+    step = float(np.diff(levels).min())
+    counts = (levels - levels[0]) / step
+    return step if bool((np.abs(counts - np.rint(counts)) < 1e-3).all()) else None
+
+
+def _full_scale(values: Stack, step: float | None, highest: float) -> int | None:
+    whole = step is not None and step % 1 == 0
+    return int(highest) if whole and highest in FULL_SCALES else None
+
+
+class _Levels(NamedTuple):
+    """Levels of the whole pad."""
+
+    offset: float
+    highest: float
+    noise: float
+
+
+def _still(
+    filled: Stack, idle: Stack, known: NDArray[np.bool_], levels: _Levels
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which cells are dead and which are stuck: neither ever changes."""
+    none, (offset, highest, noise) = np.zeros_like(known), levels
+    if len(filled) < FEWEST_FRAMES or highest <= offset:
+        return none, none
+    still = known & (np.ptp(filled, axis=0) == 0.0)
+    if still.all():
+        return none, none
+    raised = known & (idle - offset > STUCK * (highest - offset))
+    long = len(filled) >= FEWEST_TO_STICK
+    if noise > 0.0 and long:
+        return still & ~raised, still & raised  # where all tremble, such a cell is broken
+    # What lies still on a pad without noise keeps its cells as they are: that sticks no cell.
+    stuck = still & raised if long and (still & raised).sum() < MOST_STUCK * raised.sum() else none
+    reached = filled.max(axis=0) - offset > TOUCHED * (highest - offset)
+    pressed = reached & ~still
+    sides, live = _beside(pressed), _beside(known & ~still)
+    # A neighbour that is dead too says nothing: a whole dead line is found by its two sides.
+    between = (sides[0] & sides[1]) | (sides[2] & sides[3])
+    around = sides.sum(axis=0) >= 0.75 * live.sum(axis=0)
+    return still & ~raised & between & around, stuck
+
+
+def _beside(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the mask's values above, below, left and right of each cell, shape (4, rows, cols)."""
+    padded = np.pad(mask, 1)
+    return np.stack([padded[:-2, 1:-1], padded[2:, 1:-1], padded[1:-1, :-2], padded[1:-1, 2:]])
+
+
+def _noisy(sigma: Stack | None, noise: float | None, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    if sigma is None or not noise:
+        return np.zeros_like(known)
+    return known & (sigma > NOISY * noise)
+
+
+def _cells(mask: NDArray[np.bool_]) -> Cells:
+    return tuple((int(r), int(c)) for r, c in np.argwhere(mask))
+
+
+def _contacts(above: Stack, level: float) -> int:
+    from scipy import ndimage
+
+    labels, n = ndimage.label(above > level, structure=np.ones((3, 3)))
+    if level <= 0.0 or not n:
+        return 0
+    return int(np.count_nonzero(np.bincount(labels.ravel())[1:] >= SMALLEST_CONTACT))
+
+
+def _rate(frames: Sequence[Frame]) -> tuple[float | None, float | None, float | None]:
+    """Return frames a second, the spread of their steps over the median, and the time they take."""
+    times = np.array([f.time_s for f in frames if f.time_s is not None], dtype=np.float64)
+    steps = np.diff(times)
+    steps = steps[steps > 0]
+    if len(steps) < 1:
+        return None, None, None
+    usual = float(np.median(steps))
+    jitter = float(np.median(np.abs(steps - usual))) * MAD_TO_SD / usual
+    return 1.0 / usual, jitter, float(times[-1] - times[0])

@@ -1,0 +1,127 @@
+"""Frames of garbage, as pads send them at start-up: found by what comes before and after them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.steps import Report
+from tactile_graph.wires import Frame
+
+NEIGHBOURS = 3
+"""How many frames before and as many after a frame it is held against."""
+JUMP = 8.0
+"""Times the neighbours' own differences that garbage differs from them."""
+WIDE = 0.25
+"""Share of the cells that garbage reaches, and of its peak that counts as reached."""
+COHERENT = 0.3
+FEWEST_CELLS = 16
+Values = NDArray[Any]
+
+
+def without_garbage(frames: Iterator[Frame], report: Report, where: str) -> Iterator[Frame]:
+    """Yield the frames but for those of garbage, which are counted and told.
+
+    A frame is garbage if it differs from those around it many times as much as they do among
+    themselves, over much of the pad, without neighbouring cells having anything in common; or if
+    every cell of it is the same and of none of those around it. What presses on a pad
+    lies in patches, stays for more than one frame, or both. Frames whose truth is known are left
+    alone: they are no film. The frame after garbage is marked as following a gap.
+
+    Parameters
+    ----------
+    frames : iterator of Frame
+        Those of several sensors, told apart by their labels, may take turns.
+    report : Report
+    where : str
+        The file, for the report.
+    """
+    pending: deque[Frame] = deque()
+    films: dict[str, _Film] = {}
+    for frame in frames:
+        pending.append(frame)
+        films.setdefault(frame.label, _Film()).add(frame)
+        while len(films[pending[0].label].ahead) > NEIGHBOURS:
+            yield from _settled(films[pending[0].label], pending.popleft(), report, where)
+    while pending:
+        yield from _settled(films[pending[0].label], pending.popleft(), report, where)
+
+
+@dataclass(slots=True)
+class _Film:
+    """One sensor's frames around the one that is judged, each with its change from the last."""
+
+    ahead: deque[tuple[Frame, float]] = field(default_factory=deque)
+    behind: deque[tuple[Frame, float]] = field(default_factory=lambda: deque(maxlen=NEIGHBOURS))
+    last: NDArray[Any] | None = None
+    after_garbage: bool = False
+
+    def add(self, frame: Frame) -> None:
+        values = frame.image.values
+        alike = self.last is not None and self.last.shape == values.shape
+        change = _distance(values, self.last) if alike and self.last is not None else np.inf
+        self.ahead.append((frame, change))
+        self.last = values
+
+
+def _settled(film: _Film, frame: Frame, report: Report, where: str) -> Iterator[Frame]:
+    """Yield the frame, the first of those ahead, unless it is garbage."""
+    _, change = film.ahead.popleft()
+    around = [*film.behind, *film.ahead]
+    following = film.ahead[0][1] if film.ahead else np.inf
+    others = [*film.behind, *islice(film.ahead, 1, None)]
+    # Nearly all frames change about as much as the others do, and need not be looked at further.
+    jumps = min(change, following) > 2.0 * min((c for _, c in others), default=np.inf)
+    if jumps and frame.truth is None and is_garbage(frame, [f for f, _ in around]):
+        report.count("frames of garbage left out")
+        report.trouble(
+            f"{where}: frame {frame.index}",
+            "is garbage by those around it (no patch of it lies together, "
+            "and none of them is like it) and is left out",
+        )
+        film.after_garbage = True
+        return
+    film.behind.append((frame, change))
+    yield replace(frame, gap=True) if film.after_garbage else frame
+    film.after_garbage = False
+
+
+def is_garbage(frame: Frame, around: Sequence[Frame]) -> bool:
+    """Return whether a frame is garbage by those around it; with fewer than three never."""
+    values = frame.image.values
+    others = [f.image.values for f in around if f.image.values.shape == values.shape]
+    if len(others) < NEIGHBOURS or values.size < FEWEST_CELLS:
+        return False
+    nearest = min(_distance(values, v) for v in (others[0], others[-1]))
+    if not 0.0 < nearest < 1e100:
+        return False
+    usual = np.median(others, axis=0)
+    apart = np.median([_distance(v, usual) for v in others])
+    change = values - usual
+    if _distance(values, usual) <= JUMP * apart:
+        return False
+    if np.ptp(values) == 0.0 and values.flat[0] != 0.0:
+        return not any(np.ptp(v) == 0.0 for v in others)
+    reached = np.abs(change) > WIDE * np.abs(change).max()
+    return bool(reached.mean() >= WIDE) and coherence(change) < COHERENT
+
+
+def coherence(values: Values) -> float:
+    """Return how much neighbouring cells have in common: 1 in broad patches, 0 at random."""
+    spread = float(values.var())
+    if spread == 0.0:
+        return 1.0
+    steps = [np.diff(values, axis=axis).ravel() for axis in (0, 1)]
+    along = np.concatenate(steps)
+    return 1.0 - float((along**2).mean()) / (2.0 * spread) if len(along) else 1.0
+
+
+def _distance(a: Values, b: Values) -> float:
+    with np.errstate(over="ignore"):
+        return float(np.abs(a - b).sum()) / a.size

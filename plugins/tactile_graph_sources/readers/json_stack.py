@@ -1,0 +1,204 @@
+"""JSON of frames: a list of matrices, an object a frame, one object around all, or a line each."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, one_of
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
+from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.names import ROLES, named
+from tactile_graph_sources.readers.tables.preamble import Described, described
+
+NAME = "JSON of frames"
+Cells = NDArray[np.float64]
+
+
+class _Entries(NamedTuple):
+    """Frames as the file holds them, what it says of them, and the name of their times."""
+
+    values: list[Any]
+    times: list[Any] | None
+    time_name: str
+    said: Described
+    why: str
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file is JSON: an object, or a list that goes on over its first line."""
+    text = head.raw.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text.startswith(b"{"):
+        return b'"' in text[:200]
+    if not text.startswith(b"["):
+        return False
+    first = next((x.strip() for x in head.lines if x.strip()), "")
+    if not head.whole:
+        return first.startswith(("[[", "[{")) or not first.endswith("]")
+    return _parsed("\n".join(head.lines)) is not None
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each matrix, or each list of as many numbers as the others have.
+
+    Raises
+    ------
+    DataError
+        If the file is no JSON, holds no frames, or does not say their shape.
+    """
+    where = str(reading.path)
+    entries = _entries(where, _content(reading))
+    arrays = [_array(v) for v in entries.values]
+    shapes = Counter(a.shape for a in arrays if a is not None and a.ndim in (1, 2) and a.size)
+    if not shapes:
+        raise DataError(where, f"its JSON holds no frames of numbers ({entries.why})")
+    usual = shapes.most_common(1)[0][0]
+    good = [a for a in arrays if a is not None and a.shape == usual]
+    shape = usual if len(usual) == 2 else _shape(reading, np.stack(good), entries.said)
+    reading.told.agree(where, *shape)
+    reading.recognised(entries.why)
+    reading.report.expect(len(arrays))
+    factor = _time_factor(reading, entries)
+    for k, array in enumerate(arrays):
+        if array is None or array.shape != usual:
+            got = "no numbers" if array is None else f"shape {array.shape}"
+            reading.damaged(f"frame {k}", f"{got}, not {usual}")
+            continue
+        matrix = array if array.ndim == 2 else reading.told.laid_out(array, *shape)
+        yield reading.frame(
+            matrix,
+            pitch_cm=entries.said.pitch_cm,
+            quantity=entries.said.quantity,
+            factor=entries.said.factor,
+            time_s=_time(entries, k, factor),
+        )
+
+
+def _content(reading: Reading) -> Any:
+    where = str(reading.path)
+    try:
+        text = reading.path.read_text(encoding=reading.head.encoding)
+    except ValueError as error:
+        raise DataError(where, f"its text is damaged: {error}") from error
+    whole = _parsed(text)
+    if whole is not None:
+        return whole
+    lines = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            entry = _parsed(line)
+            if entry is None:
+                reading.damaged(number, "no JSON")
+            else:
+                lines.append(entry)
+    if not lines:
+        raise DataError(where, "it begins as JSON does, and is none, as a whole or by lines")
+    return lines
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+
+
+def _array(entry: object) -> Cells | None:
+    try:
+        return np.array(entry, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        return None
+
+
+def _entries(where: str, content: Any) -> _Entries:
+    if isinstance(content, dict):
+        return _of_object(where, content)
+    if not isinstance(content, list) or not content:
+        raise DataError(where, "its JSON is neither a list of frames nor an object around one")
+    if not isinstance(content[0], dict):
+        nested = isinstance(content[0], list) and content[0] and isinstance(content[0][0], list)
+        if not isinstance(content[0], list):
+            return _Entries([content], None, "", Described(), "a list of numbers")
+        what = "a list of matrices" if nested else "a list of lists of numbers"
+        if not nested and _is_matrix(content):
+            content = [content]
+        return _Entries(content, None, "", Described(), what)
+    key = _only(where, [k for k, v in content[0].items() if isinstance(v, list)])
+    time = next((k for k in content[0] if _is_time(k)), "")
+    objects = [e if isinstance(e, dict) else {} for e in content]
+    times = [e.get(time) for e in objects] if time else None
+    said = _said(content[0])
+    return _Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
+
+
+def _of_object(where: str, content: dict[str, Any]) -> _Entries:
+    lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
+    time = next((k for k in lists if _is_time(k)), "")
+    times = lists.pop(time, None)
+    deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
+    key = _only(where, deep or lists)
+    inner = _entries(where, lists[key])
+    said = _said(content)
+    if inner.times is None and times is not None and len(times) == len(inner.values):
+        return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
+    return inner._replace(said=said, why=f"{key!r}: {inner.why}")
+
+
+def _is_matrix(rows: list[Any]) -> bool:
+    """Return whether lists of numbers are the rows of one matrix: as many as each holds."""
+    return len(rows) > 1 and all(isinstance(r, list) and len(r) == len(rows) for r in rows)
+
+
+def _only(where: str, keys: Any) -> str:
+    names = list(keys)
+    if len(names) == 1:
+        return str(names[0])
+    what = f"several lists could be the frames ({one_of(names)}); keep one" if names else "no list"
+    raise DataError(where, f"its JSON holds {what}")
+
+
+def _is_time(key: str) -> bool:
+    return "time" in named((key, "")).roles or ROLES.get(key.lower()) == "time"
+
+
+def _said(content: dict[str, Any]) -> Described:
+    return described(f"{k}: {v}" for k, v in content.items() if isinstance(v, str | int | float))
+
+
+def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
+    found = shape_of_cells(cells, reading.told.with_said(said.rows, said.columns))
+    if found.shape is None:
+        raise DataError(str(reading.path), found.trouble)
+    for what in found.assumed:
+        reading.assume(what)
+    return found.shape
+
+
+def _time_factor(reading: Reading, entries: _Entries) -> float:
+    if not entries.times:
+        return 1.0
+    factor = named((entries.time_name, "")).time_factor
+    if factor is not None:
+        return factor
+    times = [t for t in entries.times if isinstance(t, int | float) and abs(t) < 1e300]
+    factor, unit = unit_of(np.array(times, dtype=np.float64))
+    reading.assume(f"times assumed to be in {unit}")
+    return factor
+
+
+def _time(entries: _Entries, k: int, factor: float) -> float | None:
+    if not entries.times:
+        return None if entries.said.frame_s is None else k * entries.said.frame_s
+    time = entries.times[k]
+    if isinstance(time, bool) or not isinstance(time, int | float):
+        return None
+    time_s = float(time) * factor if abs(time) < 1e300 else np.inf
+    return time_s if np.isfinite(time_s) else None

@@ -1,0 +1,1 @@
+"""Plain tables: how they are recognised, taken apart and read."""

@@ -1,0 +1,100 @@
+"""``Layout``: how the numbers lie in a plain table, and in what unit its times are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tactile_graph_sources.readers.tables.dialect import Dialect
+from tactile_graph_sources.readers.tables.evidence import Numbers
+from tactile_graph_sources.readers.tables.preamble import Described
+from tactile_graph_sources.readers.tables.table import Table
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a table is; ``trouble`` says why it cannot be told.
+
+    Parameters
+    ----------
+    kind : str
+        ``long``, ``flat``, ``stacked`` or ``unclear``.
+    dialect : Dialect
+    width : int
+        Fields of a line.
+    first_line : int
+        Number of the first row, from 1.
+    roles : dict
+        Columns of frame, time (or clock), row, column and value.
+    cells : tuple of int
+        Columns that are cells.
+    shape : (int, int), optional
+        Rows and columns of a frame, where the table itself says so.
+    places : tuple of int
+        Where each cell lies in a frame, row by row; empty where that is the order of the columns.
+    rows : int
+        Of a stacked matrix.
+    blank_run : int
+        Blank lines that end a matrix.
+    time_factor : float
+        From the column of time to seconds.
+    time_format : str
+        Of the column of clock, where the settings say it.
+    spacing : (float, float)
+        Distance of rows and of columns in the numbers of a long table: 1, or what positions have.
+    first : (float, float)
+        The first row's and the first column's position, where they are positions.
+    said : Described
+        What the words before the table say.
+    why, assumed : str, tuple of str
+        How it was recognised, and what nobody said.
+    trouble : str
+    """
+
+    kind: str
+    dialect: Dialect = field(default_factory=Dialect)
+    width: int = 0
+    first_line: int = 1
+    roles: dict[str, int] = field(default_factory=dict)
+    cells: tuple[int, ...] = ()
+    shape: tuple[int, int] | None = None
+    places: tuple[int, ...] = ()
+    rows: int = 0
+    blank_run: int = 1
+    time_factor: float = 1.0
+    time_format: str = ""
+    spacing: tuple[float, float] = (1.0, 1.0)
+    first: tuple[float, float] = (0.0, 0.0)
+    said: Described = field(default_factory=Described)
+    why: str = ""
+    assumed: tuple[str, ...] = ()
+    trouble: str = ""
+
+
+def timed(base: Layout, table: Table) -> Layout:
+    """Return the layout with the factor of its time; where nobody says the unit, it is assumed."""
+    if table.named.time_factor is not None:
+        return replace(base, time_factor=table.named.time_factor)
+    times = table.rows[:, base.roles["time"]]
+    factor, unit = unit_of(times[np.isfinite(times)])
+    return replace(
+        base, time_factor=factor, assumed=(*base.assumed, f"times assumed to be in {unit}")
+    )
+
+
+def unit_of(times: Numbers) -> tuple[float, str]:
+    """Return the factor and the name of the unit that times are most likely in."""
+    steps = np.diff(times)
+    steps = steps[steps > 0]
+    if len(times) and times[-1] > 1e17:
+        return 1e-9, "nanoseconds"
+    if len(times) and times[-1] > 1e14:
+        return 1e-6, "microseconds"
+    if len(times) and times[-1] > 1e11:
+        return 1e-3, "milliseconds"
+    if len(steps) and (times % 1 == 0).all() and np.median(steps) >= 5.0:
+        # Five seconds from frame to frame is no recording, five milliseconds is one.
+        late = np.median(steps) >= 5000.0
+        return (1e-6, "microseconds") if late else (1e-3, "milliseconds")
+    return 1.0, "seconds"

@@ -1,0 +1,222 @@
+"""A plain table taken apart: the words before it, its header, and the first of its rows."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from tactile_graph_sources.readers.tables.dialect import MISSING, Dialect, clock_s, is_row
+from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.tables.names import ColumnsTold, Named, as_told, named
+from tactile_graph_sources.readers.tables.preamble import Described, described
+
+FRAME_LINE = re.compile(
+    r"\W*(?:frame|bild|image|trame|cuadro|scan|sample)\W*(\d{1,9})\b.{0,80}",
+    re.IGNORECASE | re.DOTALL,
+)
+_BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*")
+_COMMENT = ("#", "%", "//")
+_LOOKED_AT, _SAMPLED = 4000, 400
+ENDLESS = 1 << 30
+"""As a run of blank lines: none ends a matrix, only its last row does."""
+
+
+def is_blank(line: str) -> bool:
+    """Return whether a line holds nothing but separators, or is a ruled line."""
+    return _BLANK.fullmatch(line) is not None
+
+
+def is_comment(line: str) -> bool:
+    """Return whether a line is a comment."""
+    return line.lstrip().startswith(_COMMENT)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The parts of a table.
+
+    Parameters
+    ----------
+    dialect : Dialect
+    width : int
+        Usual number of fields of a line, separators that all lines end with left out.
+    first_line : int
+        Number of the first row, from 1; what is before it is words.
+    lines : tuple of str
+        The first lines of the file from that row on.
+    named : Named
+        What the names right before the first row say, and the settings.
+    said : Described
+    rows : ndarray, shape (n, width)
+        The first rows; NaN where a field is no number.
+    texts : tuple of tuple of str
+        The same fields as written.
+    whole : bool
+        Whether the file has no more lines.
+    """
+
+    dialect: Dialect
+    width: int
+    first_line: int
+    lines: tuple[str, ...]
+    named: Named
+    said: Described
+    rows: Numbers
+    texts: tuple[tuple[str, ...], ...] = field(repr=False)
+    whole: bool
+
+    @cached_property
+    def n_rows(self) -> int:
+        """How many rows the first lines hold."""
+        return sum(self._are_rows)
+
+    @cached_property
+    def _are_rows(self) -> tuple[bool, ...]:
+        return tuple(map(is_row, self.lines))
+
+    @cached_property
+    def clocks(self) -> tuple[int, ...]:
+        """Columns that hold dates or times of day."""
+        return tuple(k for k in self.words if clock_s(self.texts[0][k]) is not None)
+
+    @cached_property
+    def labels(self) -> tuple[int, ...]:
+        """Columns that hold words without a digit."""
+        column = {k: [row[k] for row in self.texts] for k in self.words}
+        return tuple(
+            k for k, texts in column.items() if not any(c.isdigit() for t in texts for c in t)
+        )
+
+    @cached_property
+    def empty(self) -> tuple[int, ...]:
+        """Columns in front that hold nothing in any row, as spreadsheets leave them free."""
+        n = 0
+        while n < self.width and not any(row[n].strip() for row in self.texts):
+            n += 1
+        return tuple(range(n)) if len(self.texts) > 1 else ()
+
+    @cached_property
+    def words(self) -> tuple[int, ...]:
+        """Columns of which most fields are no numbers and not empty."""
+        wrong = [
+            sum(
+                math.isnan(value) and row[k].strip().lower() not in MISSING
+                for value, row in zip(self.rows[:, k], self.texts, strict=True)
+            )
+            for k in range(self.width)
+        ]
+        return tuple(k for k, n in enumerate(wrong) if 2 * n > len(self.texts))
+
+    @cached_property
+    def groups(self) -> tuple[list[int], int]:
+        """Sizes of groups of rows, and the number of blank lines that ends a group.
+
+        Where a blank line stands after every row, only two of them end a matrix.
+        """
+        for run in (1, 2):
+            groups, size, blanks = [], 0, 0
+            for line, one in zip(self.lines, self._are_rows, strict=True):
+                if is_blank(line):
+                    blanks += 1
+                    continue
+                if blanks >= run or FRAME_LINE.fullmatch(line):
+                    groups.append(size)
+                    size = 0
+                blanks = 0
+                size += one
+            groups = [g for g in [*groups, size] if g]
+            if not groups or Counter(groups).most_common(1)[0][0] > 1:
+                return groups, run
+        return [sum(groups)], ENDLESS
+
+
+def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | None:
+    """Return the parts of a table; None where the lines are none.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        The first lines of the file.
+    told : ColumnsTold
+    whole : bool
+        Whether there are no more lines.
+
+    Raises
+    ------
+    ValueError
+        If a setting names a column that is not there.
+    """
+    rows = [
+        (k, line)
+        for k, line in enumerate(lines[:_LOOKED_AT])
+        if not is_blank(line) and not is_comment(line) and is_row(line)
+    ]
+    if not rows:
+        return None
+    dialect = Dialect.of([line for _, line in rows[:200]])
+    fields = [(k, dialect.fields(line)) for k, line in rows[:2000]]
+    width = _width([f for _, f in fields])
+    full = [(k, f[:width]) for k, f in fields if len(f) >= width and not any(f[width:])]
+    if not width or not full:
+        return None
+    start = full[0][0]
+    content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
+    if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
+        return None  # a text that holds a few numbers
+    header = _header(dialect, lines[:start], width)
+    if not header and len(full) > 1 and _is_numbered(full[0][1]):
+        header, full = tuple(full[0][1]), full[1:]
+        start = full[0][0]
+    sample = [tuple(f) for _, f in full[:_SAMPLED]]
+    numbers = as_numbers([[_number(t) for t in f] for f in sample])
+    words = [line for line in lines[:start] if not is_blank(line)]
+    said = described(words)
+    names = as_told(named(header) if header else Named(), width, told)
+    return Table(
+        dialect, width, start + 1, tuple(lines[start:]), names, said, numbers, tuple(sample), whole
+    )
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _width(fields: Sequence[Sequence[str]]) -> int:
+    usual = Counter(len(f) for f in fields).most_common(1)[0][0]
+    alike = [f for f in fields if len(f) == usual]
+    extra = 0
+    while extra < usual and not any(f[usual - 1 - extra].strip() for f in alike):
+        extra += 1
+    return usual - extra
+
+
+def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ...]:
+    """Return the names in the last line of words before the rows, if it has as many as they."""
+    line = next((x for x in reversed(before) if not is_blank(x)), "")
+    text = line.lstrip().lstrip("#%/ ") if is_comment(line) else line
+    if not text or is_row(text) or FRAME_LINE.fullmatch(text) or width < 2:
+        return ()
+    separator = dialect.separator
+    if separator is None or separator not in text:
+        separator = next((s for s in (";", "\t", "|", ",") if s in text), None)
+    names = tuple(n.strip() for n in text.strip("\r\n").split(separator))
+    while len(names) > width and not names[-1]:
+        names = names[:-1]
+    return names if len(names) == width else ()
+
+
+def _is_numbered(first: Sequence[str]) -> bool:
+    """Return whether a first row counts the columns, as tables without names are written."""
+    rest = first[1:] if not first[0].strip() else first
+    if len(rest) < 3 or not all(t.strip().strip('"').isdecimal() for t in rest):
+        return False
+    return is_count(np.array([float(t.strip().strip('"')[:9]) for t in rest]))

@@ -1,0 +1,109 @@
+"""Write a table as a Parquet file: columns of types and units, a group of rows at a time."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tactile_graph.api.result import Result
+from tactile_graph.engine.columns import Column
+from tactile_graph.engine.table import Row, Table, units_of
+from tactile_graph.errors import UsageError
+from tactile_graph.files import said
+
+ROWS_A_GROUP = 10_000
+MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
+
+
+def pyarrow() -> Any:
+    """Return the library that writes Parquet files.
+
+    Raises
+    ------
+    UsageError
+        If it is not installed.
+    """
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise UsageError(MISSING) from None
+    return pyarrow
+
+
+class ParquetFile:
+    """A Parquet file under way; it stands under its name when it is closed, whole.
+
+    Parameters
+    ----------
+    output : str
+        Path. Until the end rows go to ``.part`` beside it.
+    table : Table
+    """
+
+    broken = False
+    """Whether lines could not be written; of this format none is left then."""
+
+    def __init__(self, output: str, table: Table) -> None:
+        if output == "-":
+            raise UsageError("-o -: a Parquet file cannot go to stdout; give a name")
+        self._pyarrow = pyarrow()
+        self.output = Path(output)
+        self._part = self.output.with_name(f"{self.output.name}.part")
+        self._table = table
+        self._rows: list[Row] = []
+        self._writer: Any = None
+        self._quantity = "raw"
+
+    def write(self, result: Result) -> None:
+        """Take in a frame's rows."""
+        if not self._rows and self._writer is None:
+            self._quantity = result.frame.image.quantity
+        self._rows += self._table.rows(result)
+        if len(self._rows) >= ROWS_A_GROUP:
+            self._flush()
+
+    def close(self) -> None:
+        """Write what is left, and give the file its name."""
+        self._flush()
+        with said(str(self.output)):
+            self._writer.close()
+            os.replace(self._part, self.output)
+
+    def _flush(self) -> None:
+        arrow = self._pyarrow
+        with said(str(self.output)):
+            if self._writer is None:
+                units = units_of(self._table, self._quantity)
+                fields = [_field(arrow, c, units.get(c.key, "")) for c in self._table.columns]
+                self._schema = arrow.schema(fields)
+                self._writer = arrow.parquet.ParquetWriter(str(self._part), self._schema)
+            cells = {
+                column.key: [_plain(row.get(column.key), column.kind) for row in self._rows]
+                for column in self._table.columns
+            }
+            self._writer.write_table(arrow.table(cells, schema=self._schema))
+        self._rows = []
+
+
+def _field(arrow: Any, column: Column, unit: str) -> Any:
+    kind = column.kind
+    if issubclass(kind, bool | np.bool_):
+        of = arrow.bool_()
+    elif issubclass(kind, int | np.integer):
+        of = arrow.int64()
+    elif issubclass(kind, float | np.floating):
+        of = arrow.float64()
+    else:
+        of = arrow.string()
+    return arrow.field(column.key, of, metadata={"unit": unit} if unit else None)
+
+
+def _plain(cell: Any, kind: type) -> Any:
+    if cell is None:
+        return None
+    number = issubclass(kind, bool | int | float | np.generic)
+    return cell if number else str(cell)

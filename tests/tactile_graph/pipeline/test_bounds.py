@@ -1,0 +1,85 @@
+"""A pipeline file that asks for work out of proportion is refused before the work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers_graphs import registry
+from tactile_graph import load
+from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.pipeline import load as module
+
+LEAF = "pipeline: leaf\nnodes: {a: {step: read, in: frame}}\noutputs: [a]\n"
+
+
+def nested(folder: Path, levels: int, uses: int = 1) -> Path:
+    """Write pipelines that use each the next one, and return the outermost's file."""
+    (folder / "p0.yaml").write_text(LEAF.replace("leaf", "p0"))
+    for n in range(1, levels + 1):
+        nodes = "".join(f"  n{k}: {{use: p{n - 1}.yaml, in: frame}}\n" for k in range(uses))
+        text = f"pipeline: p{n}\nnodes:\n{nodes}outputs: [n0]\n"
+        (folder / f"p{n}.yaml").write_text(text)
+    return folder / f"p{levels}.yaml"
+
+
+@pytest.fixture
+def read_files(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """Return the files that are read."""
+    read: list[Path] = []
+    text = module._text
+
+    def noted(path: Path) -> str:
+        read.append(path)
+        return text(path)
+
+    monkeypatch.setattr(module, "_text", noted)
+    return read
+
+
+def test_a_pipeline_used_many_times_is_read_once(tmp_path: Path, read_files: list[Path]) -> None:
+    pipeline = load(nested(tmp_path, 9, uses=2), registry())
+    assert len(read_files) == 10
+    assert len(pipeline.nodes) >= 2**9
+
+
+def test_settings_of_one_use_are_not_those_of_another(tmp_path: Path) -> None:
+    nested(tmp_path, 1)
+    outer = tmp_path / "outer.yaml"
+    outer.write_text(
+        "pipeline: outer\nnodes:\n  m: {use: p0.yaml, in: frame, with: {a.tag: x}}\n"
+        "  n: {use: p0.yaml, in: frame}\noutputs: [m, n]\n"
+    )
+    found: Any = load(outer, registry()).nodes
+    assert [found[f"{k}/a"].settings.get("tag") for k in "mn"] == ["x", ""]
+
+
+def test_too_many_nodes_in_all_are_refused(tmp_path: Path, read_files: list[Path]) -> None:
+    with pytest.raises(PipelineError, match=r"nodes with those of the pipelines it uses; allowed"):
+        load(nested(tmp_path, 20, uses=2), registry())
+    assert len(read_files) <= 21
+
+
+def test_a_long_chain_of_pipelines_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(PipelineError, match=r"pipelines use each other more than 50 deep"):
+        load(nested(tmp_path, 150), registry())
+    assert load(nested(tmp_path, 45), registry()).nodes
+
+
+def test_a_file_without_an_end_is_refused(tmp_path: Path) -> None:
+    endless = tmp_path / "endless.yaml"
+    endless.symlink_to("/dev/zero")
+    with pytest.raises(UsageError, match=r"is longer than 4000000 bytes"):
+        load(endless, registry())
+
+
+def test_what_is_no_pipeline_file_is_not_shown(tmp_path: Path) -> None:
+    secret = tmp_path / "secret.txt"
+    secret.write_text("root:x:0:0\n")
+    outer = tmp_path / "outer.yaml"
+    outer.write_text(f"pipeline: p\nnodes: {{m: {{use: {secret}, in: frame}}}}\noutputs: [m]\n")
+    with pytest.raises(PipelineError, match=r"a pipeline file ends in \.yaml") as told:
+        load(outer, registry())
+    assert "root:x" not in str(told.value)

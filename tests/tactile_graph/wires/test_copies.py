@@ -1,0 +1,78 @@
+"""Frames, images and pipelines are copied and pickled: other processes and notebooks need them."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_graphs import registry
+from tactile_graph import Circle, Frame, Image, Mask, load, loads
+from tactile_graph.errors import UsageError
+from tactile_graph.wires.frame import TrueObject
+
+WAYS: list[Callable[[Any], Any]] = [
+    copy.copy, copy.deepcopy, lambda thing: pickle.loads(pickle.dumps(thing)),
+]  # fmt: skip
+VALUES = np.arange(6.0).reshape(2, 3)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_an_image_is_the_same_and_frozen(way: Callable[[Any], Any]) -> None:
+    image = Image(VALUES.copy(), (1.3, 1.2), (-0.1, 0.2), "volt", VALUES > 1.0)
+    again = way(image)
+    assert (again.values == image.values).all()
+    assert (again.valid == image.valid).all()
+    assert (again.pitch_cm, again.origin_cm, again.quantity) == ((1.3, 1.2), (-0.1, 0.2), "volt")
+    assert not again.values.flags.writeable
+    assert not again.valid.flags.writeable
+    with pytest.raises(AttributeError, match="frozen"):
+        again.quantity = "gram"
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_mask_is_the_same_and_frozen(way: Callable[[Any], Any]) -> None:
+    mask = Mask(VALUES > 2.0, (1.3, 1.3))
+    again = way(mask)
+    assert (again.values == mask.values).all()
+    assert (again.count, again.pitch_cm) == (3, (1.3, 1.3))
+    assert not again.values.flags.writeable
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_frame_keeps_its_truth_and_time(way: Callable[[Any], Any]) -> None:
+    frame = Frame(Image(VALUES.copy()), 7, 0.5, (TrueObject(Circle(1.0, 2.0, 3.0), 500.0),))
+    again = way(frame)
+    assert (again.index, again.time_s, again.truth) == (7, 0.5, frame.truth)
+    assert (again.image.values == VALUES).all()
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_pipeline_answers_as_before(way: Callable[[Any], Any]) -> None:
+    pipeline = load("circle-3").with_settings({"footprint.level_v": 0.02})
+    pipeline = pipeline.with_source("simulate", scene="disc-1", frames=3)
+    again = way(pipeline)
+    assert again.key == pipeline.key
+    assert (again.name, again.file) == (pipeline.name, pipeline.file)
+    rows = [[r.row() for r in p.stream()] for p in (pipeline, again)]
+    assert rows[0] == rows[1]
+
+
+def test_a_pipeline_of_a_file_that_is_gone_is_pickled_by_its_text(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(Path(load("circle-1").file).read_text())
+    pickled = pickle.dumps(load(file))
+    file.unlink()
+    assert pickle.loads(pickled).key == load("circle-1").key
+
+
+def test_a_pipeline_with_a_registry_of_its_own_says_why_not() -> None:
+    own = loads("pipeline: p\nnodes: {a: {step: constant}}\noutputs: [a]\n", registry=registry())
+    with pytest.raises(UsageError, match="registry of its own"):
+        pickle.dumps(own)
+    assert copy.copy(own) is own

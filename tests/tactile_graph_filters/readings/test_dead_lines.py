@@ -1,0 +1,42 @@
+"""Lines that read nothing are told from those that are only unloaded."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactile_graph.wires import Image
+from tactile_graph_filters.readings.dead_lines import dead_lines
+
+
+def noisy() -> np.ndarray:
+    return np.random.default_rng(1).normal(0.0, 1.0, (10, 12))
+
+
+def found(values: np.ndarray, valid: np.ndarray | None = None) -> tuple[list[int], list[int]]:
+    rows, columns = dead_lines(Image(values, valid=valid))
+    return np.flatnonzero(rows).tolist(), np.flatnonzero(columns).tolist()
+
+
+def test_lines_stuck_at_any_value_are_dead_also_where_they_cross() -> None:
+    values = noisy()
+    values[3], values[:, 7] = 0.0, 1023.0
+    assert found(values) == ([3], [7])
+
+
+def test_lines_without_a_valid_cell_are_dead() -> None:
+    valid = np.ones((10, 12), bool)
+    valid[:, 2] = False
+    assert found(noisy(), valid) == ([], [2])
+
+
+def test_unloaded_lines_are_not_dead_with_noise_or_without() -> None:
+    assert found(noisy()) == ([], [])
+    silent = np.zeros((10, 12))
+    silent[3:6, 4:9] = 1.0
+    assert found(silent) == ([], [])
+
+
+def test_lines_of_few_cells_are_never_called_dead() -> None:
+    values = np.random.default_rng(1).normal(0.0, 1.0, (9, 3))
+    values[4] = 0.0
+    assert found(values) == ([], [])

@@ -1,0 +1,179 @@
+"""Outlines on pads that are not the one told: places, radii, regions, flags."""
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Circle, Image
+from tactile_graph_likelihood.any_pad.choose import Locate
+from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
+from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
+from tactile_graph_likelihood.settings import FootprintSettings
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+from second_simulator import BASE, KINDS, Bench
+
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
+
+def looked_at(kind, n=18, seed=5, step=None, shape="disc"):
+    """Return centres' and radii's errors, regions that hold the truth, and flags."""
+    step = step or LocateDisc()
+    rows = []
+    for frame in Bench(kind, np.random.default_rng(seed)).frames(n, shape):
+        (true,) = frame.truth
+        found = step.posterior(frame.image)
+        x, y, size = found.mean[:3]
+        off = math.hypot(x - true.shape.x_cm, y - true.shape.y_cm)
+        sized = abs(size - true.shape.radius_cm) if shape == "disc" else 0.0
+        rows.append((off, sized, found.contains(true.shape), found.fits))
+    return np.mean(np.array(rows, float), axis=0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "centre_cm", "radius_cm"),
+    [
+        ("noise 0", 0.13, 0.08),
+        ("noise 3 mV", 0.13, 0.08),
+        ("noise 5 mV", 0.14, 0.09),
+        ("drift 5 mV", 0.13, 0.08),
+        ("law 1/F", 0.13, 0.12),
+        ("turn-on 2 g", 0.10, 0.07),
+        ("saturation 60 g", 0.14, 0.12),
+        ("gains 0.2", 0.07, 0.13),
+        ("voids 0.4", 0.14, 0.11),
+        ("strays 4 %", 0.20, 0.12),
+        ("dead column", 0.14, 0.09),
+        ("foam 0.6 cells", 0.30, 0.20),
+        ("leaning face", 0.22, 0.10),
+    ],
+)
+def test_a_disc_is_found_on_a_pad_that_nobody_described(kind, centre_cm, radius_cm):
+    off, sized, held, fits = looked_at(KINDS[kind])
+    assert off < centre_cm
+    assert sized < radius_cm
+    assert held >= 0.7
+    assert fits >= (0.4 if "foam" in kind else 0.7)
+
+
+def test_an_object_over_the_edge_is_found():
+    off, sized, held, _ = looked_at(KINDS["over the edge"])
+    assert off < 0.4
+    assert sized < 0.25
+    assert held >= 0.7
+
+
+def test_where_next_to_nothing_shows_it_says_so():
+    few = replace(KINDS["turn-on 40 g"], discs=((1860.0, 6.8),))
+    off, _, held, fits = looked_at(few)
+    assert off > 0.5
+    assert held >= 0.7
+    assert fits <= 0.2
+
+
+@pytest.mark.slow  # what searches rectangles is compiled for it
+def test_a_rectangle_is_found_on_a_pad_that_nobody_described():
+    for kind in ("noise 3 mV", "law 1/F"):
+        off, _, held, _ = looked_at(KINDS[kind], step=LocateRectangle(), shape="rectangle")
+        assert off < 0.3
+        assert held >= 0.7
+
+
+@pytest.mark.slow  # of all shapes
+def test_the_shape_is_told_by_the_evidence():
+    step, right = Locate(), 0
+    bench = Bench(KINDS["noise 3 mV"], np.random.default_rng(1))
+    for shape in ("disc", "rectangle"):
+        for frame in bench.frames(6, shape):
+            found = step(frame.image)
+            assert found.disc + found.ellipse + found.rectangle == pytest.approx(1.0)
+            assert found.probability == getattr(found, found.name)
+            right += found.name == shape
+    assert right >= 10
+
+
+@pytest.mark.slow  # of ellipses
+def test_an_ellipse_that_is_hardly_one_is_a_disc():
+    frame = next(iter(Bench(BASE, np.random.default_rng(1)).frames(1)))
+    found, (true,) = LocateEllipse()(frame.image), frame.truth
+    assert found.semi_major_cm == pytest.approx(true.shape.radius_cm, abs=0.4)
+    assert found.semi_minor_cm == pytest.approx(true.shape.radius_cm, abs=0.4)
+
+
+def test_readings_need_no_quantity_and_no_scale():
+    """Counts of a circuit that nobody knows, from a zero of their own."""
+    rng = np.random.default_rng(3)
+    y, x = np.mgrid[0:16, 0:16] * 1.3 + 0.5
+    load = np.where(
+        np.hypot(x - 9.0, y - 11.0) < 5.0, np.exp(0.4 * rng.standard_normal(x.shape)), 0
+    )
+    counts = np.round(512.0 + 200.0 * load + 3.0 * rng.standard_normal(x.shape))
+    found = LocateDisc()(Image(counts, (1.3, 1.3), (-0.15, -0.15), "counts"))
+    assert math.hypot(found.x_cm - 9.0, found.y_cm - 11.0) < 0.35
+    assert found.radius_cm == pytest.approx(5.0, abs=0.5)
+    assert found.fits
+
+
+def test_cells_that_are_nearly_square_lie_where_they_lie():
+    rng = np.random.default_rng(8)
+    y, x = np.mgrid[0:30, 0:20] + 0.5
+    near = np.hypot(x - 8.0, y - 24.0) < 4.0
+    counts = 5.0 * rng.standard_normal(x.shape) + near * rng.uniform(150.0, 250.0, x.shape)
+    square = LocateDisc()(Image(counts, (0.5, 0.5), (0.0, 0.0), "counts"))
+    lower = LocateDisc()(Image(counts, (0.5, 0.49), (0.0, 0.0), "counts"))
+    assert lower.x_cm == pytest.approx(square.x_cm)
+    assert lower.y_cm == pytest.approx(0.98 * square.y_cm)
+    assert lower.posterior.contains(Circle(4.0, 24.0 * 0.49, 2.0))
+
+
+def test_a_start_of_its_own_shape_is_taken():
+    frame = next(iter(Bench(BASE, np.random.default_rng(2)).frames(1)))
+    plain = LocateDisc()(frame.image)
+    begun = LocateDisc()(frame.image, Circle(plain.x_cm + 0.3, plain.y_cm, plain.radius_cm))
+    assert begun.x_cm == pytest.approx(plain.x_cm, abs=0.05)
+
+
+def test_noise_alone_is_no_object():
+    rng = np.random.default_rng(4)
+    image = Image(np.zeros((16, 16)), (1.3, 1.3), (0.0, 0.0), "volt")
+    with pytest.raises(Degenerate, match="no reading rises above the noise"):
+        LocateDisc()(image)
+    risen = 0
+    for _ in range(20):
+        noise = image.with_values(1e-3 * rng.standard_normal((16, 16)))
+        try:
+            LocateDisc()(noise)
+        except Degenerate:
+            continue
+        risen += 1
+    assert risen <= 3
+
+
+def test_the_same_frame_has_the_same_answer():
+    frame = next(iter(Bench(BASE, np.random.default_rng(6)).frames(1)))
+    one, other = (LocateDisc().posterior(frame.image) for _ in range(2))
+    assert np.array_equal(one.mean, other.mean)
+    assert np.array_equal(one.covariance, other.covariance)
+
+
+@pytest.mark.parametrize(
+    ("neighbours", "least", "most"), [(0.0, 1.0, 1.0), (1.5, 1.0, 1.2), (6.0, 1.4, 2.2)]
+)
+def test_what_hangs_together_widens(neighbours, least, most):
+    assert least <= variance_inflation(neighbours, 60) <= most
+
+
+def test_an_outline_lies_on_the_pad_mostly():
+    """One whose rim is as likely beyond the pad's edge as before it comes out before it."""
+    frame = next(iter(Bench(BASE, np.random.default_rng(7)).frames(1)))
+    logs = {
+        on_pad: LocateDisc(FootprintSettings(precision=0.3, on_pad=on_pad)).posterior(frame.image)
+        for on_pad in ("whole", "mostly", "partly")
+    }
+    assert logs["mostly"].mean[:3] == pytest.approx(logs["whole"].mean[:3], abs=0.05)
+    assert logs["partly"].mean[:3] == pytest.approx(logs["whole"].mean[:3], abs=0.15)

@@ -1,0 +1,63 @@
+"""Several contacts on one pad: each has an outline of its own."""
+
+import numpy as np
+import pytest
+
+from tactile_graph import load
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.locate_contacts import LocateContacts, alone
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_pads.pad import load_pad
+
+pytestmark = pytest.mark.usefixtures("warm_kernels")
+
+
+def contacts_of(frame):
+    return load("locate-contacts").runner(only=("objects",))(frame)["objects"].contacts
+
+
+def two_discs(seed=3):
+    scene = {
+        "objects": [
+            {"shape": "disc", "name": n, "weight_g": w, "radius_cm": r, "place": at}
+            for n, w, r, at in (("a", 2000.0, 2.6, [4.5, 5.0]), ("b", 3000.0, 3.4, [14.0, 14.5]))
+        ]
+    }
+    (frame,) = load("contacts").with_source("simulate", scene=scene, frames=1).frames(seed)
+    return frame
+
+
+def test_each_contact_has_its_outline_the_largest_first():
+    frame = two_discs()
+    step = LocateContacts(shapes=["disc"])
+    found = step(frame.image, contacts_of(frame))
+    assert found.count == 2
+    assert found.names == ("disc", "disc")
+    large, small = found.shapes
+    assert (large.x_cm, large.y_cm) == pytest.approx((14.0, 14.5), abs=0.4)
+    assert (small.x_cm, small.y_cm) == pytest.approx((4.5, 5.0), abs=0.4)
+    assert large.radius_cm == pytest.approx(3.4, abs=0.4)
+
+
+def test_other_contacts_say_nothing_of_one():
+    frame = two_discs()
+    readings = observed(frame.image, load_pad("thesis"))
+    owner = np.zeros(readings.states.shape, int)
+    owner[:8], owner[8:] = 1, 2
+    first = alone(readings, owner, 1)
+    assert (first.states[8:] == UNKNOWN).all()
+    assert first.touched == int((readings.states[:8] == ON).sum())
+
+
+def test_a_contact_of_noise_has_no_outline():
+    frame = two_discs()
+    readings = observed(frame.image, load_pad("thesis"))
+    owner = np.full(readings.states.shape, 2)
+    owner[readings.states == ON] = 1
+    with pytest.raises(Degenerate, match="contact 2: no reading rises above the noise"):
+        alone(readings, owner, 2)
+
+
+def test_no_contact_has_no_outline():
+    assert LocateContacts(shapes=["disc"])(two_discs().image, ()).count == 0

@@ -1,0 +1,86 @@
+"""All of it together on odd recordings: full scale, counts, silence of the converter, lines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_learning import MadeUpPad
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_pads.learning.learn import LearnedPad, learn_pad
+from tactile_graph_pads.learning.recordings import Stack, read_places, read_stack
+from tactile_graph_pads.learning.summary import summary
+from tactile_graph_sources.writers.write_npz import write_npz
+
+
+def stack(path: Path, frames: list[Frame]) -> Stack:
+    write_npz(path, frames)
+    return read_stack([(path, None)])
+
+
+def changed(frames: list[Frame], by: object) -> list[Frame]:
+    """Return frames whose values went through a function."""
+    return [
+        Frame.of(by(f.image.values), f.image.pitch_cm, quantity="raw", index=k, truth=f.truth)  # type: ignore[operator]
+        for k, f in enumerate(frames)
+    ]
+
+
+def learned(folder: Path, pad: MadeUpPad, by: object, n: int = 120) -> LearnedPad:
+    empty = stack(folder / "e.npz", changed(list(pad.empty(40)), by))
+    return learn_pad(empty, stack(folder / "o.npz", changed(list(pad.objects(n)), by)))
+
+
+def test_readings_that_stop_at_full_scale_are_told(tmp_path: Path) -> None:
+    found = learned(tmp_path, MadeUpPad(), lambda v: np.minimum(np.round(v), 255.0))
+    assert found.learned.saturated_from == 255.0
+    assert ("full scale", "255 raw, was reached") in list(summary(found))
+    free = learned(tmp_path, MadeUpPad(), np.round)
+    assert free.learned.saturated_from is None
+
+
+def test_a_converter_without_any_noise_is_touched_from_its_first_step(tmp_path: Path) -> None:
+    pad = MadeUpPad(noise=0.0)
+    pad.offset[:] = 100.0
+    found = learned(tmp_path, pad, lambda v: 20.0 * np.round(v / 20.0))
+    assert found.learned.noise == pytest.approx(20.0 / np.sqrt(12.0))
+    assert 0.0 < found.learned.touched_from <= 20.0
+    assert found.counted_right == 1.0
+
+
+def test_an_object_at_rest_for_long_is_one_placement(tmp_path: Path) -> None:
+    pad = MadeUpPad()
+    frames = [pad.frame(((8.0, 7.0, 300.0),), k) for k in range(80)]
+    found = learn_pad(
+        stack(tmp_path / "e.npz", list(pad.empty())), stack(tmp_path / "o.npz", frames)
+    )
+    assert any("1 placements touch too few elements" in note for note in found.notes)
+    assert found.learned.gain_of is None
+
+
+def test_missing_elements_stay_missing(tmp_path: Path) -> None:
+    def hole(values: np.ndarray) -> np.ndarray:
+        out = values.copy()
+        out[2, 3] = np.nan
+        return out
+
+    found = learned(tmp_path, MadeUpPad(), hole, n=40)
+    assert found.elements.state[2, 3] == "missing"
+    assert not found.elements.good[2, 3]
+    assert np.isfinite(found.elements.offset).all()
+
+
+def test_places_are_read_by_name_and_frame(tmp_path: Path) -> None:
+    path = tmp_path / "p.csv"
+    path.write_text("recording;x_cm;y_cm;frame\na.npz;1.5;2;\nb.npz;3;4;0\nb.npz;5;6;0\n")
+    found = read_places(path, ["a.npz", "b.npz"])
+    assert found == {"a.npz": {None: ((1.5, 2.0),)}, "b.npz": {0: ((3.0, 4.0), (5.0, 6.0))}}
+    path.write_text("recording,x,y\na.npz,1,2\n")
+    with pytest.raises(DataError, match=r"needs the columns recording, x_cm and y_cm, got"):
+        read_places(path, ["a.npz"])
+    path.write_text("recording,x_cm,y_cm\na.npz,one,2\n")
+    with pytest.raises(DataError, match=r"p.csv:2: is no place"):
+        read_places(path, ["a.npz"])

@@ -1,0 +1,41 @@
+"""The page and its nodes: what is shown can be pasted, and hostile names stay text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from helpers_html import read_html
+from helpers_learning import MadeUpPad
+from tactile_graph import loads
+from tactile_graph_pads.learning.learn import learn_pad
+from tactile_graph_pads.learning.pad_file import Making, write_pad
+from tactile_graph_pads.learning.page import nodes, page
+from tactile_graph_pads.learning.recordings import read_stack
+
+MAKING = Making("tactile-graph learn-pad '<b>.npz'", "tactile-graph 0", "2026", {"<b>.npz": "0"})
+
+
+def test_the_nodes_shown_run_with_the_pad_that_was_written(tmp_path: Path) -> None:
+    pad = MadeUpPad(lean_cells=2.0, stuck=((5, 6),))
+    empty, objects = pad.recorded(tmp_path, n_objects=80)
+    found = learn_pad(read_stack([(empty, None)]), read_stack([(objects, None)]))
+    (path, *_) = write_pad(tmp_path / "pad.yaml", found, None, MAKING)
+    shown = nodes(found, str(path))
+    assert "inpaint" in shown
+    pipeline = f"pipeline: p\nsource: {{step: recording, with: {{path: {objects}}}}}\n{shown}\n"
+    result = next(iter(loads(f"{pipeline}outputs: [placed, grams]\n").stream()))
+    assert result["placed"].count == 1
+    assert result["grams"].total > 0.0
+
+
+def test_the_page_is_whole_and_names_stay_text(tmp_path: Path) -> None:
+    empty, _ = MadeUpPad().recorded(tmp_path, n_objects=1)
+    found = learn_pad(read_stack([(empty, None)]), None)
+    text = page(found, MAKING, "<i>.yaml")
+    root = read_html(text.removeprefix("<!doctype html>"))
+    assert [h2.text for h2 in root.all("h2")] == [
+        "What could not be told, and what to mind", "The empty pad", "In a pipeline",
+    ]  # fmt: skip
+    assert root.all("b") == root.all("i") == root.all("script") == []
+    assert "'<b>.npz'" in root.text
+    assert "<i>.yaml" in root.text

@@ -1,0 +1,90 @@
+"""Every shipped pipeline runs on frames of any quantity and grid, or says at once what it lacks."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_cli import call
+from tactile_graph import Circle, Frame, load
+from tactile_graph.errors import RuleError
+from tactile_graph.plugins.registry import installed
+
+GRIDS = ((16, 16), (28, 28), (12, 40))
+PEAKS = {"raw": 500.0, "counts": 900.0, "volt": 1.2, "gram": 60.0, "kilopascal": 30.0}
+SHIPPED = installed().names("pipelines")
+IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
+    *("adaptive", "circle-by-order", "circle-followed", "circle-full")
+}
+"""Those that weigh a pad's volts: they cannot do with less."""
+KNOWN_IN_GRAMS = {"identify", "identify-locate"}
+"""Those that know the thesis' objects, by their grams."""
+
+
+def disc(shape: tuple[int, int], quantity: str, seed: int = 0) -> Frame:
+    """A round object in the middle of the pad, of uneven load, with noise around."""
+    rng = np.random.default_rng(seed)
+    rows, columns = shape
+    y, x = np.mgrid[:rows, :columns]
+    dome = 1.0 - ((x - columns / 2) ** 2 + (y - rows / 2) ** 2) / (0.28 * min(shape)) ** 2
+    values = np.sqrt(np.clip(dome, 0.0, None)) * (1.0 + 0.1 * rng.normal(size=shape))
+    values = PEAKS[quantity] * (values + 0.003 * rng.normal(size=shape))
+    whole = quantity in ("raw", "counts")
+    return Frame.of(np.round(values) if whole else values, 1.0, quantity=quantity)
+
+
+@pytest.mark.parametrize("quantity", PEAKS)
+@pytest.mark.parametrize("name", sorted(set(SHIPPED) - IN_VOLTS - KNOWN_IN_GRAMS))
+def test_it_answers_on_three_grids(name: str, quantity: str) -> None:
+    pipeline = load(name)
+    for shape in GRIDS:
+        result = pipeline.run(disc(shape, quantity))
+        assert result.failures == []
+        assert set(result) == set(pipeline.outputs)
+
+
+@pytest.mark.parametrize("quantity", sorted(set(PEAKS) - {"volt"}))
+@pytest.mark.parametrize("name", sorted(IN_VOLTS))
+def test_one_that_needs_volts_says_so_before_it_computes(name: str, quantity: str) -> None:
+    with pytest.raises(RuleError, match=f"takes volt at port .*, got a frame of {quantity}"):
+        load(name).run(disc((16, 16), quantity))
+
+
+@pytest.mark.parametrize("quantity", ["raw", "counts", "kilopascal"])
+@pytest.mark.parametrize("name", sorted(KNOWN_IN_GRAMS))
+def test_one_that_knows_objects_by_grams_says_so(name: str, quantity: str) -> None:
+    failed = load(name).run(disc((16, 16), quantity)).outcome("identity")
+    assert "the objects were learned in gram" in failed.reason
+
+
+@pytest.mark.parametrize("quantity", sorted(set(PEAKS) - {"volt"}))
+@pytest.mark.parametrize("shape", GRIDS)
+def test_a_circle_lies_where_the_disc_does_whatever_the_unit(
+    shape: tuple[int, int], quantity: str
+) -> None:
+    circle = load("circle-3").run(disc(shape, quantity))["circle"]
+    assert isinstance(circle, Circle)
+    middle = (shape[1] / 2 + 0.5, shape[0] / 2 + 0.5)
+    assert np.hypot(circle.x_cm - middle[0], circle.y_cm - middle[1]) < 0.5
+    assert circle.radius_cm == pytest.approx(0.28 * min(shape), abs=0.8)
+
+
+def test_a_plain_npz_runs_and_is_learned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for n in range(4):
+        frames = [disc((16, 16), "raw", 10 * n + k).image.values for k in range(3)]
+        np.savez(f"mug-{n}.npz", frames=np.array(frames))
+    done = call("run", "circle-3", "mug-0.npz", "-o", "out.jsonl")
+    assert done.exit_code == 0, done.output
+    assert "assumed  footprint: cells from" in done.stderr
+    assert "raw on, which is above the frame's own noise" in done.stderr
+    done = call("learn", "mug", *[f"mug-{n}.npz" for n in range(4)])
+    assert done.exit_code == 0, done.output
+    database = "identity.database=tactile-objects.sqlite"
+    done = call("run", "identify", "mug-1.npz", "--set", database, "-o", "-", "--format", "jsonl")
+    assert done.exit_code == 0, done.output
+    names = [json.loads(line)["outputs"]["identity"]["name"] for line in done.stdout.splitlines()]
+    assert names == ["mug"] * 3

@@ -1,0 +1,140 @@
+"""``inspect``: what a recording is and holds, and what takes it."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from helpers_dialects import film, flat
+from helpers_recordings import shared, xsensor_text
+from tactile_graph import Frame
+from tactile_graph.cli import cli
+from tactile_graph_sources.writers.write_npz import write_npz
+
+RNG = np.random.default_rng(0)
+
+
+def run(*args: object, code: int = 0) -> str:
+    result = CliRunner().invoke(cli, ["inspect", *(str(a) for a in args)])
+    assert result.exit_code == code, result.output
+    return result.output
+
+
+def looked(*args: object) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(run(*args, "--json"))
+    return found
+
+
+@pytest.fixture
+def mat(tmp_path: Path) -> Path:
+    """A film of counts with noise 1.5, a dead, a stuck, a noisy and a missing cell, and garbage."""
+    values = film(60, 10, 12)
+    values[:36] = np.minimum(values[:36], 14.0)  # nothing lies there yet
+    values += RNG.normal(0, 1.5, values.shape)
+    values[:, 5, 6] = 11.0
+    values[:, 1, 2] = 500.0
+    values[:, 8, 9] += RNG.normal(0, 40.0, 60)
+    values[:, 0, 11] = np.nan
+    frames = [
+        Frame.of(v, 0.8, quantity="counts", index=k, time_s=0.02 * k) for k, v in enumerate(values)
+    ]
+    garbage = Frame.of(RNG.integers(0, 65536, (10, 12)), 0.8, quantity="counts", time_s=-0.02)
+    write_npz(tmp_path / "mat.npz", [garbage, *frames])
+    return tmp_path / "mat.npz"
+
+
+def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
+    found = looked(mat)
+    (sensor,) = found["sensors"]
+    assert found["counts"] == {"frames of garbage left out": 1}
+    assert (sensor["n_frames"], sensor["shape"]) == (60, [10, 12])
+    assert sensor["rate_hz"] == pytest.approx(50.0)
+    # Counts of 10 to 14 at random and the noise: variances add.
+    assert sensor["noise"] == pytest.approx(np.hypot(1.5, np.sqrt(2.0)), rel=0.3)
+    assert sensor["offset"] == pytest.approx(12.0, abs=3.5)
+    assert sensor["dead"] == [[5, 6]]
+    assert sensor["stuck"] == [[1, 2]]
+    assert sensor["noisy"] == [[8, 9]]
+    assert sensor["missing"] == [[0, 11]]
+    assert not sensor["pitch_assumed"]
+    assert max(sensor["n_contacts"][:36]) <= 1  # the stuck cell and one of the noisy
+    assert max(sensor["n_contacts"]) >= 2
+
+
+def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
+    text = run(mat)
+    assert "format    NumPy .npz" in text
+    assert "pitch     0.8 x 0.8 cm (known), so 9.6 x 8 cm" in text
+    assert "dead      1 at (row, column) (5, 6)" in text
+    assert "counted   frames of garbage left out: 1" in text
+    lines = text.splitlines()
+    frame = [line for line in lines if line.startswith("  |")]
+    assert len(frame) == 10
+    assert frame[0].endswith("xx|")
+    assert len({c for line in frame for c in line.strip(" |x")}) > 3
+
+
+def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
+    path = tmp_path / "my mat.csv"
+    path.write_text(flat(film(12, 6, 10)))
+    found = looked(path, "--with", "rows=6", "--with", "columns=10")
+    assert found["assumed"] == ["whose pitch is assumed to be 1 cm"]
+    contacts = next(c for c in found["commands"] if " run contacts " in c)
+    convert = next(c for c in found["commands"] if " convert " in c)
+    assert shlex.split(contacts)[3] == str(path)
+    for command in (contacts + " --frames 2", convert.replace("my mat.zarr", f"{tmp_path}/a.npz")):
+        result = CliRunner().invoke(cli, shlex.split(command)[1:])
+        assert result.exit_code == 0, result.output
+
+
+def test_pipelines_that_cannot_take_it_are_named_with_the_reason(mat: Path) -> None:
+    assert "takes volt, got a frame of counts" in run(mat)
+
+
+def test_each_sensor_is_told_for_itself_and_drawn(tmp_path: Path) -> None:
+    path = tmp_path / "walk.csv"
+    path.write_text(xsensor_text({"LF": film(9, 6, 5), "RF": film(9, 7, 5, seed=1)}))
+    text = run(path, "--picture", tmp_path / "a.png")
+    assert "sensor    LF" in text
+    assert "grid      7 rows x 5 columns" in text
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_one_frame_has_contacts_and_no_noise(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", film(1, 12, 14)[0])
+    (sensor,) = looked(tmp_path / "a.npy")["sensors"]
+    assert sensor["noise"] is None
+    assert sensor["n_contacts"] == [2]
+
+
+def test_a_file_that_is_none_is_an_error_and_costs_the_others_nothing(
+    tmp_path: Path, mat: Path
+) -> None:
+    (tmp_path / "a.txt").write_text("hello\n")
+    assert "a.txt: no recording" in run(tmp_path / "a.txt", code=2)
+    text = run(tmp_path / "a.txt", mat, code=1)
+    assert "a.txt: no recording" in text
+    assert "grid      10 rows x 12 columns" in text
+    assert "give one FILE" in run(mat, mat, "--picture", tmp_path / "a.png", code=2)
+    assert "row: unknown" in run(mat, "--with", "row=3", code=2)
+
+
+def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
+    for sensor in looked(shared("vendor_exports/xsensor_data.csv"))["sensors"]:
+        assert (sensor["dead"], sensor["stuck"]) == ([], [])
+        assert sensor["quantity"] == "kilopascal"
+
+
+@pytest.mark.parametrize("sigma", [0.6, 1.0, 3.0])
+def test_the_noise_of_whole_counts_is_that_before_they_were_rounded(
+    sigma: float, tmp_path: Path
+) -> None:
+    np.save(tmp_path / "a.npy", np.rint(RNG.normal(50.0, sigma, (200, 12, 12))))
+    (sensor,) = looked(tmp_path / "a.npy")["sensors"]
+    assert sensor["noise"] == pytest.approx(sigma, rel=0.25)
