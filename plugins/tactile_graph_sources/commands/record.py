@@ -80,29 +80,18 @@ def record(
     _check_source(port, preset, source)
     _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
-<<<<<<< HEAD
-    frames = serial(
-        port=port,
-        preset=preset,
-        baud=baud,
-        n_frames=n_frames,
-        seconds=seconds,
-        give_up_s=give_up,
-        report=report,
-    )
-=======
     if source is not None:
-        frames = _of_source(source, settings, n_frames, report)
+        frames = _until(_of_source(source, settings, n_frames, report), seconds)
     else:
         frames = serial(
             port=port or "",
             preset=preset or "",
             baud=baud,
             n_frames=n_frames,
+            seconds=seconds,
             give_up_s=give_up,
             report=report,
         )
->>>>>>> main
     failure: Exception | None = None
     with _Ended() as ended:
         try:
@@ -179,6 +168,14 @@ class _Ended:
     def _came(self, number: int, _frame: FrameType | None) -> None:
         self.by = number
         raise KeyboardInterrupt
+
+
+def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
+    end = None if seconds is None else time.monotonic() + seconds
+    for frame in frames:
+        yield frame
+        if end is not None and time.monotonic() > end:
+            return
 
 
 def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
