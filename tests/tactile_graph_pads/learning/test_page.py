@@ -15,6 +15,7 @@ from tactile_graph_pads.learning.recordings import read_stack
 MAKING = Making("tactile-graph learn-pad '<b>.npz'", "tactile-graph 0", "2026", {"<b>.npz": "0"})
 
 
+@pytest.mark.slow
 def test_the_nodes_shown_run_with_the_pad_that_was_written(tmp_path: Path) -> None:
     pad = MadeUpPad(lean_cells=2.0, stuck=((5, 6),))
     empty, objects = pad.recorded(tmp_path, n_objects=80)
