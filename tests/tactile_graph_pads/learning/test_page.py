@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from helpers_html import read_html
 from helpers_learning import MadeUpPad
 from tactile_graph import loads
