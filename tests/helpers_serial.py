@@ -90,7 +90,7 @@ class Kit:
     can_tell: bool = True
     device_time: Callable[[int], float] | None = None
     lead_in: bytes = b""
-    needs_follower: bool = True
+    followers: int = 1
     junk: bytes = field(default=b"rst:0x1 (POWERON_RESET)\r\nready\r\n")
 
     def pad(self, rng: np.random.Generator) -> Pad:
@@ -113,6 +113,7 @@ def _flexitac(rows: int) -> Kit:
         (rows, 32),
         255,
         lambda pad, i: b"\xaa\x55" + pad.astype(np.uint8).tobytes(),
+        followers=2,
     )
 
 
@@ -127,7 +128,7 @@ KITS = [
         lambda pad, i: struct.pack("<II", 1000 * i, 1000 * i + 700) + pad.astype("<u2").tobytes(),
         by_silence=True,
         device_time=lambda i: 1e-3 * i,
-        needs_follower=False,
+        followers=0,
     ),
     Kit(
         "m1616",
@@ -135,7 +136,7 @@ KITS = [
         4095,
         lambda pad, i: b"\xaa\xab\xac" + pad.astype(">u2").tobytes() + struct.pack(">I", i),
     ),
-    Kit("fabric-16x16", (16, 16), 4095, _fabric, needs_follower=False),
+    Kit("fabric-16x16", (16, 16), 4095, _fabric, followers=0),
     Kit("fabric-16x16-bare", (16, 16), 4095, _bare),
     Kit(
         "itas",
@@ -144,20 +145,20 @@ KITS = [
         lambda pad, i: pad.astype(np.uint8).tobytes(),
         low=1,
         by_silence=True,
-        needs_follower=False,
+        followers=0,
     ),
     Kit("zero-runs-16x16", (16, 16), 254, lambda pad, i: _zero_runs(pad), can_tell=False,
-        lead_in=b"\xff", needs_follower=False),
+        lead_in=b"\xff", followers=0),
     Kit(
         "pressure-mat-28x56",
         (28, 56),
         255,
         lambda pad, i: pad.astype(np.uint8).tobytes() + b"\xff\xfe\xfe\xff",
         lead_in=b"\xff\xfe\xfe\xff",
-        needs_follower=False,
+        followers=0,
     ),
     Kit("velostat-43x14", (43, 14), 1023, lambda pad, i: b"F," + _csv(pad) + b"\n",
-        can_tell=False, needs_follower=False),
+        can_tell=False, followers=0),
     Kit(
         "fsr-8x8",
         (8, 8),
@@ -168,20 +169,20 @@ KITS = [
         + b"\r\n",
         can_tell=False,
         device_time=lambda i: 2e-3 * i,
-        needs_follower=False,
+        followers=0,
     ),
     Kit("bnl-16x16", (16, 16), 1023, _lines, by_silence=True, can_tell=False,
-        needs_follower=False),
+        followers=0),
     Kit("wiresens-16x16", (16, 16), 4095, _wiresens, pieces=4, lead_in=b"wr",
-        needs_follower=False),
-    Kit("tactile-glove", (8, 8), 4095, _glove, pieces=64, lead_in=b"\x00", needs_follower=True),
+        followers=0),
+    Kit("tactile-glove", (8, 8), 4095, _glove, pieces=64, lead_in=b"\x00", followers=1),
     Kit(
         "fulai-glove",
         (16, 16),
         4095,
         lambda pad, i: pad.astype("<f4").tobytes() + b"\x00\x00\x80\x7f",
         lead_in=b"\x00\x00\x80\x7f",
-        needs_follower=False,
+        followers=0,
     ),
 ]  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
@@ -30,6 +31,7 @@ def serial(
     timeout_s: Annotated[float, Gt(0.0)] = 2.0,
     give_up_s: Annotated[float, Gt(0.0)] | None = None,
     n_frames: Annotated[int, Ge(1)] | None = None,
+    seconds: Annotated[float, Gt(0.0)] | None = None,
     queue_size: Annotated[int, Ge(1)] = 1024,
     report: Report,
 ) -> Iterator[Frame]:
@@ -53,6 +55,8 @@ def serial(
         End with an error after so long without a frame; None waits for ever.
     n_frames : int, optional
         End after so many frames.
+    seconds : float, optional
+        End after so long, whether frames came or not.
     queue_size : int
         Frames that may wait to be taken.
     report : Report
@@ -62,7 +66,8 @@ def serial(
     ------
     Frame
         ``time_s`` is the host's monotonic clock when the last byte came, ``device_time_s`` the
-        pad's own clock, ``gap`` true where frames were lost on the way just before this one.
+        pad's own clock, ``gap`` true where frames were lost on the way just before this one,
+        ``doubtful`` where the protocol cannot tell whether frames start there.
 
     Raises
     ------
@@ -78,10 +83,14 @@ def serial(
     if n_frames is not None:
         report.expect(n_frames)
     teller = _Teller(reader, report)
+    end = math.inf if seconds is None else time.monotonic() + seconds
     try:
         index = 0
         while n_frames is None or index < n_frames:
-            yield _frame(_next(reader, teller, give_up_s), index, kit, port)
+            arrived = _next(reader, teller, give_up_s, end)
+            if arrived is None:
+                return
+            yield _frame(arrived, index, kit, port)
             index += 1
     finally:
         reader.stop()
@@ -126,11 +135,15 @@ def _opened(
         raise UsageError(refusal(port, error.__cause__ or error, names)) from error
 
 
-def _next(reader: Reader, teller: _Teller, give_up_s: float | None) -> Arrived:
+def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) -> Arrived | None:
+    """Return the next frame, or None if none came before ``end``."""
     start = time.monotonic()
     while True:
         teller.tell()
-        arrived = reader.inbox.get(REPORT_EVERY_S)
+        left = end - time.monotonic()
+        if left <= 0:
+            return None
+        arrived = reader.inbox.get(min(REPORT_EVERY_S, left))
         if arrived is not None:
             return arrived
         if give_up_s is not None and time.monotonic() - start > give_up_s:
@@ -149,4 +162,5 @@ def _frame(arrived: Arrived, index: int, kit: Preset, port: str) -> Frame:
         device_time_s=decoded.device_time_s,
         gap=decoded.gap,
         label=port,
+        doubtful=decoded.doubtful,
     )

@@ -1,10 +1,11 @@
 """Recordings as Zarr stores, read back frame by frame; `write_store` writes them.
 
 A store is a Zarr 3 group of arrays of one row a frame: ``values`` (N, rows, columns; NaN where a
-cell is invalid), ``time_s``, ``device_time_s`` (NaN where there is none), ``gap``, ``notes_end``
-and ``number``. ``notes`` holds JSON (label and truth), of which a frame's ends at ``notes_end``.
-What holds for all frames are the group's attributes. ``number`` is written last of a chunk: rows
-it does not reach do not count, so a writer killed at any moment leaves a store that opens.
+cell is invalid), ``time_s``, ``device_time_s`` (NaN where there is none), ``gap``, ``doubtful``,
+``notes_end`` and ``number``; each chunk carries a CRC-32C. ``notes`` holds JSON (label and truth),
+of which a frame's ends at ``notes_end``. What holds for all frames are the group's attributes.
+``number`` is written last of a chunk: rows it does not reach do not count, so a writer killed at
+any moment leaves a store that opens.
 """
 
 from __future__ import annotations
@@ -25,8 +26,10 @@ from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_sources.readers.truth import truth_from_json
 
 FORMAT = "tactile-graph recording"
-VERSION = 1
-ROWS = ("values", "time_s", "device_time_s", "gap", "notes_end", "number")
+VERSION = 2
+READ = (1, 2)
+"""Version 1 had no ``doubtful`` and no checksums."""
+ROWS = ("values", "time_s", "device_time_s", "gap", "doubtful", "notes_end", "number")
 
 
 def load_zarr() -> ModuleType:
@@ -46,19 +49,25 @@ def is_store(path: str | Path) -> bool:
     return (Path(path) / "zarr.json").is_file()
 
 
+def columns_of(version: object) -> tuple[str, ...]:
+    """Return the arrays of one row a frame that a store of a version has."""
+    return tuple(n for n in ROWS if n != "doubtful") if version == 1 else ROWS
+
+
 def opened(path: Path, mode: str) -> Any:
     """Return the group of a recording, checked; raises what `read_store` raises."""
     zarr = load_zarr()
     try:
         group = zarr.open_group(str(path), mode=mode)
-        missing = [n for n in (*ROWS, "notes") if n not in group]
+        version = group.attrs.get("version")
+        missing = [n for n in (*columns_of(version), "notes") if n not in group]
     except Exception as error:  # a damaged store makes Zarr raise a dozen kinds
         raise DataError(str(path), f"is no Zarr store that opens: {error}") from error
     if group.attrs.get("format") != FORMAT or missing:
         raise DataError(str(path), f"is a Zarr store, but not a recording ({FORMAT})")
-    if group.attrs.get("version") != VERSION:
-        got = group.attrs.get("version")
-        raise DataError(str(path), f"is a recording of version {got}, {VERSION} can be read")
+    if version not in READ:
+        allowed = " and ".join(map(str, READ))
+        raise DataError(str(path), f"is a recording of version {version}, {allowed} can be read")
     if group.attrs.get("quantity") not in QUANTITIES:
         raise DataError(str(path), f"unknown quantity {group.attrs.get('quantity')!r}")
     return group
@@ -118,7 +127,8 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
 
 
 def _chunk(group: Any, ends: Any, low: int, high: int) -> list[Frame]:
-    rows = {name: group[name][low:high] for name in ROWS[:4]}
+    columns = columns_of(group.attrs.get("version"))
+    rows = {n: group[n][low:high] for n in columns if n not in ("notes_end", "number")}
     notes = group["notes"][int(ends[low]) : int(ends[high])].tobytes()
     attributes = dict(group.attrs)
     frames = []
@@ -157,5 +167,6 @@ def _frame(
         truth=truth,
         device_time_s=device_time_s,
         gap=bool(rows["gap"][i]),
+        doubtful="doubtful" in rows and bool(rows["doubtful"][i]),
         label=note.get("label", ""),
     )

@@ -67,6 +67,8 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
         row["device_time_s"] = frame.device_time_s
     if frame.gap:
         row["gap"] = True
+    if frame.doubtful:
+        row["doubtful"] = True
     outcomes = {name: result.outcome(name) for name in result.plan.asked}
     row["outputs"] = {name: as_data(outcome, full) for name, outcome in outcomes.items()}
     if frame.truth is None:

@@ -42,6 +42,8 @@ class Frame:
         True where frames were lost just before this one.
     label : str
         Which sensor or file the frame comes from, where a source has several.
+    doubtful : bool
+        True where the source cannot tell whether the values lie where they belong.
     """
 
     image: Image
@@ -51,6 +53,7 @@ class Frame:
     device_time_s: float | None = None
     gap: bool = False
     label: str = ""
+    doubtful: bool = False
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
 
     @classmethod

@@ -247,6 +247,7 @@ def test_what_ignoring_the_circuit_costs_is_as_the_page_says() -> None:
 # -- a pad learned ---------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_commands_that_learn_a_pad_and_the_pipeline_on_it_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -140,6 +140,7 @@ def test_marginal_lines_leave_the_labels_as_explicit_ones_do_that_do_not_meet():
     assert_fits(counts, chances)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_long_annealing_ends_at_the_very_minimum(seed):
     problem, _states, base, _bits, between, h_off, v_off = joint()

@@ -24,6 +24,7 @@ from tactile_graph_sources.serial_port import serial
 
 BY_NAME = {k.preset: k for k in KITS}
 FLEXITAC = BY_NAME["flexitac-12x32"]
+HELD = FLEXITAC.followers
 RATE_HZ = 500
 
 
@@ -115,18 +116,18 @@ def test_500_frames_a_second_unplugged_and_replugged(pad: FakePad, opened: threa
             got.append((int(frame.image.values[0, 0]), frame.gap, frame.time_s))
             if len(got) in (100, 900):
                 memory.append(tracemalloc.get_traced_memory()[0])
-            if len(got) == n - 1:  # the last one waits for the header after it
+            if len(got) == n - HELD:  # the last ones wait for the headers after them
                 half_seen.set()
-            if len(got) == 2 * (n - 1):
+            if len(got) == 2 * (n - HELD):
                 break
         tracemalloc.stop()
     source.close()
-    assert [value for value, _, _ in got] == [i % 200 for i in range(n - 1)] * 2
-    assert [i for i, (_, gap, _) in enumerate(got) if gap] == [n - 1]
+    assert [value for value, _, _ in got] == [i % 200 for i in range(n - HELD)] * 2
+    assert [i for i, (_, gap, _) in enumerate(got) if gap] == [n - HELD]
     times = [t for _, _, t in got]
     assert times == sorted(times)
     assert memory[1] - memory[0] < 400_000
-    assert report.counts["good frames"] == 2 * (n - 1)
+    assert report.counts["good frames"] == 2 * (n - HELD)
     assert report.counts["reconnects"] == 1
     assert report.counts["bytes"] == 2 * sum(map(len, frames))
     assert not any(name.startswith("bad frames") for name in report.counts)
@@ -140,19 +141,19 @@ def test_a_slow_viewer_gets_the_newest_frame(pad: FakePad, opened: threading.Eve
     first, sent = threading.Event(), threading.Event()
 
     def play() -> None:
-        pad.send(frames[0] + frames[1])
+        pad.send(b"".join(frames[:8]))
         assert first.wait(20.0)
-        pad.send(b"".join(frames[2:]))
+        pad.send(b"".join(frames[8:]))
         sent.set()
 
     with played(opened, play):
         seen = [next(source)]
         first.set()
         assert sent.wait(20.0)
-        while int(seen[-1].image.values[0, 0]) < 98:
+        while int(seen[-1].image.values[0, 0]) < 97:
             seen.append(next(source))
     source.close()
-    assert len(seen) + report.counts["dropped frames"] == 99
+    assert len(seen) + report.counts["dropped frames"] == 98
     assert report.counts["dropped frames"] > 0
     assert not any(f.gap for f in seen)
 
@@ -161,7 +162,7 @@ def test_a_slow_viewer_gets_the_newest_frame(pad: FakePad, opened: threading.Eve
 def test_a_pad_that_is_asked_answers(pad: FakePad, opened: threading.Event, name: str) -> None:
     """Boot text comes first; one reply is short and never goes on."""
     kit = BY_NAME[name]
-    frames = encoded(kit, 8)
+    frames = encoded(kit, 16)
     frames[4] = frames[4][:-9]
     report = Report()
     # A fast line, so that a reply that does not come is not waited for long.
@@ -236,7 +237,7 @@ def test_a_port_someone_else_reads_is_refused(pad: FakePad, opened: threading.Ev
     """Two readers would each get half of the bytes."""
     kit = BY_NAME["m1616"]
     first = source_of(pad, "m1616", Report())
-    with played(opened, lambda: pad.send(b"".join(encoded(kit, 3)))):
+    with played(opened, lambda: pad.send(b"".join(encoded(kit, 8)))):
         next(first)
         with pytest.raises(UsageError, match="cannot be opened"):
             next(source_of(pad, "m1616", Report()))
@@ -247,7 +248,7 @@ def test_closing_ends_the_thread_and_frees_the_port(pad: FakePad, opened: thread
     for _ in range(2):
         opened.clear()
         source = source_of(pad, FLEXITAC.preset, Report())
-        with played(opened, lambda: pad.send(b"".join(encoded(FLEXITAC, 4)))):
+        with played(opened, lambda: pad.send(b"".join(encoded(FLEXITAC, 8)))):
             next(source)
         source.close()
         assert not [t for t in threading.enumerate() if t.name.startswith("serial")]
@@ -266,7 +267,7 @@ def test_a_pad_that_must_be_started_is_asked_again_when_it_missed_it(
     def play() -> None:
         asked.append(pad.asked(2, never))  # as if still starting: no answer
         asked.append(pad.asked(2, never))
-        pad.send(b"".join(encoded(FLEXITAC, 3)))
+        pad.send(b"".join(encoded(FLEXITAC, 8)))
 
     source = source_of(pad, str(preset), Report(), timeout_s=0.2, n_frames=2)
     with played(opened, play):
@@ -291,11 +292,11 @@ def test_a_socket_is_a_port_too(opened: threading.Event) -> None:
         with played(opened, play):
             got = list(
                 serial(
-                    port=url, preset=FLEXITAC.preset, n_frames=199, give_up_s=20.0, report=report
+                    port=url, preset=FLEXITAC.preset, n_frames=198, give_up_s=20.0, report=report
                 )
             )
             done.set()
-    assert [int(f.image.values[0, 0]) for f in got] == [i % 200 for i in range(199)]
+    assert [int(f.image.values[0, 0]) for f in got] == [i % 200 for i in range(198)]
 
 
 CIRCLE_OF_COUNTS = """
@@ -338,15 +339,15 @@ def test_circle_3_follows_a_disc_on_a_live_pad_through_an_unplugging(
     with played(opened, play):
         for result in loads(CIRCLE_OF_COUNTS).stream(source):
             results.append(result)
-            if len(results) == n - 1:
+            if len(results) == n - HELD:
                 half_seen.set()
-            if len(results) == 2 * (n - 1):
+            if len(results) == 2 * (n - HELD):
                 break
     source.close()
     assert all(r.ok for r in results)
     pitch = results[0].frame.image.pitch_cm[0]
     found = np.array([r["circle"].x_cm / pitch for r in results])
-    assert np.abs(found - np.array([*centres[:-1], *centres[:-1]])).max() < 0.6
-    assert [i for i, r in enumerate(results) if r.frame.gap] == [n - 1]
-    assert report.counts["good frames"] == 2 * (n - 1)
+    assert np.abs(found - np.array([*centres[:-HELD], *centres[:-HELD]])).max() < 0.6
+    assert [i for i, r in enumerate(results) if r.frame.gap] == [n - HELD]
+    assert report.counts["good frames"] == 2 * (n - HELD)
     assert report.counts["reconnects"] == 1

@@ -217,7 +217,7 @@ def test_other_zarr_stores_are_no_recordings(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("version", 99, "is a recording of version 99, 1 can be read"),
+        ("version", 99, "is a recording of version 99, 1 and 2 can be read"),
         ("quantity", "bananas", "unknown quantity 'bananas'"),
     ],
 )
@@ -239,3 +239,42 @@ def test_without_the_extra_it_says_what_to_install(
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(UsageError, match=r"pip install 'tactile-graph\[zarr\]'"):
         StoreWriter(tmp_path / "a.zarr")
+
+
+def test_a_second_writer_is_told_who_holds_the_store(tmp_path: Path) -> None:
+    path = tmp_path / "a.zarr"
+    with StoreWriter(path) as store:
+        store.write(frames(1)[0])
+        with pytest.raises(UsageError, match=rf"is being written to by process {os.getpid()} on"):
+            StoreWriter(path, append=True)
+    with StoreWriter(path, append=True) as store:
+        store.write(frames(1, first=1)[0])
+    assert len(list(read_store(path))) == 2
+
+
+def test_doubtful_frames_stay_marked(tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        for i in range(2):
+            store.write(Frame.of(np.ones((2, 2)), index=i, doubtful=i == 1))
+    assert [f.doubtful for f in read_store(tmp_path / "a.zarr")] == [False, True]
+
+
+def test_a_store_whose_making_was_cut_short_is_made_anew(tmp_path: Path) -> None:
+    (tmp_path / ".a.zarr.part" / "values").mkdir(parents=True)
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(frames(1)[0])
+    assert len(list(read_store(tmp_path / "a.zarr"))) == 1
+    assert not (tmp_path / ".a.zarr.part").exists()
+
+
+def test_a_flipped_bit_is_never_a_value(tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "a.zarr", chunk=4) as store:
+        for frame in frames(8):
+            store.write(frame)
+    part = tmp_path / "a.zarr" / "values" / "c" / "1" / "0" / "0"
+    data = bytearray(part.read_bytes())
+    data[len(data) // 2] ^= 1
+    part.write_bytes(bytes(data))
+    report = Report()
+    assert [f.index for f in read_store(tmp_path / "a.zarr", report)] == [0, 1, 2, 3]
+    assert report.counts["damaged records skipped"] == 4

@@ -81,13 +81,14 @@ def record(
     _check_target(target)
     report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
     if source is not None:
-        frames = _of_source(source, settings, n_frames, report)
+        frames = _until(_of_source(source, settings, n_frames, report), seconds)
     else:
         frames = serial(
             port=port or "",
             preset=preset or "",
             baud=baud,
             n_frames=n_frames,
+            seconds=seconds,
             give_up_s=give_up,
             report=report,
         )
@@ -96,7 +97,7 @@ def record(
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
-                _keep(_until(frames, seconds), store)
+                _keep(frames, store)
         except KeyboardInterrupt:
             pass  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
@@ -196,6 +197,11 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
 def _tell(store: StoreWriter, report: Report) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
+    if not store.path.exists():
+        click.echo(f"{store.path}: no frame came, and nothing was written", err=True)
+        n_bytes = report.counts["bytes"]
+        click.echo(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        return
     click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in UNTOLD]
     for name in names:

@@ -51,7 +51,7 @@ class Whole:
             return []
         gap = self.sequence.jumps(units.sequence, k)
         gap[0] |= units.broken
-        return [Assembled(units.cells, units.ends, units.time, gap)]
+        return [Assembled(units.cells, units.ends, units.time, gap, units.doubtful)]
 
     def reset(self) -> None:
         """Forget what came before."""
@@ -133,7 +133,8 @@ class Pieces:
         gap = np.zeros(n, dtype=np.bool_)
         gap[0], self._lost = self._lost, False
         time = None if held.time is None else held.time[first]
-        out.append(Assembled(flat.reshape(n, self.n_cells), held.ends[last], time, gap))
+        cells = flat.reshape(n, self.n_cells)
+        out.append(Assembled(cells, held.ends[last], time, gap, held.doubtful))
         self._ever = True
         rest = (skip + n * self.n_cells) // m
         left = total - (skip + n * self.n_cells)
@@ -148,7 +149,13 @@ class Pieces:
 
 def _part(units: Units, start: NDArray[np.int64], low: int, high: int) -> Units:
     time = None if units.time is None else units.time[low:high]
-    return Units(units.cells[low:high], units.ends[low:high], start=start[low:high], time=time)
+    return Units(
+        units.cells[low:high],
+        units.ends[low:high],
+        start=start[low:high],
+        time=time,
+        doubtful=units.doubtful,
+    )
 
 
 def _joined(a: Units, b: Units) -> Units:
@@ -160,6 +167,7 @@ def _joined(a: Units, b: Units) -> Units:
         np.concatenate([a.ends, b.ends]),
         start=np.concatenate([a.start, b.start]),
         time=np.concatenate(times) if len(times) == 2 else None,
+        doubtful=a.doubtful or b.doubtful,
     )
 
 

@@ -12,6 +12,7 @@ class LinkCounts:
 
     bytes: int = 0
     good: int = 0
+    doubtful: int = 0
     bad: Counter[str] = field(default_factory=Counter)
     discarded_bytes: int = 0
     resyncs: int = 0
@@ -26,6 +27,7 @@ class LinkCounts:
         rows = {
             "bytes": self.bytes,
             "good frames": self.good,
+            "doubtful frames": self.doubtful,
             "discarded bytes": self.discarded_bytes,
             "resyncs": self.resyncs,
             "timeouts": self.timeouts,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import compress, repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,12 +21,16 @@ from tactile_graph_sources.devices.units import Assembled, Units
 
 
 class Decoded(NamedTuple):
-    """One frame: values (rows, columns), device clock, loss just before it, place of its end."""
+    """One frame: values (rows, columns), device clock, loss just before it, place of its end.
+
+    ``doubtful`` is true where the protocol cannot tell whether a frame starts there.
+    """
 
     values: NDArray[np.float64]
     device_time_s: float | None
     gap: bool
     end: int
+    doubtful: bool = False
 
 
 class Decoder:
@@ -44,13 +49,16 @@ class Decoder:
         self.assembler = _assembler(preset, self.framer, self.counts)
         self._clock = _clock(preset)
         self._by_silence = preset.framed_by_silence
+        self._one_reply = preset.assembler == "full"
         self._lost = False
         self._out_of_range = ""
 
     @property
     def complete(self) -> bool:
         """Whether a whole reply is there and only its silence is waited for."""
-        return isinstance(self.framer, ReplyFramer) and self.framer.complete
+        if isinstance(self.framer, ReplyFramer):
+            return self.framer.complete
+        return isinstance(self.framer, PacketFramer) and self.framer.complete and self._one_reply
 
     def feed(self, data: bytes) -> list[Decoded]:
         """Take bytes, return the frames that they complete."""
@@ -63,9 +71,9 @@ class Decoder:
         A kit whose frames are found by what they hold takes no notice: a pause inside a line is
         the host's own hiccup.
         """
-        if not self._by_silence:
-            return []
-        return self._frames(self.framer.boundary())
+        if isinstance(self.framer, PacketFramer):
+            self.framer.boundary()
+        return self._frames(self.framer.boundary()) if self._by_silence else []
 
     def reset(self) -> None:
         """Start afresh after a reconnect; the next frame is marked as following a gap."""
@@ -87,22 +95,27 @@ class Decoder:
         return out
 
     def _emit(self, batch: Assembled, out: list[Decoded]) -> None:
-        good = self.placement.in_range(batch.cells)
-        gap = batch.gap
-        times = self._clock.seconds(batch.time) if self._clock and batch.time is not None else None
+        cells, ends, gap, time = batch.cells, batch.ends, batch.gap, batch.time
+        times = self._clock.seconds(time) if self._clock and time is not None else None
+        good = self.placement.in_range(cells)
+        ends_well = bool(good[-1])
         if good.any():
             self._out_of_range = ""
         if not good.all():
-            self._refuse(batch.cells[~good])
-            gap = gap | np.concatenate([[False], ~good[:-1]])
-        images = self.placement.images(batch.cells)
-        gap_list, ends = gap.tolist(), batch.ends.tolist()
-        for i in range(len(images)) if good.all() else np.flatnonzero(good).tolist():
-            lost = (gap_list[i] or self._lost) and self.counts.good > 0
-            self.counts.good += 1
+            self._refuse(cells[~good])
+            gap = (gap | np.concatenate([[False], ~good[:-1]]))[good]
+            times = None if times is None else list(compress(times, good))
+            cells, ends = cells[good], ends[good]
+        if len(cells):
+            lost = gap.tolist()
+            lost[0] = (lost[0] or self._lost) and self.counts.good > 0
+            self.counts.good += len(cells)
+            self.counts.doubtful += len(cells) * batch.doubtful
+            images = self.placement.images(cells)
+            clock = repeat(None) if times is None else times
+            out.extend(map(Decoded, images, clock, lost, ends.tolist(), repeat(batch.doubtful)))
             self._lost = False
-            out.append(Decoded(images[i], None if times is None else times[i], lost, ends[i]))
-        if not good[-1]:
+        if not ends_well:
             self._lost = True
 
     def _refuse(self, cells: NDArray[Any]) -> None:

@@ -3,61 +3,103 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.layout import Layout
+from tactile_graph_sources.devices.likeness import KEPT, Likeness
+from tactile_graph_sources.devices.search import Found, Phases
 from tactile_graph_sources.devices.units import Units
 
 RECENT = 8192
 """Bytes kept for a hint while no frame is found."""
+ALONE_FOR = 8
+"""Units without a rival after which a doubt is over: flips may hide a header now and then."""
+PROBATION = 16
+"""Units remembered although they are in doubt, after some that were not: only so can a header
+that has just come to stand among the values be learned."""
+
+
+class Judged(NamedTuple):
+    """How many units go on, which of them are doubtful, and if the next one is out of phase."""
+
+    n: int
+    doubtful: NDArray[np.bool_]
+    jumped: bool
 
 
 class PacketFramer:
     """Finds units in a stream.
 
-    Without a checksum a unit is good when its own fixed bytes are right *and* the next unit's
-    follow. The first unit after a loss must also be the only one in its span that looks so:
-    between two false headers one frame apart there always stands a true one, so a pad that
-    happens to hold the header bytes is never taken for a frame.
+    Without a checksum a unit is good when its own fixed bytes are right *and* those of the units
+    that follow, as many as it takes for chance to be out. Bytes that look so at other places are
+    rivals: a pad may hold the header, still or at a fixed place. Where a rival lasts, the phase is
+    the one whose units are like the last good ones; units for which this decides nothing go on
+    marked as doubtful.
     """
 
     def __init__(self, layout: Layout, counts: LinkCounts) -> None:
         self.layout = layout
         self.counts = counts
+        self.likeness = Likeness(layout.size)
+        self.phases = Phases(layout, self.likeness)
         self._buffer = b""
         self._place = 0  # of the buffer's first byte in the stream
         self._locked = False
         self._ever = False
         self._broken = False
+        self._doubt = False
+        self._alone = 0  # units since the last rival
+        self._rivalled = False
+        self._probation = 0
+        self._since_boundary = 0
         self.recent = b""
         self.near_miss: NDArray[np.uint8] | None = None
 
+    @property
+    def complete(self) -> bool:
+        """Whether as many bytes as a reply has came since the last silence."""
+        return self._since_boundary >= self.layout.size
+
     def reset(self) -> None:
-        """Forget what was buffered."""
+        """Forget what was buffered; what the pad looked like is remembered."""
         self.counts.discarded_bytes += len(self._buffer)
         self._place += len(self._buffer)
         self._buffer, self._locked, self._broken = b"", False, True
+        self.phases.forget()
 
     def boundary(self) -> list[Units]:
-        """Nothing to do: units are found by what they hold."""
+        """Take note that a reply ends; units are found by what they hold."""
+        self._since_boundary = 0
         return []
 
     def feed(self, data: bytes) -> list[Units]:
         """Take bytes, return the runs of good units that they complete."""
         self._buffer += data
+        self._since_boundary += len(data)
         if not self._locked:
             self.recent = (self.recent + data)[-RECENT:]
         out: list[Units] = []
-        need = self.layout.size + self.layout.ahead
         at = 0
         array = np.frombuffer(self._buffer, np.uint8)
-        while len(array) - at >= need:
+        while len(array) - at >= self._need():
             at = self._take(array, at, out) if self._locked else self._search(array, at)
         self._drop(at)
         return out
+
+    def _need(self) -> int:
+        """Return how many bytes the next decision takes."""
+        layout = self.layout
+        if not self._locked:
+            return self.phases.need
+        n = layout.n_follow
+        if self._rivalled:
+            n = max(n, 3)  # the unit, and one behind it at any phase
+        return n * layout.size + layout.ahead
 
     def _drop(self, n: int) -> None:
         self._buffer = self._buffer[n:]
@@ -66,33 +108,135 @@ class PacketFramer:
     def _take(self, array: NDArray[np.uint8], at: int, out: list[Units]) -> int:
         """Take the run of good units at ``at``; where it ends too early, unlock."""
         layout = self.layout
-        k = (len(array) - at - layout.ahead) // layout.size
+        k = (len(array) - at - layout.ahead) // layout.size - (layout.n_follow - 1)
         rows = array[at : at + k * layout.size].reshape(k, layout.size)
         fits = layout.ok(rows)
         if layout.ahead:
-            good = fits & self._followed(array, at, rows)
+            good = fits & self._followed(array, at, k)
         else:
             good = fits & layout.checksum_ok(rows)
         n = k if good.all() else int(np.argmin(good))
-        if n:
-            end = at + n * layout.size
-            out.append(layout.units(rows[:n].copy(), self._place + end, self._broken))
-            self._broken = False
-            at = end
-        if n < k:
-            self._lose(rows[n], bool(fits[n]))
+        judged = self._judge(array, at, n, n == k)
+        self._emit(rows[: judged.n], at, judged.doubtful, out)
+        at += judged.n * layout.size
+        if judged.jumped or (judged.n == n < k):
+            self._lose(rows[judged.n], bool(fits[judged.n]))
             at += 1
             self.counts.discarded_bytes += 1
         return at
 
-    def _followed(
-        self, array: NDArray[np.uint8], at: int, rows: NDArray[np.uint8]
-    ) -> NDArray[np.bool_]:
-        """Return which units have the beginning of another right behind them."""
-        ahead, size = self.layout.ahead, self.layout.size
-        after = at + len(rows) * size
-        last = self.layout.ahead_ok(array[None, after : after + ahead])
-        return np.concatenate([self.layout.ahead_ok(rows[1:]), last])
+    def _followed(self, array: NDArray[np.uint8], at: int, k: int) -> NDArray[np.bool_]:
+        """Return which units have the beginnings of others right behind them."""
+        layout = self.layout
+        size, n = layout.size, k + layout.n_follow - 1
+        following = np.ndarray((n, layout.ahead), np.uint8, array, at + size, (size, 1))
+        heads = layout.ahead_ok(following)
+        good = heads[:k]
+        for i in range(1, layout.n_follow):
+            good = good & heads[i : k + i]
+        return good
+
+    def _may_hold_rivals(self, array: NDArray[np.uint8], rows: NDArray[np.uint8], at: int) -> bool:
+        """Return quickly whether good units, or what must follow them, may hold a rival."""
+        layout, n = self.layout, len(rows) + self.layout.n_follow
+        if not layout.anchor:
+            return bool(layout.like_tags(rows).any())
+        stop = at + (n - 1) * layout.size + len(layout.anchor)
+        return layout.count_of_headers(array[at:stop]) != n
+
+    def _judge(self, array: NDArray[np.uint8], at: int, n: int, whole: bool) -> Judged:
+        """Hold the next ``n`` units against rivals, where any are about.
+
+        ``whole`` tells that these are all the units that are there.
+        """
+        size, ahead = self.layout.size, self.layout.ahead
+        doubtful = np.zeros(n, np.bool_)
+        if not ahead or self.layout.in_pieces:  # pieces must come in order, which rivals do not
+            return Judged(n, doubtful, False)
+        rows = array[at : at + n * size].reshape(n, size)
+        if not self._rivalled and whole and not self._may_hold_rivals(array, rows, at):
+            self.likeness.remember(rows[-KEPT:], n)
+            self._probation = PROBATION
+            return Judged(n, doubtful, False)
+        rivals = self.phases.rivals(array, at, len(array) - ahead + 1)
+        held = np.unique(rivals // size)
+        near = np.unique(held[:, None] - np.arange(self.layout.n_follow))
+        lasting = self._lasting(rivals)
+        n_told = (len(array) - at - ahead) // size - 2
+        i = 0
+        while i < n:
+            if not self._rivalled:
+                until = min(n, int(min(near[near >= i], default=n)))
+                rows = array[at + i * size : at + until * size].reshape(-1, size)
+                self.likeness.remember(rows[-KEPT:], len(rows))
+                self._probation = PROBATION
+                i = until
+            if i >= n:
+                break
+            self._rivalled = True
+            if i >= n_told:  # what comes next must be here to be weighed
+                break
+            self._alone = 0 if i + 1 in held else self._alone + 1
+            offsets = lasting.get(i + 1, [])
+            if self._jumped(array, at + (i + 1) * size, offsets):
+                return Judged(i, doubtful[:i], True)
+            doubtful[i] = self._doubt
+            self._learn(array, at + i * size)
+            self._rivalled = self._doubt or bool(offsets)
+            i += 1
+        return Judged(i, doubtful[:i], False)
+
+    def _lasting(self, rivals: NDArray[np.int64]) -> dict[int, list[int]]:
+        """Return for each unit where within it a rival is that is there one unit later, too."""
+        size = self.layout.size
+        here = np.intersect1d(rivals, rivals - size, assume_unique=True)
+        out: dict[int, list[int]] = {}
+        for place in here.tolist():
+            out.setdefault(place // size, []).append(place % size)
+        return out
+
+    def _jumped(self, array: NDArray[np.uint8], at: int, offsets: list[int]) -> bool:
+        """Weigh the unit at ``at`` against those at offsets; set the doubt, say if it lost."""
+        size = self.layout.size
+        real = [o for o in offsets if self._possible(array, at + o)]
+        if not real:
+            self._doubt = (self._doubt or self._wary) and self._alone < ALONE_FOR
+            return False
+        units = np.stack([array[at + o : at + o + size] for o in [0, *real]])
+        ahead_by = self.phases.ahead_by(units, real + [o for o in offsets if o not in real])
+        enough = self.likeness.decides_nats
+        self._doubt = ahead_by < enough
+        return ahead_by <= -enough
+
+    @property
+    def _wary(self) -> bool:
+        """Whether a rival has stood so far: where it is not seen, that may be a flip's doing."""
+        return bool(self.phases.standing)
+
+    def _possible(self, array: NDArray[np.uint8], at: int) -> bool:
+        return bool(self.phases.possible(array[None, at : at + self.layout.size])[0])
+
+    def _learn(self, array: NDArray[np.uint8], at: int) -> None:
+        """Remember the unit at ``at`` if it is a good one, or was begun with good ones."""
+        self._probation = self._probation - 1 if self._doubt else PROBATION
+        if self._probation >= 0:
+            self.likeness.remember(array[at : at + self.layout.size][None, :], 1)
+
+    def _emit(
+        self, rows: NDArray[np.uint8], at: int, doubtful: NDArray[np.bool_], out: list[Units]
+    ) -> None:
+        """Hand on good units, those in doubt apart from those not."""
+        cuts = [0, len(rows)]
+        if doubtful.any():
+            cuts[1:1] = (np.flatnonzero(np.diff(doubtful)) + 1).tolist()
+        for low, high in pairwise(cuts):
+            if high == low:
+                continue
+            end = self._place + at + high * self.layout.size
+            units = self.layout.units(rows[low:high].copy(), end, self._broken)
+            units.doubtful = bool(doubtful[low])
+            self._broken = False
+            out.append(units)
 
     def _lose(self, row: NDArray[np.uint8], fits: bool) -> None:
         if not fits:
@@ -104,55 +248,47 @@ class PacketFramer:
             cause = "length"
         self.counts.bad[cause] += 1
         self._locked, self._broken = False, True
+        self.phases.forget()
         self.recent = b""
 
     def _search(self, array: NDArray[np.uint8], at: int) -> int:
-        """Go to the next place that could start a unit; lock if it does."""
-        layout = self.layout
-        found = self._candidate(array, at)
-        self.counts.discarded_bytes += found - at
-        if len(array) - found < layout.size + layout.ahead:
-            return found
-        row = array[None, found : found + layout.size]
-        good = bool(layout.ok(row)[0])
-        if good and layout.ahead:
-            after = found + layout.size
-            follows = layout.ahead_ok(array[None, after : after + layout.ahead])
-            good = bool(follows[0]) and self._alone(array, found)
-        elif good:
-            good = bool(layout.checksum_ok(row)[0])
-            self.near_miss = None if good else row[0].copy()
-        if not good:
-            self.counts.discarded_bytes += 1
-            return found + 1
+        """Go to where units start, if the bytes tell by now; lock there."""
+        found = self._checked(array, at) if self.layout.crc else self.phases.find(array, at)
+        self.counts.discarded_bytes += found.at - at
+        if not found.locked:
+            return found.at
         self._locked = True
+        self._doubt, self._alone = found.doubtful or self._wary, 0
+        self._probation = 0 if found.doubtful else PROBATION
+        self._rivalled = self._doubt
         self.counts.resyncs += self._ever
         self._ever = True
-        if layout.anchor:
-            return found
+        if self.layout.anchor:
+            return found.at
         # Row tags cannot tell the last byte of a frame from a lost first byte of the next one,
         # so the first frame of a lock, whose beginning nothing vouches for, is not taken.
         self._broken = True
-        self.counts.discarded_bytes += layout.size
-        return found + layout.size
+        self.counts.discarded_bytes += self.layout.size
+        return found.at + self.layout.size
 
-    def _candidate(self, array: NDArray[np.uint8], at: int) -> int:
-        """Return the next place from ``at`` on that may start a unit, or where to go on later."""
+    def _checked(self, array: NDArray[np.uint8], at: int) -> Found:
+        """Return the next place at which two units in a row carry the right checksum."""
         layout = self.layout
-        if layout.anchor:
-            found = self._buffer.find(layout.anchor, at)
-            return found if found >= 0 else max(at, len(array) - len(layout.anchor) + 1)
-        stop = len(array) - layout.size - layout.ahead + 1
-        hits = layout.beginnings(array, at, stop)
-        return int(hits[0]) if len(hits) else stop
-
-    def _alone(self, array: NDArray[np.uint8], found: int) -> bool:
-        """Return whether no other place inside the unit looks like the beginning of one."""
-        layout = self.layout
-        end = found + layout.size
-        if layout.anchor and layout.ahead == len(layout.anchor):
-            return self._buffer.find(layout.anchor, found + 1, end + layout.ahead - 1) < 0
-        return len(layout.beginnings(array, found + 1, end)) == 0
+        last = len(array) - 2 * layout.size
+        while at <= last:
+            at = self._buffer.find(layout.anchor, at) if layout.anchor else at
+            if at < 0 or at > last:
+                return Found(last + 1 if at < 0 else at)
+            rows = array[at : at + 2 * layout.size].reshape(2, layout.size)
+            fits = layout.ok(rows)
+            if fits[0]:
+                right = fits & layout.checksum_ok(rows)
+                if right.all():
+                    self.near_miss = None
+                    return Found(at, locked=True)
+                self.near_miss = None if right[0] else rows[0].copy()
+            at += 1
+        return Found(at)
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found."""
@@ -164,11 +300,13 @@ class PacketFramer:
         if not layout.anchor or len(layout.anchor) < 2:
             return ""
         places = [i for i in range(len(self.recent)) if self.recent.startswith(layout.anchor, i)]
-        steps = Counter(np.diff(places).tolist())
-        if not steps:
+        if not places:
             return f"the header {layout.anchor.hex(' ').upper()} was not seen"
-        step, n = steps.most_common(1)[0]
-        if n > 1 and step != layout.size:
+        if any(p + layout.size in places for p in places):
+            return ""  # the size is right; steps between others are those of the pad's own values
+        steps = Counter(np.diff(places).tolist())
+        step, n = steps.most_common(1)[0] if steps else (0, 0)
+        if n > 1:
             return (
                 f"headers come every {step} bytes, the preset expects {layout.size}: rows, columns?"
             )

@@ -25,6 +25,8 @@ class Units:
         True where a line that is no data, or a silence, lies before the first unit.
     time, sequence, start, device : ndarray, shape (k,), optional
         The numbers beside the values, where the layout has them.
+    doubtful : bool
+        True where the units may as well start elsewhere.
     """
 
     cells: NDArray[Any]
@@ -35,13 +37,18 @@ class Units:
     sequence: NDArray[Any] | None = None
     start: NDArray[np.int64] | None = None
     device: NDArray[Any] | None = None
+    doubtful: bool = False
 
 
 @dataclass(slots=True)
 class Assembled:
-    """Whole frames: cells (k, n) in wire order, place of their end, device time, loss before."""
+    """Whole frames: cells (k, n) in wire order, place of their end, device time, loss before.
+
+    ``doubtful`` tells whether any unit they are made of is.
+    """
 
     cells: NDArray[Any]
     ends: NDArray[np.int64]
     time: NDArray[Any] | None
     gap: NDArray[np.bool_]
+    doubtful: bool = False

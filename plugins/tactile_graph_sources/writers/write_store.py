@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import platform
+import shutil
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,6 +16,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import said
+from tactile_graph.locks import Lock
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.truth import truth_to_json
@@ -43,6 +47,55 @@ def _said(grid: Mapping[str, Any]) -> str:
     )
 
 
+COLUMNS: dict[str, tuple[str, float]] = {
+    "values": ("float64", np.nan),
+    "time_s": ("float64", np.nan),
+    "device_time_s": ("float64", np.nan),
+    "gap": ("bool", False),
+    "doubtful": ("bool", False),
+    "notes_end": ("int64", 0),
+    "number": ("int64", -1),
+}
+
+
+class SoleWriter:
+    """The right to write to a store, which one process at a time has.
+
+    Two files stand beside the store, hidden: the lock, which stays, and who holds it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lock = Lock(path.with_name(f".{path.name}.lock"))
+        self._holder = path.with_name(f".{path.name}.writer")
+
+    def take(self) -> None:
+        """Take it, or say who has it.
+
+        Raises
+        ------
+        UsageError
+        """
+        with said(self.path):
+            if not self._lock.take():
+                raise UsageError(f"{self.path}: is being written to{self._who()}")
+            since = time.strftime("%Y-%m-%d %H:%M:%S")
+            name = f"process {os.getpid()} on {platform.node()}, since {since}"
+            self._holder.write_text(name, encoding="utf-8")
+
+    def _who(self) -> str:
+        try:
+            return f" by {self._holder.read_text(encoding='utf-8')[:200]}"
+        except OSError:  # it has the lock, and has not written down who it is
+            return " by another process"
+
+    def release(self) -> None:
+        """Give it back."""
+        if self._lock.held:
+            self._holder.unlink(missing_ok=True)
+            self._lock.release()
+
+
 class StoreWriter:
     """Writes frames to a store, a chunk at a time.
 
@@ -60,7 +113,8 @@ class StoreWriter:
     Raises
     ------
     UsageError
-        If the path is there and ``append`` is false, or Zarr is not installed.
+        If the path is there and ``append`` is false, another process writes to it, or Zarr is not
+        installed.
     """
 
     def __init__(
@@ -82,8 +136,14 @@ class StoreWriter:
         self._notes_end = 0
         if self.path.exists() and not append:
             raise UsageError(f"{self.path} is there already; append to it, or choose another name")
-        if self.path.exists():
-            self._reopen()
+        self._sole = SoleWriter(self.path)
+        self._sole.take()
+        try:
+            if self.path.exists():
+                self._reopen()
+        except BaseException:
+            self._sole.release()
+            raise
 
     def __enter__(self) -> StoreWriter:
         return self
@@ -94,7 +154,14 @@ class StoreWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.flush()
+        self.close()
+
+    def close(self) -> None:
+        """Write what is held, and let others write to the store."""
+        try:
+            self.flush()
+        finally:
+            self._sole.release()
 
     @property
     def n_frames(self) -> int:
@@ -128,33 +195,43 @@ class StoreWriter:
             **grid,
             **self.about,
         }
+        # Made whole beside its name: a store whose making was cut short would never open.
+        part = self.path.with_name(f".{self.path.name}.part")
         with said(self.path):
-            group = self._zarr.create_group(str(self.path), attributes=attributes)
-        rows, columns = grid["shape"]
-        shape = {"values": (0, rows, columns)}
-        small = (SMALL_CHUNKS * self.chunk,)
-        chunks = {"values": (self.chunk, rows, columns)}
-        for name, dtype, fill in (
-            ("values", "float64", np.nan),
-            ("time_s", "float64", np.nan),
-            ("device_time_s", "float64", np.nan),
-            ("gap", "bool", False),
-            ("notes_end", "int64", 0),
-            ("number", "int64", -1),
-        ):
+            shutil.rmtree(part, ignore_errors=True)
+            self._make(part, attributes, (int(grid["shape"][0]), int(grid["shape"][1])))
+            part.rename(self.path)
+            self._group = self._zarr.open_group(str(self.path), mode="r+")
+        self._grid = grid
+
+    def _make(self, part: Path, attributes: dict[str, Any], grid: tuple[int, int]) -> None:
+        group = self._zarr.create_group(str(part), attributes=attributes)
+        codecs = self._zarr.codecs
+        packed = [codecs.ZstdCodec(), codecs.Crc32cCodec()]
+        few = (SMALL_CHUNKS * self.chunk,)
+        for name, (dtype, fill) in COLUMNS.items():
+            wide = name == "values"
             group.create_array(
                 name,
-                shape=shape.get(name, (0,)),
-                chunks=chunks.get(name, small),
+                shape=(0, *grid) if wide else (0,),
+                chunks=(self.chunk, *grid) if wide else few,
                 dtype=dtype,
                 fill_value=fill,
+                compressors=packed,
             )
-        group.create_array("notes", shape=(0,), chunks=(NOTE_BYTES,), dtype="uint8", fill_value=0)
-        self._group, self._grid = group, grid
+        group.create_array(
+            "notes", shape=(0,), chunks=(NOTE_BYTES,), dtype="uint8", fill_value=0,
+            compressors=packed,
+        )  # fmt: skip
 
     def _reopen(self) -> None:
         """Go on behind the last whole chunk; the first new frame follows a gap."""
         group = opened(self.path, "r+")
+        if "doubtful" not in group:
+            raise UsageError(
+                f"{self.path} is of version 1 of the format, which is read but not gone on with; "
+                "choose another name"
+            )
         self._group = group
         self._grid = {k: group.attrs[k] for k in ("shape", "pitch_cm", "origin_cm", "quantity")}
         self.chunk = int(group["values"].chunks[0])
@@ -191,6 +268,7 @@ class StoreWriter:
             "time_s": _seconds([f.time_s for f in frames]),
             "device_time_s": _seconds([f.device_time_s for f in frames]),
             "gap": gaps,
+            "doubtful": np.array([f.doubtful for f in frames]),
             "notes_end": ends,
             "number": np.arange(low, high),
         }

@@ -40,6 +40,7 @@ def test_an_empty_recording_alone_makes_a_pad_with_noise_and_offset(tmp_path: Pa
     assert "No objects were recorded" in said
 
 
+@pytest.mark.slow
 def test_with_objects_it_tells_what_is_dead_stuck_and_uneven(tmp_path: Path) -> None:
     pad = MadeUpPad(
         gain_sigma=0.3, dead=((4, 5), (9, 11)), dead_row=6, stuck=((3, 16),), turn_on=40.0
@@ -114,6 +115,7 @@ outputs: [contacts, placed]
     return before, after, stated
 
 
+@pytest.mark.slow
 def test_a_panel_without_an_empty_recording_is_learned_where_it_is_untouched(
     tmp_path: Path,
 ) -> None:

@@ -34,6 +34,7 @@ def learned(folder: Path, pad: MadeUpPad, by: object, n: int = 120) -> LearnedPa
     return learn_pad(empty, stack(folder / "o.npz", changed(list(pad.objects(n)), by)))
 
 
+@pytest.mark.slow
 def test_readings_that_stop_at_full_scale_are_told(tmp_path: Path) -> None:
     found = learned(tmp_path, MadeUpPad(), lambda v: np.minimum(np.round(v), 255.0))
     assert found.learned.saturated_from == 255.0
@@ -42,6 +43,7 @@ def test_readings_that_stop_at_full_scale_are_told(tmp_path: Path) -> None:
     assert free.learned.saturated_from is None
 
 
+@pytest.mark.slow
 def test_a_converter_without_any_noise_is_touched_from_its_first_step(tmp_path: Path) -> None:
     pad = MadeUpPad(noise=0.0)
     pad.offset[:] = 100.0
@@ -51,6 +53,7 @@ def test_a_converter_without_any_noise_is_touched_from_its_first_step(tmp_path: 
     assert found.counted_right == 1.0
 
 
+@pytest.mark.slow
 def test_an_object_at_rest_for_long_is_one_placement(tmp_path: Path) -> None:
     pad = MadeUpPad()
     frames = [pad.frame(((8.0, 7.0, 300.0),), k) for k in range(80)]
@@ -61,6 +64,7 @@ def test_an_object_at_rest_for_long_is_one_placement(tmp_path: Path) -> None:
     assert found.learned.gain_of is None
 
 
+@pytest.mark.slow
 def test_missing_elements_stay_missing(tmp_path: Path) -> None:
     def hole(values: np.ndarray) -> np.ndarray:
         out = values.copy()

@@ -47,6 +47,7 @@ def stacks(
     return read_stack([(folder / "empty.npz", None)]), read_stack([(folder / "discs.npz", None)])
 
 
+@pytest.mark.slow
 def test_noise_goes_where_localisers_look_for_it(tmp_path: Path) -> None:
     found = learn_pad(*stacks(tmp_path))
     paths = write_pad(tmp_path / "pad.yaml", found, None, MAKING)
@@ -58,6 +59,7 @@ def test_noise_goes_where_localisers_look_for_it(tmp_path: Path) -> None:
     assert pad.unevenness == Pad().unevenness
 
 
+@pytest.mark.slow
 def test_with_a_pad_told_gains_turn_on_and_unevenness_are_of_grams(tmp_path: Path) -> None:
     log_gain = 0.3 * np.random.default_rng(3).standard_normal((16, 16))
     found = learn_pad(*stacks(tmp_path, log_gain, turn_on_g=12.0), PLAIN)
@@ -74,6 +76,7 @@ def test_with_a_pad_told_gains_turn_on_and_unevenness_are_of_grams(tmp_path: Pat
     assert np.corrcoef(np.log(gain[told]), log_gain[told])[0, 1] > 0.9
 
 
+@pytest.mark.slow
 def test_the_head_says_what_was_told_and_what_was_not(tmp_path: Path) -> None:
     found = learn_pad(*stacks(tmp_path))
     alone = pad_text(found, None, MAKING)
@@ -85,6 +88,7 @@ def test_the_head_says_what_was_told_and_what_was_not(tmp_path: Path) -> None:
     assert "Nobody said" not in told
 
 
+@pytest.mark.slow
 def test_many_recordings_are_named_by_one_digest(tmp_path: Path) -> None:
     found = learn_pad(*stacks(tmp_path))
     many = {f"r{k}.npz": f"{k:064x}" for k in range(90)}

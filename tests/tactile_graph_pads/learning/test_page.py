@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from helpers_html import read_html
 from helpers_learning import MadeUpPad
 from tactile_graph import loads
@@ -15,6 +17,7 @@ from tactile_graph_pads.learning.recordings import read_stack
 MAKING = Making("tactile-graph learn-pad '<b>.npz'", "tactile-graph 0", "2026", {"<b>.npz": "0"})
 
 
+@pytest.mark.slow
 def test_the_nodes_shown_run_with_the_pad_that_was_written(tmp_path: Path) -> None:
     pad = MadeUpPad(lean_cells=2.0, stuck=((5, 6),))
     empty, objects = pad.recorded(tmp_path, n_objects=80)

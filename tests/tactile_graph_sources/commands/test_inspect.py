@@ -131,6 +131,7 @@ def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
         assert sensor["quantity"] == "kilopascal"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.6, 1.0, 3.0])
 def test_the_noise_of_whole_counts_is_that_before_they_were_rounded(
     sigma: float, tmp_path: Path
