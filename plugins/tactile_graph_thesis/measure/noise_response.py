@@ -40,6 +40,9 @@ CONTACTS = Noise("cells switched on", "flip_cells", "on", "share", (0.005, 0.01,
 VOIDS = Noise("cells switched off", "flip_cells", "off", "share", (0.005, 0.01, 0.02, 0.05, 0.1))
 MOVED = Noise("points moved", "jitter_points", "sd_cm", "cm", (0.05, 0.1, 0.2, 0.5, 1.0))
 
+WIRED = ("in", "first_of")
+"""Where a node of a file names what it reads."""
+
 
 def noisy(pipeline: str, after: str, noise: Noise, level: float) -> Any:
     """Return a pipeline with noise brought in between a node and all that reads it.
@@ -57,7 +60,7 @@ def noisy(pipeline: str, after: str, noise: Noise, level: float) -> Any:
     data = yaml.safe_load(load(pipeline).text)
     added = f"{after}_noisy"
     nodes = {
-        name: {**node, "in": _rewired(node["in"], after, added)}
+        name: {**node, **{k: _rewired(node[k], after, added) for k in WIRED if k in node}}
         for name, node in data["nodes"].items()
     }
     nodes[added] = {"step": noise.step, "in": after, "with": {noise.setting: level}}
@@ -67,6 +70,8 @@ def noisy(pipeline: str, after: str, noise: Noise, level: float) -> Any:
 def _rewired(wires: Any, old: str, new: str) -> Any:
     """Return a node's ``in`` with one reference replaced, fields included."""
     if isinstance(wires, str):
+        if old == "frame":  # its noisy image stands for it; time and number have no noise
+            return new if wires in ("frame", "frame.image") else wires
         head, dot, rest = wires.partition(".")
         return new + dot + rest if head == old else wires
     if isinstance(wires, list):
