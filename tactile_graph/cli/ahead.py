@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
 
 FRAMES = 10
-"""By then most of what may be needed has been."""
+"""Of a pipeline's source; by then most of what may be needed has been."""
 
 
 class Needed:
@@ -74,7 +74,7 @@ def opened(names: list[str], settings: list[str], recordings: list[str]) -> Iter
             pipeline = open_pipeline(name, recordings, settings=settings)
         except TactileGraphError:
             continue  # the command itself says what is wrong
-        if not any(node.is_sink for node in pipeline.nodes.values()):
+        if not pipeline.writes:
             yield pipeline
 
 

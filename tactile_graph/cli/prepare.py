@@ -8,12 +8,10 @@ from itertools import islice
 
 import click
 
+from tactile_graph.cli.ahead import FRAMES
 from tactile_graph.cli.arguments import complete_pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
-
-FRAMES = 10
-"""Of a pipeline's own source; by then most of what may be needed has been."""
 
 FAILED = "not prepared"
 
@@ -69,7 +67,7 @@ def prepared(name: str) -> str:
         pipeline = load(name)
         if pipeline.source is None:
             return f"{name}: {FAILED}, declares no source"
-        if any(node.is_sink for node in pipeline.nodes.values()):
+        if pipeline.writes:
             return f"{name}: {FAILED}, a step of it writes"
         n = sum(1 for _ in islice(pipeline.stream(), FRAMES))
     except TactileGraphError as error:

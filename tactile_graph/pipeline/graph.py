@@ -244,6 +244,11 @@ class Graph:
         return node_key([(k, self.nodes[r.node].key if r.node in self.nodes else r.node, r.path)
                          for k, r in self.outputs.items()])  # fmt: skip
 
+    @property
+    def writes(self) -> bool:
+        """Whether a step is a sink: then a second run would write twice."""
+        return any(node.is_sink for node in self.nodes.values())
+
     @cached_property
     def unused(self) -> list[str]:
         """Nodes that no output needs; they run only when asked for."""

@@ -10,12 +10,10 @@ import numpy as np
 from annotated_types import Len
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
-from tactile_graph_likelihood.any_pad.locate import QUICK
+from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
 from tactile_graph_likelihood.any_pad.observed import observed
-from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import Likeliest
@@ -56,10 +54,7 @@ class Locate:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
-        settings: Annotated[
-            FootprintSettings,
-            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
-        ] = QUICK,
+        settings: AnyPadSettings = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._every: dict[str, AnyPad] = {
@@ -81,7 +76,11 @@ class Locate:
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """
-        return self.chosen(observed(image, self._pad, self._gap_cm))
+        return self.chosen(self.readings(image))
+
+    def readings(self, image: Image) -> Readings:
+        """Return what an image shows; errors as of a call."""
+        return observed(image, self._pad, self._gap_cm)
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""

@@ -21,6 +21,12 @@ from tactile_graph_likelihood.single.posterior import Posterior
 QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
 
+AnyPadSettings = Annotated[
+    FootprintSettings,
+    Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
+]
+"""What may be said of one outline on any pad."""
+
 
 class Located:
     """What the three have in common.
@@ -35,10 +41,7 @@ class Located:
 
     def __init__(
         self,
-        settings: Annotated[
-            FootprintSettings,
-            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
-        ] = QUICK,
+        settings: AnyPadSettings = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._any_pad = AnyPad(settings.model(self._kind))

@@ -9,13 +9,10 @@ import numpy as np
 from annotated_types import Len
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
-from tactile_graph_likelihood.any_pad.locate import QUICK
-from tactile_graph_likelihood.any_pad.observed import observed
-from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
@@ -50,12 +47,8 @@ class LocateContacts:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
-        settings: Annotated[
-            FootprintSettings,
-            Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
-        ] = QUICK,
+        settings: AnyPadSettings = QUICK,
     ) -> None:
-        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._locate = Locate(shapes=shapes, settings=settings)
 
     def __call__(self, image: Image, contacts: Sequence[Contact]) -> LocatedContacts:
@@ -75,7 +68,7 @@ class LocateContacts:
         Degenerate
             If nothing rises above the noise.
         """
-        readings = observed(image, self._pad, self._gap_cm)
+        readings = self._locate.readings(image)
         owner = np.zeros(readings.states.shape, np.int64)
         for k, contact in enumerate(contacts, 1):
             top, bottom, left, right = contact.box
