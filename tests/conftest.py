@@ -15,17 +15,11 @@ import pytest
 from hypothesis import settings
 
 from helpers_modes import answered_by, cool_down
-from helpers_processes import compile_once_among_processes
 from tactile_graph.compiled import warm_up
 
 settings.register_profile("fast", derandomize=True, deadline=None)
 settings.register_profile("full", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))
-
-
-def pytest_configure() -> None:
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        compile_once_among_processes()
 
 
 @pytest.hookimpl(wrapper=True)
