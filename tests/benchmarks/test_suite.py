@@ -133,6 +133,7 @@ def test_a_stream_is_mostly_empty_and_mixed() -> None:
     assert stream.stream(100, seed=1).classes != made.classes
 
 
+@pytest.mark.slow
 def test_a_stream_is_measured_whole_and_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Empty frames are cheap, counted as false alarms; each frame's time is in one part."""
     circle = load("circle-3")

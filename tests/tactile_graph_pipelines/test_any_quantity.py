@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +24,17 @@ IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
 KNOWN_IN_GRAMS = {"identify", "identify-locate"}
 """Those that know the thesis' objects, by their grams."""
 
+SLOW = {"locate", "locate-contacts", "locate-objects", "locate-rectangle", "bayes-circle"}
+"""Those of which much is compiled."""
+
+
+def slow_where_much_is_compiled(names: set[str]) -> list[Any]:
+    """Return names as parameters."""
+    return [
+        pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else [])
+        for name in sorted(names)
+    ]
+
 
 def disc(shape: tuple[int, int], quantity: str, seed: int = 0) -> Frame:
     """A round object in the middle of the pad, of uneven load, with noise around."""
@@ -37,7 +49,9 @@ def disc(shape: tuple[int, int], quantity: str, seed: int = 0) -> Frame:
 
 
 @pytest.mark.parametrize("quantity", PEAKS)
-@pytest.mark.parametrize("name", sorted(set(SHIPPED) - IN_VOLTS - KNOWN_IN_GRAMS))
+@pytest.mark.parametrize(
+    "name", slow_where_much_is_compiled(set(SHIPPED) - IN_VOLTS - KNOWN_IN_GRAMS)
+)
 def test_it_answers_on_three_grids(name: str, quantity: str) -> None:
     pipeline = load(name)
     for shape in GRIDS:

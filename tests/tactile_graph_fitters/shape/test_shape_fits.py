@@ -21,7 +21,7 @@ from tactile_graph_fitters.shape.shape_fits import (
 from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon
 from tactile_graph_hull.hull import hull
 
-KERNELS = ("reference", "compiled")
+KERNELS = ("reference", pytest.param("compiled", marks=pytest.mark.slow))
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
 

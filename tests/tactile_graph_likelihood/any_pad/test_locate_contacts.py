@@ -28,6 +28,7 @@ def two_discs(seed=3):
     return frame
 
 
+@pytest.mark.slow  # three shapes are compiled
 def test_each_contact_has_its_outline_the_largest_first():
     frame = two_discs()
     step = LocateContacts(shapes=["disc"])

@@ -123,6 +123,7 @@ def test_fusing_and_shifting_only_lower_the_energy(lines):
     assert reached[2] < reached[1] < reached[0]
 
 
+@pytest.mark.slow  # all kinds of moves are compiled
 @pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_polishing_tells_the_energy_it_ends_with_and_agrees_compiled(lines, order):

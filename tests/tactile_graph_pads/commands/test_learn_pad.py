@@ -76,6 +76,7 @@ def _check_page(path: Path) -> None:
     assert "cross-validated by recording" in root.text
 
 
+@pytest.mark.slow
 def test_what_it_wrote_puts_objects_it_has_not_seen_nearer_with_a_true_deviation(
     tmp_path: Path,
 ) -> None:

@@ -56,6 +56,7 @@ def test_what_a_tail_draws_along_is_taken_off_where_it_was_not_learned() -> None
     assert 1 / 1.5 < np.sqrt(np.mean((np.array(off) / np.array(stated)) ** 2)) < 1.5
 
 
+@pytest.mark.slow
 def test_the_errors_held_out_are_those_of_contacts_not_learned() -> None:
     found = learned()
     frames, true = contacts(200, 0.6, seed=9)

@@ -23,7 +23,7 @@ RNG = np.random.default_rng(0)
 def run(*args: object, code: int = 0) -> str:
     result = CliRunner().invoke(cli, ["inspect", *(str(a) for a in args)])
     assert result.exit_code == code, result.output
-    return result.output
+    return result.output if code else result.stdout
 
 
 def looked(*args: object) -> dict[str, Any]:
