@@ -178,6 +178,7 @@ def test_a_cut_of_a_grid_is_the_least_of_all_cuts(seed):
     assert cost(goes) == pytest.approx(least)
 
 
+@pytest.mark.slow
 def test_more_effort_is_allowed_and_stays_near():
     model = Model(lines="marginal")
     reached = [restore(square(40.0), model=model, effort=effort).energy for effort in (1, 2, 3)]
