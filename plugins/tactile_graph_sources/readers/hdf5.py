@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -22,6 +22,11 @@ NAME = "HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)"
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
 MOST_VALUES = 500_000_000
+NODE_IMAGES = "tactile-graph node images"
+"""What the files say that ``tactile-graph run -o images.h5`` writes."""
+
+
+_OWN = {"kind", "quantity", "pitch_cm", "origin_cm"}
 
 
 class _Held(NamedTuple):
@@ -32,6 +37,7 @@ class _Held(NamedTuple):
     times: NDArray[Any] | None
     times_name: str
     said: Described
+    origin_cm: tuple[float, float] | None = None
 
 
 def recognises(head: Head) -> bool:
@@ -63,6 +69,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         yield reading.frame(
             matrix,
             pitch_cm=said.pitch_cm,
+            origin_cm=held.origin_cm,
             quantity=said.quantity,
             factor=said.factor,
             time_s=float(times[k]) * factor if times is not None and timed else None,
@@ -103,7 +110,19 @@ def _held(reading: Reading, h5py: ModuleType) -> _Held:
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
     if reading.head.raw.startswith(_MATLAB):
         values = values.T  # MATLAB counts the other way round
-    return _Held(values, name, times, time, described(lines))
+    said, origin_cm = described(lines), None
+    if attributes.get("format") == NODE_IMAGES and attributes.keys() >= _OWN:
+        said, origin_cm = _place(attributes)
+        if attributes.get("kind") == "mask":
+            values = np.where(values > 1, np.nan, values)  # no value in that frame
+    return _Held(values, name, times, time, said, origin_cm)
+
+
+def _place(attributes: Mapping[str, Any]) -> tuple[Described, tuple[float, float]]:
+    """Return what a stack says of itself that a run has written."""
+    (x, y), (left, top) = attributes["pitch_cm"], attributes["origin_cm"]
+    said = Described(pitch_cm=(float(x), float(y)), quantity=str(attributes["quantity"]))
+    return said, (float(left), float(top))
 
 
 def _is_time(name: str) -> bool:
