@@ -9,11 +9,26 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from helpers_dialects import Dialect, became, dialects, flat, long, mutated, picture
+from helpers_dialects import (
+    Dialect,
+    became,
+    cell_array,
+    dialects,
+    flat,
+    long,
+    matlab,
+    mutated,
+    picture,
+)
 from helpers_recordings import frames_of, write
 from tactile_graph import load
 from tactile_graph.cli import cli
 from tactile_graph.errors import DataError
+from tactile_graph.steps import Report
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.matlab import frames_first
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.told import Told
 
 FILES = dialects()
 
@@ -381,3 +396,48 @@ def test_one_digit_too_many_in_a_row_does_not_blow_up_the_frames(tmp_path: Path)
     assert {f.image.shape for f in frames} == {(6, 10)}
     what = "no cell: its row or column is far beyond all others"
     assert report.troubles == [(f"{path}:101", what)]
+
+
+# -- MATLAB ------------------------------------------------------------------------------------
+
+
+def test_matlabs_frames_lie_where_times_say_whatever_is_square() -> None:
+    reading = Reading(Head(Path("a.mat"), b"", Told()), Told(), Report())
+    times = np.arange(16.0)
+    values = np.zeros((16, 9, 9))
+    assert frames_first(reading, np.zeros((9, 9, 16)), "p", times).shape == (16, 9, 9)
+    assert frames_first(reading, values, "p", times).shape == (16, 9, 9)
+    assert frames_first(reading, np.zeros((5, 6, 16)), "p", times).shape == (16, 5, 6)
+    assert frames_first(reading, np.zeros((16, 6, 5)), "p", times).shape == (16, 6, 5)
+
+
+def test_matlab_7_3_counts_the_other_way_round_and_its_axes_are_told_alike(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+
+    def saved(values: np.ndarray, name: str, **more: np.ndarray) -> Path:
+        path = tmp_path / name
+        with h5py.File(path, "w", userblock_size=512) as file:
+            for key, array in {"p": values, **more}.items():
+                file[key] = array.T  # as MATLAB writes what it indexes the other way round
+        with path.open("r+b") as file:
+            file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
+        return path
+
+    last = np.moveaxis(OBLONG, 0, -1)
+    frames, _ = frames_of(saved(last, "a.mat", time_s=np.arange(12.0)[None]))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert frames[3].time_s == 3.0
+    with pytest.raises(DataError, match="12 frames of 6 x 10 along the last axis, or 6 frames of"):
+        frames_of(saved(last, "b.mat"))
+    again, _ = frames_of(tmp_path / "b.mat", rows=6, columns=10)
+    np.testing.assert_array_equal([f.image.values for f in again], OBLONG)
+
+
+def test_a_matlab_file_that_is_damaged_or_holds_no_numbers_says_so(tmp_path: Path) -> None:
+    whole = matlab(True, p=OBLONG)
+    with pytest.raises(DataError, match="the MATLAB file cannot be read"):
+        frames_of(write(tmp_path, whole[:400]))
+    with pytest.raises(DataError, match="no matrix or stack of matrices in it; its variables: n"):
+        frames_of(write(tmp_path, matlab(n=3.0, words=cell_array(["a", "b"]), name="mat")))
+    with pytest.raises(DataError, match="no variable 'q', there are p"):
+        frames_of(write(tmp_path, whole), sensor="q")
