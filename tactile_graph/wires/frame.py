@@ -87,3 +87,8 @@ class Frame:
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""
         return replace(self, index=index)
+
+    def _repr_html_(self) -> str:
+        from tactile_graph.wires.notebook import frame_html
+
+        return frame_html(self)

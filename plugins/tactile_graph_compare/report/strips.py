@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactile_graph.draw.grid_png import heat_stops
+from tactile_graph.wires.cells_png import heat_stops
 from tactile_graph_compare.output.tables import signed
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import Choice, ChosenFrame, NodeStory

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.steps.injected import Report
+from tactile_graph_compare.output.notebook import ShownComparison
 from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.graph import Saving, Timeline
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
@@ -64,7 +65,7 @@ def summarise(
     of_parents = differences
     if session.reference:
         of_parents = tuple(_differences(_references(variants, ""), scores, rng))
-    return Comparison(
+    return ShownComparison(
         variants=variants,
         frames=session.merged_log.frames(),
         source=_source(session),
