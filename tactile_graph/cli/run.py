@@ -21,8 +21,9 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED, exited
 from tactile_graph.cli.outputs import FORMATS, Output
+from tactile_graph.cli.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
-from tactile_graph.files import check_target, is_plain
+from tactile_graph.files import is_plain
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -30,10 +31,8 @@ if TYPE_CHECKING:
     from tactile_graph.cli.outputs import Writer
     from tactile_graph.engine.table import Table
 
-IN_A_PICTURE = 12
 LONG_RUN = 200
 STALLED_S = 1.0
-PICTURES = (".png", ".svg", ".pdf", ".jpg")
 
 
 @click.command(epilog=EXIT_CODES)
@@ -74,7 +73,8 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
 @click.option(
     "--plot",
     metavar="FILE",
-    help=f"Draw the first {IN_A_PICTURE} frames: a row a frame, a column a node (.png, .svg, …).",
+    help=f"Draw the first {IN_A_STRIP} frames, a row a frame, a column a node (.png, .svg, .pdf); "
+    "or a film, what was found drawn over every frame (.gif, .mp4).",
 )
 def run(
     pipeline: str | None,
@@ -107,12 +107,10 @@ def _check_files(recordings: Sequence[str], output: Output | None, plot: str | N
     if output is not None:
         output.check()
     if plot is not None:
-        check_target("--plot", plot)
+        check_plot(plot)
     for option, name in (("-o", output.name if output else None), ("--plot", plot)):
         if name is not None and any(Path(r).resolve() == Path(name).resolve() for r in recordings):
             raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
-    if plot is not None and Path(plot).suffix.lower() not in PICTURES:
-        raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
 
 
 @dataclass
@@ -125,7 +123,6 @@ class _Run:
     seed: int
     output: Output | None
     plot: str | None
-    kept: list[Result] = field(default_factory=list)
     interrupted: bool = False
     form_of_table: Table | None = None
     quantity: str = "raw"
@@ -148,6 +145,9 @@ class _Run:
         # Lines own stdout; what is said to people then goes to stderr.
         self.people = console(stderr=self.output is not None)
         self.table: Any = None
+        self.drawing: Plot | None = None
+        if self.plot is not None:
+            self.drawing = plot_of(self.plot, self.pipeline.name, self.asked)
         self.lines: Writer | None = None
         if self.output is not None:
             self.lines, self.form_of_table = self.output.writer(self.pipeline, self.asked)
@@ -211,8 +211,8 @@ class _Run:
             self.lines.write(result)
             if self.tally.n == 1:
                 self._provenance(complete=False)  # should the run be killed
-        if self.plot is not None and len(self.kept) < IN_A_PICTURE:
-            self.kept.append(result)
+        if self.drawing is not None:
+            self.drawing.add(result)
         self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
 
     def _row(self, result: Result) -> None:
@@ -240,8 +240,7 @@ class _Run:
         if self.tally.n or self.error is None:
             self._finish_lines()
             self.tally.close(self.people, self.report, self.interrupted)
-            self._picture()
-            self._hints()
+            self._hints(self.drawing is not None and self.drawing.save(self.stderr))
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted:
@@ -260,12 +259,6 @@ class _Run:
         if self.lines is not None:
             self.lines.close()
             self._provenance(complete=self.error is None and not self.interrupted)
-
-    def _picture(self) -> None:
-        if self.plot is not None and self.kept:
-            from tactile_graph.draw.strip import save_strip
-
-            save_strip(self.kept, Path(self.plot))
 
     def _provenance(self, complete: bool) -> None:
         from tactile_graph.provenance import provenance, write_provenance
@@ -287,7 +280,7 @@ class _Run:
         table = self.form_of_table
         return None if table is None else units_of(table, self.quantity)
 
-    def _hints(self) -> None:
+    def _hints(self, drawn: bool) -> None:
         say = self.people
         hidden = self.table.hidden if self.table is not None else []
         if hidden:
@@ -296,9 +289,11 @@ class _Run:
                       soft_wrap=True)  # fmt: skip
         whole = self.output is not None and self.lines is not None and not self.lines.broken
         written = self.output.name if whole and self.output is not None else None
-        for name in (written, self.plot if self.kept else None):
+        for name in (written, self.plot if drawn else None):
             if name not in (None, "-"):
                 say.print(f"wrote {name}", style="dim", soft_wrap=True)
+        for note in self.drawing.notes() if self.drawing is not None and drawn else ():
+            say.print(note, style="dim", soft_wrap=True)
         most = self.span.most if self.error is None else None
         if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
             say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")
