@@ -10,12 +10,13 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.draw.colours import FOUND, TRUE
+from tactile_graph.draw.paint_strip import HEAT
 from tactile_graph.errors import UsageError
 
 Picture = NDArray[np.uint8]
 RATE_HZ = 25.0
 """Pictures a second, at most."""
-COLOURS = 128
 MISSING = (
     "films in MP4 need imageio-ffmpeg: pip install 'tactile-graph[film]'; a .gif needs nothing more"
 )
@@ -52,6 +53,7 @@ class Gif(FilmFile):
     def __init__(self, path: Path, size: tuple[int, int]) -> None:
         self._file = file = path.open("wb")
         self._due_s = self._shown_s = 0.0
+        self._palette = _palette()
         rows, columns = size
         file.write(b"GIF89a" + struct.pack("<HHBBB", columns, rows, 0, 0, 0))
         file.write(b"!\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00")
@@ -63,7 +65,7 @@ class Gif(FilmFile):
         self._due_s += seconds
         shown = max(round(100.0 * (self._due_s - self._shown_s)), 2)  # less is not kept to
         self._shown_s += shown / 100.0
-        image = Image.fromarray(picture).quantize(COLOURS, dither=Image.Dither.NONE)
+        image = Image.fromarray(picture).quantize(palette=self._palette, dither=Image.Dither.NONE)
         parts = GifImagePlugin.getdata(image, duration=10 * shown, include_color_table=True)
         for part in parts:
             self._file.write(part)
@@ -72,6 +74,26 @@ class Gif(FilmFile):
         """End the film."""
         with self._file as file:
             file.write(b";" if whole else b"")
+
+
+def _palette() -> Any:
+    """Return the colours of a film: to choose them picture by picture takes half of all time."""
+    from matplotlib import colormaps
+    from PIL import Image
+
+    heat = 255.0 * colormaps[HEAT](np.linspace(0.0, 1.0, 128))[:, :3]
+    shades = [
+        np.linspace(end, 255.0, n)
+        for end, n in ((np.zeros(3), 18), (_rgb(FOUND), 12), (_rgb(TRUE), 12))
+    ]
+    colours = np.rint(np.vstack([heat, *shades])).astype(np.uint8)
+    image = Image.new("P", (1, 1))
+    image.putpalette(colours.tobytes())
+    return image
+
+
+def _rgb(colour: str) -> NDArray[np.float64]:
+    return np.array([*bytes.fromhex(colour[1:])], dtype=np.float64)
 
 
 class Mp4(FilmFile):
