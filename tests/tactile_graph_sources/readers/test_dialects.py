@@ -252,7 +252,7 @@ def test_axes_that_can_be_read_one_way_are(shape: tuple[int, ...], tmp_path: Pat
     [
         ('{"a": [[1, 2], [3, 4]], "b": [[1, 2], [3, 4]]}', "several lists could be the frames"),
         ('{"a": 1}', "its JSON holds no list"),
-        ('{"a": [["x", "y"]]}', "its JSON holds no frames of numbers"),
+        ('{"a": [["x", "y"]]}', "it holds no frames of numbers"),
         ('{"a" [1', "it begins as JSON does, and is none"),
         ("[]", "neither a list of frames nor an object around one"),
     ],
