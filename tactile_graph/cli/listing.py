@@ -33,7 +33,7 @@ def list_files(kind: str, name: str | None) -> None:
 
     found = registry.installed()
     if name is not None:
-        click.echo(_text(found.path(kind, name)), nl=False)
+        click.echo(file_text(found.path(kind, name)), nl=False)
         return
     names = found.names(kind)
     out = console()
@@ -72,14 +72,21 @@ def _about(path: Path) -> str:
     """
     from tactile_graph.pipeline.document import read_document
 
-    document = read_document(_text(path), path.name)
+    document = read_document(file_text(path), path.name)
     if document.problems:
         raise UsageError(str(document.problems[0]).partition("\n")[0])
     data = document.data if isinstance(document.data, dict) else {}
     return str(data.get("about", ""))
 
 
-def _text(path: Path) -> str:
+def file_text(path: Path) -> str:
+    """Return a file as it stands.
+
+    Raises
+    ------
+    UsageError
+        If it cannot be read.
+    """
     try:
         return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
