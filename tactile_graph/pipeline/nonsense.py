@@ -10,7 +10,7 @@ from typing import Any, Literal, Protocol, get_args, get_origin
 from tactile_graph.errors import did_you_mean
 from tactile_graph.pipeline.comparable import is_scalar, sort_of
 from tactile_graph.pipeline.wiring import arms
-from tactile_graph.steps.signature import list_item
+from tactile_graph.steps.signature import list_item, strip
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
 NEVER_NEGATIVE = ("len", "abs")
@@ -166,7 +166,13 @@ def _impossible(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: R
 
 
 def _choices(kind: Any) -> tuple[Any, ...]:
-    """Return all that a value can be; nothing where it is not one of a few."""
+    """Return all that a value can be; nothing where it is not one of a few.
+
+    ``Annotated[str, Literal["a", "b"]]`` says so of a text, beside ``Literal`` itself.
+    """
+    for rule in strip(kind)[1]:
+        if get_origin(rule) is Literal:
+            return get_args(rule)
     found = arms(kind) if kind is not None else ()
     if not found or not all(arm is bool or get_origin(arm) is Literal for arm in found):
         return ()
