@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from tactile_graph.cli.endings import NOT_DONE
-from tactile_graph.cli.file_kinds import PIPELINE, file_kind, kind_names, kind_of
+from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, kind_of
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError
 from tactile_graph.plugins import registry
 
@@ -37,21 +37,37 @@ def complete_file(ctx: click.Context, param: click.Parameter, incomplete: str) -
     ]
 
 
-@click.command(epilog="Exit codes: 0 all are right, 2 some are not.")
+@click.command(epilog="Exit codes: 0 all are right, 2 some are not; of --watch at the last look.")
 @click.argument("files", metavar="[FILE|NAME]...", nargs=-1, shell_complete=complete_file)
 @click.option("--as", "kind", metavar="KIND", default="",
               help="What they are: pipeline, pad, preset, scene, or what else plugins read. "
               "Otherwise the keys of a file tell.")  # fmt: skip
-def check(files: tuple[str, ...], kind: str) -> None:
+@click.option(
+    "--watch", "watched", is_flag=True,
+    help="Look again at every save of the files, and of those they use, until Ctrl-C.",
+)  # fmt: skip
+def check(files: tuple[str, ...], kind: str, watched: bool) -> None:
     """Report all that is wrong with files of pipelines, pads, presets or scenes.
 
     Installed ones go by name; without any, all that are installed are checked.
     """
     from tactile_graph.cli.terminal import console
 
+    out = console()
     targets = targets_of(registry.installed(), files, kind)
-    if not show_outcomes(console(), targets):
+    if watched:
+        from tactile_graph.cli.watch import watch
+
+        right = watch(lambda: show_outcomes(out, targets), _paths(targets), out)
+    else:
+        right = show_outcomes(out, targets)
+    if not right:
         click.get_current_context().exit(NOT_DONE)
+
+
+def _paths(targets: Sequence[Target]) -> list[str]:
+    """Return the files that are named as such; those of names are found when they are read."""
+    return [t.name for t in targets if Path(t.name).suffix in YAML or "/" in t.name]
 
 
 def targets_of(found: registry.Registry, files: Sequence[str], kind: str) -> list[Target]:
