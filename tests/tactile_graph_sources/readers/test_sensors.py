@@ -129,6 +129,7 @@ def test_lines_of_several_sensors_are_told_apart_by_a_column(tmp_path: Path) -> 
         [f"Zeile{r}_Spalte{c}" for r in range(8) for c in range(8)],
         [f"p{i}" for i in range(64)] + ["temp1", "temp2", "imu_1", "imu_2", "imu_3"],
         ["a", "b", "time"],
+        ["1" * 100_000, "_1" * 50_000],
         [],
     ],
 )

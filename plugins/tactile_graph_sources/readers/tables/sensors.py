@@ -46,6 +46,7 @@ FEWEST_CELLS, LEAST_SHARE = 6, 0.1
 """Of a sensor: cells, and their number over that of the largest one. Fewer are something else,
 such as temperatures."""
 MOST_SENSORS = 32
+LONGEST_NAME = 80
 SMALLEST_SQUARE, LONGEST = 16, 4
 """Cells of a row that may as well be a whole sensor, and how much longer than broad the grid must
 be else."""
@@ -69,7 +70,7 @@ def sensors_of(names: Sequence[str]) -> Sensors:
     """Return the sensors that a header's names tell apart; none where there is only one."""
     found: dict[str, list[int]] = {}
     for k, name in enumerate(names):
-        match = _PLACE.fullmatch(name.strip())
+        match = _PLACE.fullmatch(name.strip()) if len(name) <= LONGEST_NAME else None
         stem = match[1].rstrip(_JOINTS) if match else ""
         if stem:
             found.setdefault(stem, []).append(k)
@@ -99,7 +100,7 @@ def _perhaps(names: Sequence[str]) -> Sensors:
     """Return the few long rows of a grid that may as well be square sensors."""
     found: dict[str, list[int]] = {}
     for k, name in enumerate(names):
-        match = _TWO_NUMBERS.fullmatch(name.strip())
+        match = _TWO_NUMBERS.fullmatch(name.strip()) if len(name) <= LONGEST_NAME else None
         if match:
             found.setdefault(match[1], []).append(k)
     sizes = {len(columns) for columns in found.values()}
