@@ -16,11 +16,10 @@ FactTable = Mapping[str, Facts]
 
 def source_facts(source: Source | None) -> Facts:
     """Return what the source says of its frames before the first one comes."""
-    names = (
-        source.signature.output_quantity.names
-        if source and source.signature.output_quantity
-        else ()
-    )
+    rule = source.signature.output_quantity if source else None
+    names = rule.names if rule else ()
+    if source and rule and rule.port:
+        names = tuple(n for n in names if n == source.settings.get(rule.port))
     return Facts(names[0] if len(names) == 1 else FRAME, GridFact(FRAME), of_frame=True)
 
 
