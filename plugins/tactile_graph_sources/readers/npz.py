@@ -137,7 +137,7 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
         raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
-    deep = [n for n, a in loaded.items() if a.ndim == 4 and a.dtype.kind in "buif"]
+    deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
 
