@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
+
+
+class OtherQuantity(DataError):
+    """Readings in another unit than that the objects were learned in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +57,8 @@ class Known:
     objects : tuple of KnownObject
     pipeline : str
         Name of the pipeline that measured them.
+    choice : Choice, optional
+        How a discriminant of all these features tells them apart best, where that is known.
     """
 
     where: str
@@ -59,6 +66,7 @@ class Known:
     quantity: str
     objects: tuple[KnownObject, ...]
     pipeline: str = ""
+    choice: Choice | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -85,12 +93,13 @@ class Known:
         """Unbiased covariance of each object, shape (K, F, F)."""
         return np.array([o.statistics.covariance for o in self.objects])
 
-    def chosen(self, features: Sequence[str]) -> Known:
+    def chosen(self, features: Sequence[str] | None) -> Known:
         """Return the objects with these features alone.
 
         Parameters
         ----------
-        features : sequence of str
+        features : sequence of str, optional
+            All that were learned if not given.
 
         Raises
         ------
@@ -99,6 +108,8 @@ class Known:
         DataError
             If one of them was not learned.
         """
+        if features is None:
+            return self
         if not features or len(set(features)) != len(features):
             raise ValueError(f"features: name at least one, each once, got {list(features)}")
         for name in features:
@@ -131,11 +142,13 @@ class Known:
 
         Raises
         ------
-        DataError
+        OtherQuantity
             If it is not.
         """
         if quantity and self.quantity and quantity != self.quantity:
-            raise DataError(
+            raise OtherQuantity(
                 self.where,
-                f"the objects were learned in {self.quantity}, this reading is in {quantity}",
+                f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
+                " them from recordings of this instrument, or calibrate these to"
+                f" {self.quantity}",
             )
