@@ -239,5 +239,7 @@ class Pad:
             pressure = np.apply_along_axis(np.convolve, axis, pressure, self.taps, "same")
         load = pressure.reshape(it.rows, SOWN, it.columns, SOWN).mean(axis=(1, 3))
         felt = np.maximum(load * self.gains * self.drift - it.threshold, 0.0) ** it.law
-        counts = it.full_scale * felt + self.zero + it.noise_counts * rng.standard_normal(load.shape)
+        counts = (
+            it.full_scale * felt + self.zero + it.noise_counts * rng.standard_normal(load.shape)
+        )
         return np.asarray(np.clip(np.round(counts), 0.0, it.full_scale))

@@ -53,7 +53,9 @@ class Choice(NamedTuple):
         parts = []
         if self.n_left_out:
             share = 100.0 * self.n_right / self.n_left_out
-            parts.append(f"{share:.1f} % of {self.n_left_out} readings are named right when left out")
+            parts.append(
+                f"{share:.1f} % of {self.n_left_out} readings are named right when left out"
+            )
         if self.n_strangers:
             share = 100.0 * self.n_found / self.n_strangers
             parts.append(f"{share:.0f} % are unknown when their object is left out whole")

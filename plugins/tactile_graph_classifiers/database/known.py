@@ -16,7 +16,7 @@ from tactile_graph_classifiers.database.statistics import Statistics
 Array = NDArray[np.float64]
 
 
-class OtherQuantity(DataError):
+class OtherQuantityError(DataError):
     """Readings in another unit than that the objects were learned in."""
 
 
@@ -132,6 +132,18 @@ class Known:
         )
         return Known(self.where, tuple(features), self.quantity, objects, self.pipeline)
 
+    def same_readings(self, other: Known) -> bool:
+        """Return whether both hold the same readings of the same objects.
+
+        Parameters
+        ----------
+        other : Known
+        """
+        mine, theirs = self.objects, other.objects
+        return (self.features, self.names) == (other.features, other.names) and all(
+            np.array_equal(a.readings, b.readings) for a, b in zip(mine, theirs, strict=True)
+        )
+
     def measured(self, quantity: str) -> None:
         """Check that a reading is in the unit the objects were learned in.
 
@@ -142,11 +154,11 @@ class Known:
 
         Raises
         ------
-        OtherQuantity
+        OtherQuantityError
             If it is not.
         """
         if quantity and self.quantity and quantity != self.quantity:
-            raise OtherQuantity(
+            raise OtherQuantityError(
                 self.where,
                 f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
                 " them from recordings of this instrument, or calibrate these to"

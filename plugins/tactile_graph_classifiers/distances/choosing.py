@@ -22,8 +22,10 @@ SHRINKAGES = (0.3, 0.1, 0.03, 0.01)
 VARIATES = (8, 15, 25)
 PRIORS = (60.0, 16.0, 5.0)
 BEYOND = (1.0, 0.3, 0.1, 0.03, 0.0)
+RUNS = 10
+"""Into how many runs of successive readings an object's are cut."""
 PARTS = 5
-"""Into how many runs an object's readings are cut, and into how many groups the objects."""
+"""In so many parts readings and objects are left out while choosing."""
 
 
 class Examples(NamedTuple):
@@ -34,13 +36,13 @@ class Examples(NamedTuple):
     readings : ndarray, shape (n, F)
     labels : ndarray of int, shape (n,)
         Which object each is of.
-    blocks : ndarray of int, shape (n,)
+    runs : ndarray of int, shape (n,)
         Which run of its object's readings; -1 where an object has only one reading.
     """
 
     readings: Array
     labels: Labels
-    blocks: Labels
+    runs: Labels
 
     @classmethod
     def of(cls, known: Known) -> Examples:
@@ -59,17 +61,15 @@ class Examples(NamedTuple):
                 known.where,
                 "no object has two readings, so nothing says how much readings vary; learn more",
             )
-        blocks = [
-            np.arange(n) * min(PARTS, n) // n if n > 1 else np.full(n, -1) for n in counts
-        ]
+        runs = [np.arange(n) * min(RUNS, n) // n if n > 1 else np.full(n, -1) for n in counts]
         labels = np.repeat(np.arange(len(counts)), counts)
         return cls(np.concatenate([o.readings for o in known.objects]), labels,
-                   np.concatenate(blocks).astype(np.intp))  # fmt: skip
+                   np.concatenate(runs).astype(np.intp))  # fmt: skip
 
     def chosen(self, kept: NDArray[np.bool_]) -> Examples:
         """Return those kept, the objects numbered anew."""
         _, labels = np.unique(self.labels[kept], return_inverse=True)
-        return Examples(self.readings[kept], labels.astype(np.intp), self.blocks[kept])
+        return Examples(self.readings[kept], labels.astype(np.intp), self.runs[kept])
 
 
 class Tried(NamedTuple):
@@ -139,7 +139,7 @@ def left_out_squares(examples: Examples, manner: Manner) -> Array:
     manner : Manner
     """
     parts = [np.zeros(0)]
-    for learned, coordinates, _ in _without_readings(examples, manner.shrinkage):
+    for learned, coordinates, _ in _without_readings(examples, manner.shrinkage, RUNS):
         parts.append(_squares(learned.discriminant(manner)(coordinates), manner.beyond))
     return np.concatenate(parts)
 
@@ -149,11 +149,11 @@ def _squares(scores: Scores, beyond: float) -> Array:
 
 
 def _without_readings(
-    examples: Examples, shrinkage: float
+    examples: Examples, shrinkage: float, n_parts: int
 ) -> Iterator[tuple[Learned, Array, Labels]]:
-    """Yield, for each run, what is learned of the others, and the run's readings."""
-    for block in range(PARTS):
-        out = examples.blocks == block
+    """Yield, for each part of the runs, what is learned of the others, and the part's readings."""
+    for part in range(n_parts):
+        out = (examples.runs >= 0) & (examples.runs % n_parts == part)
         if not out.any() or out.all():
             continue
         learned = Learned.of(examples.readings[~out], examples.labels[~out], shrinkage)
@@ -174,7 +174,7 @@ def _without_objects(examples: Examples, shrinkage: float) -> Iterator[tuple[Lea
 
 def _tried(examples: Examples, shrinkage: float) -> Iterator[Tried]:
     """Yield what each manner of a shrinkage does."""
-    of_readings = list(_without_readings(examples, shrinkage))
+    of_readings = list(_without_readings(examples, shrinkage, PARTS))
     of_objects = list(_without_objects(examples, shrinkage))
     for variates, prior in product(VARIATES, PRIORS):
         manner = Manner(shrinkage, variates, prior)

@@ -81,7 +81,8 @@ class CanonicalDiscriminant:
             If a feature was not measured or is not finite, or the reading is in another unit.
         """
         vector = self._lookup.vector(features)
-        scores = self._discriminant(self._learned.located(vector[None]))
+        with np.errstate(over="ignore", invalid="ignore"):  # told below
+            scores = self._discriminant(self._learned.located(vector[None]))
         order = np.argsort(scores.unlikeliness[0], kind="stable")[:2]
         squares = [float(scores.at(order[i : i + 1], self._beyond)[0]) for i in range(len(order))]
         if not math.isfinite(squares[0]):

@@ -62,7 +62,9 @@ class Discriminant(NamedTuple):
 
     def __call__(self, coordinates: Array) -> Scores:
         """Return the scores of readings in the space's coordinates, shape (n, T)."""
-        off = (coordinates @ self.space.variates)[None] - (self.means @ self.space.variates)[:, None]
+        off = (coordinates @ self.space.variates)[None] - (self.means @ self.space.variates)[
+            :, None
+        ]
         squares = np.square(off @ self.roots).sum(axis=2).T
         within = np.square(off).sum(axis=2).T
         beside = np.maximum(_squared_distances(coordinates, self.means) - within, 0.0)

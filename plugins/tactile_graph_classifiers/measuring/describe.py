@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,37 @@ NAMES = (
 )
 
 
+@dataclass(frozen=True, eq=False)
+class Description:
+    """An object as `describe` measured it.
+
+    Parameters
+    ----------
+    weight : float
+        Sum of the readings, in the image's own unit.
+    area_cm2 : float
+        Of the footprint.
+    axis_ratio : float
+        Of the ellipse with the footprint's second moments, 0 to 1.
+    solidity : float
+        Share of its convex hull that the footprint fills.
+    measurements : Measurements
+        All numbers by name, these among them.
+    """
+
+    weight: float
+    area_cm2: float
+    axis_ratio: float
+    solidity: float
+    measurements: Measurements
+    columns_shown: ClassVar[tuple[str, ...]] = ("weight", "area_cm2", "axis_ratio", "solidity")
+    provides: ClassVar[Mapping[type, str]] = {Measurements: "measurements"}
+
+    def summary(self) -> dict[str, float]:
+        """Return all numbers by name."""
+        return dict(zip(self.measurements.names, self.measurements.values.tolist(), strict=True))
+
+
 class Describe:
     """Return what `features` measures, and outline, core and spread of the load besides.
 
@@ -44,7 +77,7 @@ class Describe:
 
     def __call__(
         self, image: Image, mask: Annotated[Mask, Grid.like("image")]
-    ) -> Annotated[Measurements, Quantity.like("image")]:
+    ) -> Annotated[Description, Quantity.like("image")]:
         """Return the numbers of what the mask marks.
 
         Parameters
@@ -81,7 +114,11 @@ class Describe:
             *outline.outline_numbers(core, image.pitch_cm),
             *load_spread.spread_numbers(load, on, image.pitch_cm),
         ]
-        return Measurements(NAMES, np.array(numbers), first.quantity)
+        measured = Measurements(NAMES, np.array(numbers), first.quantity)
+        weight, area_cm2, axis_ratio, solidity = (
+            numbers[NAMES.index(name)] for name in Description.columns_shown
+        )
+        return Description(weight, area_cm2, axis_ratio, solidity, measured)
 
 
 def _window(on: NDArray[np.bool_]) -> tuple[slice, slice]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from tactile_graph.steps.rules import Quantity
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 
 def fitted_area(
     features: Measurements, shape: Circle | Ellipse | Rectangle | Polygon
-) -> Annotated[Measurements, Quantity.like("features")]:
+) -> Measurements:
     """Return the features with the area of a shape that was fitted to the object.
 
     Parameters

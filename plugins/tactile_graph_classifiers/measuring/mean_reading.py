@@ -10,7 +10,6 @@ from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
 from tactile_graph.steps import TimeGap
-from tactile_graph.steps.rules import Quantity
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 
@@ -35,9 +34,7 @@ class MeanReading:
         self._names: tuple[str, ...] = ()
         self._start_anew_s = start_anew_s
 
-    def __call__(
-        self, features: Measurements, *, gap_s: TimeGap = None
-    ) -> Annotated[Measurements, Quantity.like("features")]:
+    def __call__(self, features: Measurements, *, gap_s: TimeGap = None) -> Measurements:
         """Return the mean with this reading included."""
         long = gap_s is not None and self._start_anew_s is not None and gap_s > self._start_anew_s
         if long or features.names != self._names:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +63,7 @@ def outline_numbers(on: NDArray[np.bool_], pitch_cm: tuple[float, float]) -> lis
     ]  # fmt: skip
 
 
-def moments(z: NDArray[np.complex128], shares: Array) -> list[float]:
+def moments(z: NDArray[Any], shares: Array) -> list[float]:
     """Return the magnitudes of complex moments of points about 0, in the order of ``ORDERS``.
 
     Parameters
