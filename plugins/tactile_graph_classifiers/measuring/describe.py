@@ -55,8 +55,8 @@ class Description:
     provides: ClassVar[Mapping[type, str]] = {Measurements: "measurements"}
 
     def summary(self) -> dict[str, float]:
-        """Return all numbers by name."""
-        return dict(zip(self.measurements.names, self.measurements.values.tolist(), strict=True))
+        """Return what tables show; all numbers are in the full record."""
+        return {name: getattr(self, name) for name in self.columns_shown}
 
 
 class Describe:

@@ -17,7 +17,8 @@ IN_THE_IMAGES_UNIT = {"weight", "load_mean", "load_sd", "peak"}
 
 
 def described(on, values=None, **more):
-    return Describe()(*image_and_mask(on, values, **more)).summary()
+    found = Describe()(*image_and_mask(on, values, **more)).measurements
+    return dict(zip(found.names, found.values.tolist(), strict=True))
 
 
 def lopsided() -> tuple[np.ndarray, np.ndarray]:
@@ -89,11 +90,10 @@ def test_it_says_all_that_features_says():
     measured, first = Describe()(image, mask), FeaturesOf()(image, mask).measurements
     assert measured.measurements.names[: len(first.names)] == first.names
     assert measured.measurements.values[: len(first.names)].tolist() == first.values.tolist()
-    assert (measured.weight, measured.measurements.quantity) == (values_sum(image), "gram")
-
-
-def values_sum(image) -> float:
-    return float(image.values.sum())
+    assert measured.weight == pytest.approx(image.values.sum())
+    assert measured.measurements.quantity == "gram"
+    assert [*measured.summary()] == ["weight", "area_cm2", "axis_ratio", "solidity"]
+    assert measured.summary()["solidity"] == measured.solidity < 1.0
 
 
 def test_a_single_cell_has_finite_numbers():
