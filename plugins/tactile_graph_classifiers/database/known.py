@@ -161,6 +161,5 @@ class Known:
             raise OtherQuantityError(
                 self.where,
                 f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
-                " them from recordings of this instrument, or calibrate these to"
-                f" {self.quantity}",
+                " them from recordings like these, into another database",
             )

@@ -89,6 +89,5 @@ class Space(NamedTuple):
 
 def means_of(rows: Array, labels: NDArray[np.intp]) -> Array:
     """Return the mean of each object's rows, shape (K, T)."""
-    sums = np.zeros((int(labels.max()) + 1, rows.shape[1]))
-    np.add.at(sums, labels, rows)
-    return np.asarray(sums / np.bincount(labels)[:, None])
+    belongs = (labels == np.arange(int(labels.max()) + 1)[:, None]).astype(np.float64)
+    return np.asarray(belongs @ rows / np.bincount(labels)[:, None])

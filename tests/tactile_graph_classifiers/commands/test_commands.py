@@ -206,7 +206,10 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
     code, text, told = run("identify", "raw.csv")
     assert (code, text) == (2, "")
     told = " ".join(told.split())
-    assert "the objects were learned in gram, this reading is in raw; learn them from" in told
+    assert (
+        "the objects were learned in gram, this reading is in raw; learn them from recordings like"
+        in told
+    )
 
 
 def test_a_database_of_the_thesis_features_serves_the_default_pipeline(recordings):
