@@ -41,7 +41,8 @@ def output_facts(
         like = by_port.get(quantity.port, like)
     elif quantity is not None and len(quantity.names) == 1:
         like = Facts(quantity.names[0])
-    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port))
+    views = tuple(getattr(signature.output, "provides", {}).values())
+    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port), views=views)
 
 
 def _output_grid(
@@ -101,7 +102,7 @@ def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list
     setting = getattr(made, "takes_by", "")
     troubles: list[Trouble] = []
     rules: list[FrameRule] = []
-    by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in node.inputs if b.refs}
+    by_port = {b.port.name: _view_facts(b.refs[0], facts) for b in node.inputs if b.refs}
     for port in takes.keys() & by_port.keys():
         known, what = by_port[port], node.what
         text = quantity_trouble(what, port, takes[port], known.quantity, setting)
@@ -109,6 +110,12 @@ def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list
         if known.of_frame:
             rules.append(FrameRule(node.name, port, what, takes[port], setting=setting))
     return troubles, rules
+
+
+def _view_facts(ref: Ref, facts: FactTable) -> Facts:
+    """Return what is known of the value at a reference, or of what a record is seen as there."""
+    known = facts.get(ref.node, Facts())
+    return known if ref.path in [(view,) for view in known.views] else ref_facts(ref, facts)
 
 
 def quantity_trouble(
