@@ -206,7 +206,9 @@ class PacketFramer:
         ahead_by = self.phases.ahead_by(units, real + [o for o in offsets if o not in real])
         enough = self.likeness.decides_nats
         self._doubt = ahead_by < enough
-        return ahead_by <= -enough
+        # Where no header stood among the values before, one came with the scene: that a cut of
+        # just this length came with it is unlikelier than any scene.
+        return ahead_by <= -enough and self._wary
 
     @property
     def _wary(self) -> bool:

@@ -187,6 +187,19 @@ def held(kit: Kit, pad: Pad) -> Pad:
     return out
 
 
+def test_a_header_that_comes_with_a_scene_takes_the_phase_from_none() -> None:
+    """However unlike the scene before it, and however like it another phase would be."""
+    kit = BY_NAME["flexitac-16x32"]
+    for seed in range(40):
+        rng = np.random.default_rng([seed, 6000])
+        scene = kit.pad(rng).copy()
+        scene.reshape(-1)[scene.size // 3 :][:2] = 0xAA, 0x55
+        pads = [*(kit.pad(rng) for _ in range(40)), *([scene] * 10)]
+        got = send(decoder_of(kit), kit, [kit.encode(p, i) for i, p in enumerate(pads)], 4096)
+        values = {p.astype(np.float64).tobytes() for p in pads}
+        assert all(d.values.tobytes() in values for d in got if not d.doubtful)
+
+
 FLIPPED = {"header": lambda f: b"\xab" + f[1:], "lost": lambda f: f[:9] + f[10:],
            "inserted": lambda f: f[:50] + b"\xaa" + f[50:],
            "as far as the rival": lambda f: f[:100] + f[100 + 2 + 6 * 32 + 3 :]}  # fmt: skip
