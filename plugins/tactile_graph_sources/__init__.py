@@ -39,3 +39,9 @@ def tactile_graph_commands() -> Mapping[str, str]:
         "ports": "tactile_graph_sources.commands.ports:ports",
         "record": "tactile_graph_sources.commands.record:record",
     }
+
+
+@hookimpl
+def tactile_graph_checks() -> Mapping[str, str]:
+    """Offer what looks through recordings."""
+    return {"store": "tactile_graph_sources.stores.checking:STORES"}

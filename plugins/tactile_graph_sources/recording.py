@@ -20,7 +20,8 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
-from tactile_graph_sources.store import is_store, read_store
+from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
 QuantityName = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -17,11 +18,16 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Exit codes: 0 all are right, 2 some are not.")
 @click.argument("pipelines", metavar="[PIPELINE]...", nargs=-1, shell_complete=complete_pipeline)
-def check(pipelines: tuple[str, ...]) -> None:
-    """Report all that is wrong with pipeline files or names; without any, with all installed."""
+@click.option("--repair", is_flag=True, help="Mend what can be mended of recordings.")
+def check(pipelines: tuple[str, ...], repair: bool) -> None:
+    """Report all that is wrong with pipeline files or names; without any, with all installed.
+
+    Recordings in Zarr stores are looked through as well.
+    """
     from rich.text import Text
 
     from tactile_graph.api.pipeline import load
+    from tactile_graph.cli.file_checks import check_for, show_checked
     from tactile_graph.cli.problems import show_problems
     from tactile_graph.cli.terminal import console
 
@@ -33,6 +39,11 @@ def check(pipelines: tuple[str, ...]) -> None:
     wrong = 0
     for name in names:
         try:
+            of_file = check_for(found, name)
+            if of_file is not None:
+                checked = of_file.check(Path(name), repair)
+                wrong += not show_checked(out, name, checked, repair)
+                continue
             out.print(_right(load(name, found)), soft_wrap=True)
         except TactileGraphError as error:
             wrong += 1

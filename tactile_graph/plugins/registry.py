@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
-OFFERS = ("steps", "readers", "pipelines", "pads", "presets", "commands")
+OFFERS = ("steps", "readers", "pipelines", "pads", "presets", "commands", "checks")
 _FILES = ("pipelines", "pads", "presets")
 _TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
 _WANTED = {

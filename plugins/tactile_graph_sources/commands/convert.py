@@ -140,6 +140,7 @@ class _Kept:
                 ("truth", frame.truth is not None),
                 ("device time", frame.device_time_s is not None),
                 ("gaps", frame.gap),
+                ("doubts", frame.doubtful),
                 ("labels", bool(frame.label)),
             ):
                 if there:
