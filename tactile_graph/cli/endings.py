@@ -12,11 +12,11 @@ from typing import Any
 
 import click
 
+from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.errors import PipelineError, PluginError, TactileGraphError
 
 SOME_FAILED = 1
 NOT_DONE = 2
-INTERRUPTED = 130
 PIPE_CLOSED = 141
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
@@ -32,14 +32,16 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
         Show tracebacks.
     """
     try:
-        code = run()
+        with Interrupts():
+            code = run()
         sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
     except BrokenPipeError:
         stop_writing()
         return PIPE_CLOSED
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return INTERRUPTED
+    except (click.Abort, KeyboardInterrupt) as error:
+        came = error.__cause__ if isinstance(error, click.Abort) else error
+        click.echo(words_of(came or error), err=True)
+        return code_of(came or error)
     except SystemExit as error:
         if _of_click(error):
             raise

@@ -19,7 +19,8 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
     source_options,
 )
-from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED, exited
+from tactile_graph.cli.endings import SOME_FAILED, exited
+from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, is_plain
 
@@ -144,7 +145,7 @@ class _Run:
     long: bool
     plot: str | None
     kept: list[Result] = field(default_factory=list)
-    interrupted: bool = False
+    interrupted: KeyboardInterrupt | None = None
     form_of_table: Table | None = None
     quantity: str = "raw"
     last_frame_s: float = field(default_factory=time.monotonic)
@@ -217,8 +218,8 @@ class _Run:
             for result in self._results():
                 with held:
                     self._one(result)
-        except KeyboardInterrupt:
-            self.interrupted = True
+        except KeyboardInterrupt as error:
+            self.interrupted = error
         except BrokenPipeError:
             raise
         except SystemExit as error:
@@ -271,13 +272,14 @@ class _Run:
             self._no_frames()
         if self.tally.n or self.error is None:
             self._finish_lines()
-            self.tally.close(self.people, self.report, self.interrupted)
+            came = self.interrupted
+            self.tally.close(self.people, self.report, words_of(came) if came else "")
             self._picture()
             self._hints()
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
-        if self.interrupted:
-            return INTERRUPTED
+        if self.interrupted is not None:
+            return code_of(self.interrupted)
         tally = self.tally
         return SOME_FAILED if tally.n_failed or tally.n_items_failed or tally.not_finite else 0
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
-from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.plugins import registry
@@ -35,7 +35,8 @@ A sweep makes a variant of each value:
 Exit codes:
   0    done
   2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
-  130  interrupted by Ctrl-C; what was done is shown
+  130  interrupted by Ctrl-C; what was done is shown and written
+  143  ended by SIGTERM (129: its terminal was closed); likewise
 """
 
 
@@ -218,9 +219,9 @@ class _Run:
                 error = UsageError(f"there is nothing to compare: the source gave {got} frames")
         if error is not None:
             raise error
-        return INTERRUPTED if interrupted else 0
+        return code_of(interrupted) if interrupted else 0
 
-    def _frames(self, held: Any) -> tuple[bool, Exception | None]:
+    def _frames(self, held: Any) -> tuple[KeyboardInterrupt | None, Exception | None]:
         from tactile_graph.cli.progress import Bar
 
         bar = Bar(self.stderr, "compare")
@@ -232,23 +233,27 @@ class _Run:
                 with held:
                     self.session.add(frame)
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))
-        except KeyboardInterrupt:
-            return True, None
+        except KeyboardInterrupt as error:
+            return error, None
         except Exception as error:  # a source may raise anything; what was done is shown
-            return False, error
+            return None, error
         finally:
             bar.stop()
-        return False, None
+        return None, None
 
     # -- the end -----------------------------------------------------------------------------
 
-    def _finish(self, interrupted: bool) -> None:
+    def _finish(self, interrupted: KeyboardInterrupt | None) -> None:
         from tactile_graph_compare.output.shown import show
         from tactile_graph_compare.run.summarise import summarise
 
-        comparison = summarise(self.session, self.report, interrupted, self.notes, self.span.start)
-        if interrupted:
-            self.people.print("interrupted", style="bold red")
+        comparison = summarise(
+            self.session, self.report, interrupted is not None, self.notes, self.span.start
+        )
+        if interrupted is not None:
+            n = self.session.n
+            frames = f"{n} frame{'s' if n != 1 else ''}"
+            self.people.print(f"{words_of(interrupted)} after {frames}", style="bold red")
         try:
             show(comparison, self.people)
             for where, what in self.report.troubles[:10]:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
 import time
 from collections.abc import Generator, Iterator
 from itertools import islice
 from pathlib import Path
-from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -72,6 +69,7 @@ def record(
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
     lost. A pad that is unplugged is waited for.
     """
+    from tactile_graph.cli.interrupt import Ended, Interrupts, code_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.serial_port import serial
@@ -93,13 +91,14 @@ def record(
             report=report,
         )
     failure: Exception | None = None
-    with _Ended() as ended:
+    ended: KeyboardInterrupt | None = None
+    with Interrupts():
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
                 _keep(frames, store)
-        except KeyboardInterrupt:
-            pass  # the usual way to end a recording; what was held is written by now
+        except KeyboardInterrupt as error:
+            ended = error  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
             failure = error
         finally:
@@ -109,8 +108,8 @@ def record(
         _tell(store, report)
     if failure is not None:
         raise failure
-    if ended.by:
-        click.get_current_context().exit(128 + ended.by)
+    if isinstance(ended, Ended):
+        click.get_current_context().exit(code_of(ended))
 
 
 def _check_source(port: str | None, preset: str | None, source: str | None) -> None:
@@ -144,30 +143,6 @@ def _check_target(target: Path) -> None:
         )
     if not target.exists():
         check_target("TARGET", target)
-
-
-class _Ended:
-    """While entered, what ends programs (a shutdown, a closed terminal) ends as Ctrl-C does."""
-
-    def __init__(self) -> None:
-        self.by = 0
-        self._before: dict[signal.Signals, Any] = {}
-
-    def __enter__(self) -> _Ended:
-        if threading.current_thread() is threading.main_thread():
-            for name in ("SIGTERM", "SIGHUP"):  # the latter is not on Windows
-                number = getattr(signal, name, None)
-                if number is not None:
-                    self._before[number] = signal.signal(number, self._came)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, before in self._before.items():
-            signal.signal(number, before)
-
-    def _came(self, number: int, _frame: FrameType | None) -> None:
-        self.by = number
-        raise KeyboardInterrupt
 
 
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
