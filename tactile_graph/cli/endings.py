@@ -13,7 +13,9 @@ from typing import Any
 import click
 
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.say import say
 from tactile_graph.errors import PipelineError, PluginError, TactileGraphError
+from tactile_graph.foreign_text import visible
 
 SOME_FAILED = 1
 NOT_DONE = 2
@@ -40,7 +42,7 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
         return PIPE_CLOSED
     except (click.Abort, KeyboardInterrupt) as error:
         came = error.__cause__ if isinstance(error, click.Abort) else error
-        click.echo(words_of(came or error), err=True)
+        say(words_of(came or error), err=True)
         return code_of(came or error)
     except SystemExit as error:
         if _of_click(error):
@@ -91,11 +93,11 @@ def show(error: BaseException, debug: bool = False) -> None:
     elif isinstance(error, click.UsageError):
         _line(error.format_message())
         if error.ctx is not None:
-            click.echo(f"try: {error.ctx.command_path} --help", err=True)
+            say(f"try: {error.ctx.command_path} --help", err=True)
     else:
         _line(words(error))
         if not (debug or isinstance(error, TactileGraphError | click.ClickException | OSError)):
-            click.echo("(--debug shows where)", err=True)
+            say("(--debug shows where)", err=True)
 
 
 def words(error: BaseException) -> str:
@@ -112,4 +114,4 @@ def words(error: BaseException) -> str:
 
 
 def _line(text: str) -> None:
-    click.echo(f"{click.style('error:', fg='red', bold=True)} {text}", err=True)
+    click.echo(f"{click.style('error:', fg='red', bold=True)} {visible(text)}", err=True)

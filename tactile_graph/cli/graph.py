@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tactile_graph.cli.arguments import offered, pipeline_argument
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
@@ -46,9 +47,9 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
     text = text.rstrip("\n") + "\n"
     if to_file:
         write_whole(str(output), text)
-        click.echo(f"wrote {output}", err=True)
+        say(f"wrote {output}", err=True)
     else:
-        click.echo(text, nl=False)
+        say(text, nl=False)
 
 
 def _format(output: str) -> str:

@@ -6,7 +6,9 @@ import json
 
 import click
 
+from tactile_graph.cli.say import say
 from tactile_graph.files import check_target, write_whole
+from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 
@@ -23,10 +25,10 @@ def schema(output: str | None) -> None:
         check_target("-o", str(output))
     made, troubles = pipeline_schema(registry.installed())
     for trouble in troubles:
-        click.echo(f"{click.style('left open:', fg='yellow')} {trouble}", err=True)
+        click.echo(f"{click.style('left open:', fg='yellow')} {visible(str(trouble))}", err=True)
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     if output in (None, "-"):
-        click.echo(text, nl=False)
+        say(text, nl=False)
     else:
         write_whole(str(output), text)
-        click.echo(f"wrote {output}", err=True)
+        say(f"wrote {output}", err=True)

@@ -18,6 +18,7 @@ PUBLIC = (
     "tactile_graph.steps",
     "tactile_graph.errors",
     "tactile_graph.files",
+    "tactile_graph.foreign_text",
     "tactile_graph.locks",
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from tactile_graph.cli.say import say
 from tactile_graph_classifiers.commands.shared import database_option
 
 
@@ -17,4 +18,4 @@ def forget(name: str, database: Path, timeout_s: float) -> None:
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
     n = ObjectDatabase(database, timeout_s).forget(name)
-    click.echo(f"{database}: {name} forgotten, with {n} readings")
+    say(f"{database}: {name} forgotten, with {n} readings")

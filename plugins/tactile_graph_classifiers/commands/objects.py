@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table
 
@@ -38,7 +39,7 @@ def objects(
 
         setting, lessons = read_export(imported)
         store.learn(setting, lessons, new=True)
-        click.echo(f"{database}: {len(lessons)} objects imported")
+        say(f"{database}: {len(lessons)} objects imported")
         return
     known = store.known()
     if exported is not None:
@@ -58,15 +59,15 @@ def _export(known: Known, file: str) -> None:
 
     text = to_text(known)
     if file == "-":
-        click.echo(text, nl=False)
+        say(text, nl=False)
         return
     write_whole(file, text)
-    click.echo(f"{file}: {len(known.objects)} objects exported")
+    say(f"{file}: {len(known.objects)} objects exported")
 
 
 def _list(known: Known) -> None:
     if not known.objects:
-        click.echo(f"{known.where}: no objects")
+        say(f"{known.where}: no objects")
         return
     shown = [f for f in LISTED if f in known.features] or list(known.features[:2])
     rows = [

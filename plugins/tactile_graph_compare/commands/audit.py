@@ -18,6 +18,7 @@ from tactile_graph.cli.arguments import (
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
+from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
     from tactile_graph_compare.output.tables import Table
@@ -194,4 +195,4 @@ def _write(found: Audit, path: str) -> None:
         "guards": [asdict(g) for g in found.guards],
         "provenance": found.everything.provenance,
     }
-    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, visible(json.dumps(data, indent=1, ensure_ascii=False)) + "\n")

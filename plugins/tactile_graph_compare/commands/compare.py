@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -15,6 +14,7 @@ from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
+from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
@@ -161,13 +161,16 @@ def _prepared(
 
 def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
     """Return the variants and the recordings among the words of a command line."""
-    from tactile_graph_compare.variants.request import parse_request
+    from tactile_graph_compare.variants.request import parse_request, words_of
 
     found = registry.installed()
     requests: list[VariantRequest] = []
     recordings: list[str] = []
     for word in words:
-        name = _first(word)
+        try:
+            name = next(iter(words_of(word)), "")
+        except ValueError:  # a quotation that does not end
+            name = word
         if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
             requests.append(parse_request(word, found))
         elif Path(word).exists():
@@ -175,13 +178,6 @@ def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
         else:
             raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
     return requests, recordings
-
-
-def _first(word: str) -> str:
-    try:
-        return (shlex.split(word) or [""])[0]
-    except ValueError:
-        return word
 
 
 # -- the frames ------------------------------------------------------------------------------
@@ -272,7 +268,7 @@ class _Run:
         if options.csv_path is not None:
             yield from write_csv(comparison, options.csv_path)
         for name, text in ((options.markdown, markdown), (options.json_path, as_json)):
-            yield from _put(name, text(comparison)) if name is not None else ()
+            yield from _put(name, visible(text(comparison))) if name is not None else ()
         if options.report is not None:
             _report_writer()(comparison, options.report)
             yield options.report

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
@@ -77,7 +79,7 @@ def record(
 
     _check_source(port, preset, source)
     _check_target(target)
-    report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
+    report = Report(listener=lambda where, what: say(f"{where}: {what}", err=True))
     if source is not None:
         frames = _until(_of_source(source, settings, n_frames, report), seconds)
     else:
@@ -92,6 +94,7 @@ def record(
         )
     failure: Exception | None = None
     ended: KeyboardInterrupt | None = None
+    store: StoreWriter | None = None
     with Interrupts():
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
@@ -104,11 +107,12 @@ def record(
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    if failure is None or report.counts["good frames"] or report.counts["frames"]:
+    n_came = report.counts["good frames"] + report.counts["frames"]
+    if store is not None and (failure is None or n_came):
         _tell(store, report)
     if failure is not None:
         raise failure
-    if isinstance(ended, Ended):
+    if ended is not None and (store is None or isinstance(ended, Ended)):
         click.get_current_context().exit(code_of(ended))
 
 
@@ -166,18 +170,18 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
             click.echo(f"\r{store.n_frames} frames, {rate:.0f} a second ", nl=False, err=True)
             since, n = now, 0
     if shown:
-        click.echo("", err=True)
+        say("", err=True)
 
 
 def _tell(store: StoreWriter, report: Report) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
     if not store.path.exists():
-        click.echo(f"{store.path}: no frame came, and nothing was written", err=True)
+        say(f"{store.path}: no frame came, and nothing was written", err=True)
         n_bytes = report.counts["bytes"]
-        click.echo(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
-    click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
+    say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in UNTOLD]
     for name in names:
-        click.echo(f"  {name}: {report.counts[name]}", err=True)
+        say(f"  {name}: {report.counts[name]}", err=True)

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -56,9 +58,9 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         options = "" if quick else " --full"
         options += f" --seed {seed}" if seed else ""
         write(output, rows, " ".join(["tactile-graph stress", *names]) + options)
-        click.echo(f"wrote {output}")
+        say(f"wrote {output}")
     if ended is not None:
-        click.echo(f"{words_of(ended)}: {n} of {len(wanted)} steps", err=True)
+        say(f"{words_of(ended)}: {n} of {len(wanted)} steps", err=True)
         click.get_current_context().exit(code_of(ended))
     if any(r.verdict.outcome.name == "BROKEN" for r in rows):
         click.get_current_context().exit(1)

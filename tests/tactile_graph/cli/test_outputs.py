@@ -143,3 +143,40 @@ def test_a_narrow_terminal_still_shows_whole_words_of_what_plugins_offer(
     assert "…" not in got.stdout
     assert "import" not in got.stdout
     assert "2 pipelines" in " ".join(got.stdout.split())
+
+
+ODD = ("=1+1.txt", "\x1b[31mred.txt", "a\u202etxt.txt")
+
+
+@pytest.fixture
+def odd_files(tmp_path: Path) -> tuple[str, ...]:
+    for name in ODD:
+        (tmp_path / name).write_text("1\nword\n")
+    return ODD
+
+
+@pytest.mark.parametrize("form", [(), ("-o", "-"), ("--format", "csv")], ids=" ".join)
+def test_a_name_neither_acts_on_the_terminal_nor_turns_text_round(
+    odd_files: tuple[str, ...], form: tuple[str, ...]
+) -> None:
+    got = call("run", "discs", *odd_files, *form)
+    assert got.exit_code == 0, got.output
+    assert [c for c in got.output if c in "\x1b\u202e"] == []
+    assert r"\u001b[31mred.txt" in got.output
+    assert r"a\u202etxt.txt" in got.output
+
+
+def test_a_name_is_no_formula_in_csv_and_itself_in_json(odd_files: tuple[str, ...]) -> None:
+    lines = call("run", "discs", *odd_files, "--format", "csv").stdout.splitlines()
+    assert [line.split(",")[2] for line in lines] == [
+        "label", "'=1+1.txt", r"\u001b[31mred.txt", r"a\u202etxt.txt"
+    ]  # fmt: skip
+    lines = call("run", "discs", *odd_files, "-o", "-").stdout.splitlines()
+    assert [json.loads(line)["label"] for line in lines] == list(ODD)
+
+
+def test_an_error_shows_a_name_without_its_escapes() -> None:
+    got = call("run", "discs", "no\x1b[2Jfile.txt")
+    assert got.exit_code == 2
+    assert "\x1b" not in got.output
+    assert r"no\u001b[2Jfile.txt" in got.output
