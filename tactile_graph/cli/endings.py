@@ -52,14 +52,17 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
     except Exception as error:  # whatever a plugin raises: people get a line, not a traceback
         show(error, debug)
         return error.exit_code if isinstance(error, click.ClickException) else NOT_DONE
+    except BaseException as error:
+        show(exited(error), debug)
+        return NOT_DONE
     return code if isinstance(code, int) else 0
 
 
-def exited(error: SystemExit) -> PluginError:
+def exited(error: BaseException) -> PluginError:
     """Return what to say when a plugin's code ends the program."""
     from tactile_graph.engine.outcome import raised_at
 
-    what = f"SystemExit({error.code!r}), {raised_at(error)}"
+    what = f"{error!r}, {raised_at(error)}"
     told = PluginError(f"a plugin ended the program: {what}")
     told.__cause__ = error
     return told

@@ -74,6 +74,11 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
     metavar="FILE",
     help=f"Draw the first {IN_A_PICTURE} frames: a row a frame, a column a node (.png, .svg, …).",
 )
+@click.option(
+    "--verify",
+    is_flag=True,
+    help="Look after every step whether it wrote into what others read; slower.",
+)
 def run(
     pipeline: str | None,
     recordings: tuple[str, ...],
@@ -88,6 +93,7 @@ def run(
     full: bool,
     long: bool,
     plot: str | None,
+    verify: bool,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
 
@@ -98,7 +104,7 @@ def run(
     _check_files(recordings, output, plot)
     _check_form(full, long, output, form)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, output, form, full, long, plot).go()
+    _Run(opened, tuple(only), span, seed, output, form, full, long, plot, verify).go()
 
 
 def _check_files(recordings: Sequence[str], output: str | None, plot: str | None) -> None:
@@ -144,6 +150,7 @@ class _Run:
     full: bool
     long: bool
     plot: str | None
+    verify: bool
     kept: list[Result] = field(default_factory=list)
     interrupted: KeyboardInterrupt | None = None
     form_of_table: Table | None = None
@@ -160,7 +167,7 @@ class _Run:
         from tactile_graph.steps.injected import Report
 
         self.report = Report(listener=self._trouble)
-        self.runner = self.pipeline.runner(self.only, self.seed)
+        self.runner = self.pipeline.runner(self.only, self.seed, self.verify)
         self.asked = self.only or tuple(self.pipeline.outputs)
         self.columns = columns_of(self.pipeline, self.asked)
         self.tally = Tally(self.columns)
@@ -222,10 +229,10 @@ class _Run:
             self.interrupted = error
         except BrokenPipeError:
             raise
-        except SystemExit as error:
-            self.error = exited(error)
         except Exception as error:  # a source may raise anything; what was done is kept
             self.error = error
+        except BaseException as error:
+            self.error = exited(error)
         finally:
             self.bar.stop()
 
