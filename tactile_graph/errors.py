@@ -101,6 +101,14 @@ def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
+def text_of(error: BaseException) -> str:
+    """Return an error's text; empty if a plugin's error cannot tell it."""
+    try:
+        return str(error)
+    except Exception:
+        return ""
+
+
 def shown(value: object) -> str:
     """Return a value as errors show it: cut where it is long."""
     try:

@@ -14,7 +14,7 @@ import click
 
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.cli.say import say
-from tactile_graph.errors import PipelineError, PluginError, TactileGraphError
+from tactile_graph.errors import PipelineError, PluginError, TactileGraphError, text_of
 from tactile_graph.foreign_text import visible
 
 SOME_FAILED = 1
@@ -113,7 +113,7 @@ def words(error: BaseException) -> str:
         return f"{error.filename}: {error.strerror or error}"
     if isinstance(error, OSError) and error.errno in NO_ROOM:  # what has a name says it
         return f"the output cannot be written: {error.strerror}"
-    return f"{type(error).__name__}: {error}".removesuffix(": ")
+    return f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
 
 
 def _line(text: str) -> None:

@@ -180,3 +180,53 @@ def test_an_error_shows_a_name_without_its_escapes() -> None:
     assert got.exit_code == 2
     assert "\x1b" not in got.output
     assert r"no\u001b[2Jfile.txt" in got.output
+
+
+class Boom(BaseException):
+    pass
+
+
+@pytest.mark.parametrize("error", [Boom("no more"), GeneratorExit("no more")])
+def test_no_exception_of_a_step_is_taken_for_a_frame_that_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    """Exit code 1 says that the run went through and some frame failed."""
+
+    def exploding(image: Image) -> float:
+        raise error
+
+    install(monkeypatch, tmp_path, steps={"exploding": exploding})
+    Path("p.yaml").write_text(
+        "{pipeline: p, nodes: {a: {step: exploding, in: frame}}, outputs: [a]}"
+    )
+    got = call("run", "p.yaml", "--source", "made", "-o", "out.jsonl")
+    assert got.exit_code == 2
+    assert f"error: a plugin ended the program: {type(error).__name__}('no more'), " in got.stderr
+    assert call("explain", "p.yaml", "--source", "made").exit_code == 2
+
+
+def clipped(image: Image) -> float:
+    image.values.setflags(write=True)
+    image.values[:] = 0.0
+    return 1.0
+
+
+def peak(image: Image) -> float:
+    return image.peak
+
+
+def test_verify_finds_the_step_that_writes_and_others_get_their_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, tmp_path, steps={"clipped": clipped, "peak": peak})
+    nodes = "{a: {step: clipped, in: frame}, b: {step: peak, in: frame}}"
+    Path("p.yaml").write_text(f"{{pipeline: p, nodes: {nodes}, outputs: [a, b]}}")
+    words = ("run", "p.yaml", "--source", "made", "--frames", "3", "-o", "-")
+    got = call(*words, "--verify")
+    assert got.exit_code == 1
+    outputs = [json.loads(line)["outputs"] for line in got.stdout.splitlines()]
+    assert [o["b"] >= 1.0 for o in outputs] == [True] * 3
+    assert ["failed" in o["a"] for o in outputs] == [True] * 3
+    assert "step clipped of " in got.stderr
+    assert "writes into input 1, which others read: change a copy" in " ".join(got.stderr.split())
+    assert call("run", "discs", "--verify", "--frames", "3").exit_code == 0

@@ -19,12 +19,19 @@ class Boom(BaseException):
     pass
 
 
+class Odd(Exception):
+    def __str__(self) -> str:
+        raise ValueError
+
+
 def registry(load: Callable[[], ModuleType]) -> Registry:
     rows = [("bad", load), ("good", lambda: ModuleType("good"))]
     return Registry([(name, f"{name}-package", "1.0", loader) for name, loader in rows])
 
 
-@pytest.mark.parametrize("error", [Boom("no"), KeyboardInterrupt(), SystemExit(0), MemoryError()])
+@pytest.mark.parametrize(
+    "error", [Boom("no"), KeyboardInterrupt(), SystemExit(0), MemoryError(), Odd()]
+)
 def test_whatever_a_plugin_raises_costs_only_the_plugin(error: BaseException) -> None:
     def load() -> ModuleType:
         raise error
