@@ -19,7 +19,7 @@ class Boom(BaseException):
     pass
 
 
-class Odd(Exception):
+class OddError(Exception):
     def __str__(self) -> str:
         raise ValueError
 
@@ -30,7 +30,7 @@ def registry(load: Callable[[], ModuleType]) -> Registry:
 
 
 @pytest.mark.parametrize(
-    "error", [Boom("no"), KeyboardInterrupt(), SystemExit(0), MemoryError(), Odd()]
+    "error", [Boom("no"), KeyboardInterrupt(), SystemExit(0), MemoryError(), OddError()]
 )
 def test_whatever_a_plugin_raises_costs_only_the_plugin(error: BaseException) -> None:
     def load() -> ModuleType:
