@@ -87,7 +87,10 @@ Damage = Callable[[Path, random.Random], None]
 def any_file(store: Path, rng: random.Random) -> Path | None:
     """Return one of the files, each kind of them as likely as another."""
     files = sorted(p for p in store.rglob("*") if p.is_file())
-    kinds = [[p for p in files if p.name == "journal"], [p for p in files if p.name == "zarr.json"]]
+    kinds = [
+        [p for p in files if p.name == "frames.journal"],
+        [p for p in files if p.name == "zarr.json"],
+    ]
     kinds.append([p for p in files if "values" in p.parts and p.name != "zarr.json"])
     kinds.append([p for p in files if p not in kinds[0] + kinds[1] + kinds[2]])
     kinds = [k for k in kinds if k]
@@ -184,7 +187,7 @@ def make_folder(store: Path, rng: random.Random) -> None:
 
 
 def line_of_journal(store: Path, rng: random.Random) -> None:
-    file = store / "journal"
+    file = store / "frames.journal"
     if file.is_file():
         file.write_bytes(lines(bytearray(file.read_bytes()), rng))
 
@@ -324,7 +327,7 @@ class Killing:
                 store.write(frame)
         self.broken = work / "broken.zarr"
         shutil.copytree(self.base, self.broken)
-        for name in ("time_s/zarr.json", "journal"):
+        for name in ("time_s/zarr.json", "frames.journal"):
             (self.broken / name).write_bytes((self.broken / name).read_bytes()[:-9])
         shutil.rmtree(self.broken / "gap" / "c", ignore_errors=True)
         self.lasts: dict[str, float] = {}

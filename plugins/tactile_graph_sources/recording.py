@@ -147,7 +147,7 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     """
     _check_file(path)
     if is_store(path):
-        name, why = "Zarr store of ours", "a folder with zarr.json"
+        name, why = "Zarr store of ours", "by the files in it, zarr.json or frames.journal"
         frames, start = read_store(path, report), told.skip
         kept = without_garbage(islice(frames, start, None), report, str(path))
         return Opened(name, lambda: why, kept)

@@ -94,9 +94,9 @@ def test_damaged_metadata_are_told_and_every_frame_is_read(
 
 
 def test_a_line_of_the_journal_that_is_damaged_makes_its_frames_doubtful(store: Path) -> None:
-    lines = (store / "journal").read_bytes().splitlines(keepends=True)
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
     lines[2] = lines[2].replace(b"4", b"5", 1)
-    (store / "journal").write_bytes(b"".join(lines))
+    (store / "frames.journal").write_bytes(b"".join(lines))
     report = Report()
     frames = list(read_store(store, report))
     assert [f.index for f in frames if f.doubtful] == [4, 5, 6, 7]
@@ -106,15 +106,15 @@ def test_a_line_of_the_journal_that_is_damaged_makes_its_frames_doubtful(store: 
 
 @pytest.mark.parametrize("n_lines", [0, 1, 2, 3])
 def test_a_journal_that_was_cut_short_makes_no_store_short(store: Path, n_lines: int) -> None:
-    lines = (store / "journal").read_bytes().splitlines(keepends=True)
-    (store / "journal").write_bytes(b"".join(lines[:n_lines]))
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    (store / "frames.journal").write_bytes(b"".join(lines[:n_lines]))
     frames = list(read_store(store))
     assert [f.index for f in frames] == list(range(10))
     assert [f.index for f in frames if f.doubtful] == list(range(4 * max(0, n_lines - 1), 10))
 
 
 def test_a_journal_that_is_gone_makes_all_frames_doubtful(store: Path) -> None:
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     report = Report()
     frames = list(read_store(store, report))
     assert len(frames) == 10
@@ -125,7 +125,9 @@ def test_a_journal_that_is_gone_makes_all_frames_doubtful(store: Path) -> None:
 
 def test_frames_that_nothing_numbers_are_told_as_lost(store: Path) -> None:
     shutil.rmtree(store / "number" / "c")
-    (store / "journal").write_bytes((store / "journal").read_bytes().splitlines(True)[0])
+    (store / "frames.journal").write_bytes(
+        (store / "frames.journal").read_bytes().splitlines(True)[0]
+    )
     report = Report()
     assert list(read_store(store, report)) == []
     assert report.troubles[0][1] == "10 frames from 0 on are lost: nothing numbers them"
@@ -142,7 +144,7 @@ def test_a_store_of_which_nothing_can_be_read_is_an_error(store: Path) -> None:
 def as_version_2(store: Path) -> None:
     import zarr
 
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     zarr.open_group(str(store), mode="r+").attrs["version"] = 2
 
 

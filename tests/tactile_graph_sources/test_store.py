@@ -231,7 +231,7 @@ def test_attributes_that_cannot_be_true_are_refused(
     with StoreWriter(tmp_path / "a.zarr") as store:
         store.write(frames(1)[0])
     zarr.open_group(str(tmp_path / "a.zarr"), mode="r+").attrs[name] = value
-    (tmp_path / "a.zarr" / "journal").unlink()
+    (tmp_path / "a.zarr" / "frames.journal").unlink()
     with pytest.raises(DataError, match=message):
         list(read_store(tmp_path / "a.zarr"))
 

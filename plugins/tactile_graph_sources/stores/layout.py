@@ -26,7 +26,7 @@ READ = (1, 2, 3)
 """Version 1 had no ``doubtful`` and no checksums, version 2 no journal."""
 JOURNALED = 3
 """The version from which on a journal vouches for what is in a store."""
-JOURNAL = "journal"
+JOURNAL = "frames.journal"
 METADATA = "zarr.json"
 COLUMNS: dict[str, tuple[str, float]] = {
     "values": ("float64", np.nan),

@@ -25,7 +25,6 @@ from tactile_graph_sources.stores.journal import (
 )
 from tactile_graph_sources.stores.layout import (
     COLUMNS,
-    JOURNAL,
     JOURNALED,
     METADATA,
     NOTES,
@@ -150,7 +149,7 @@ class Stored:
         try:
             return self.journal.columns(piece.block)
         except Exception as error:  # it was whole a moment ago
-            raise Lost(f"{JOURNAL}: {_short(error)}") from error
+            raise Lost(f"journal: {_short(error)}") from error
 
     def columns_of_arrays(self, low: int, high: int) -> Columns:
         """Return what the arrays say of frames but the values; raises Lost."""
@@ -250,8 +249,8 @@ def chunk_of(path: Path, metadata: Mapping[str, Metadata]) -> int:
 def _troubles(path: Path, journal: Journal) -> list[str]:
     """Return what is damaged of the journal and of the metadata."""
     if not journal.there:
-        return [f"its {JOURNAL} is gone: what is in the arrays is given as doubtful"]
-    found = [f"line {n} of its {JOURNAL} is damaged" for n in journal.damaged]
+        return ["its journal is gone: what is in the arrays is given as doubtful"]
+    found = [f"line {n} of its journal is damaged" for n in journal.damaged]
     if journal.head is None:
         return found
     attributes, metadata = journal.head

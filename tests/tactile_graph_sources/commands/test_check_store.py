@@ -55,7 +55,7 @@ def test_what_cannot_be_mended_stays_wrong(store: Path) -> None:
 
 
 def test_a_store_of_which_nothing_is_left_is_told(store: Path) -> None:
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     (store / "zarr.json").write_text("{")
     got = check(store)
     assert got.exit_code == 2

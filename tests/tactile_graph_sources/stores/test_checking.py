@@ -88,13 +88,15 @@ def test_arrays_other_than_the_values_are_written_anew_from_the_journal(
     checked = check(store, repair=True)
     assert checked.wrong == ()
     assert plain(store) == whole
-    (store / "journal").unlink()  # what is left are the arrays
+    (store / "frames.journal").unlink()  # what is left are the arrays
     assert [p[:4] for p in plain(store)] == [p[:4] for p in whole]  # type: ignore[index]
 
 
 def test_a_damaged_journal_is_written_anew_and_its_frames_stay_doubtful(store: Path) -> None:
     whole = plain(store)
-    (store / "journal").write_bytes((store / "journal").read_bytes().replace(b"rows", b"bows", 1))
+    (store / "frames.journal").write_bytes(
+        (store / "frames.journal").read_bytes().replace(b"rows", b"bows", 1)
+    )
     checked = check(store, repair=True)
     assert checked.wrong == ()
     assert "line 2 of its journal is damaged" in checked.mended
@@ -106,7 +108,7 @@ def test_a_damaged_journal_is_written_anew_and_its_frames_stay_doubtful(store: P
 def test_lost_frames_stay_told_as_lost(store: Path) -> None:
     """Mending neither brings them back nor hides that they were there."""
     (store / "values" / "c" / "2" / "0" / "0").unlink()
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     told = "frames 8 to 9: lost: values/c/2/0/0 is gone"
     assert told in check(store).wrong
     assert check(store, repair=True).wrong == (told,)
@@ -118,7 +120,7 @@ def test_lost_frames_stay_told_as_lost(store: Path) -> None:
 
 def test_frames_that_nothing_numbers_stay_told_as_lost(store: Path) -> None:
     shutil.rmtree(store / "number" / "c")
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     checked = check(store, repair=True)
     assert checked.wrong == ("frames 0 to 9: lost: nothing numbers them",)
     with pytest.raises(DataError, match="not a single frame"):
@@ -129,7 +131,7 @@ def test_what_a_killed_writer_left_is_swept_away(store: Path) -> None:
     (store / "values" / "c" / "0" / "0" / "0.abc.partial").write_bytes(b"half")
     group = zarr.open_group(str(store), mode="r+")
     group["values"].resize((14, 3, 2))
-    with (store / "journal").open("ab") as journal:
+    with (store / "frames.journal").open("ab") as journal:
         journal.write(b"0123abcd {")
     checked = check(store, repair=True)
     assert checked.wrong == ()
@@ -164,7 +166,7 @@ def test_another_zarr_store_is_no_recording(tmp_path: Path) -> None:
 
 
 def test_a_shape_that_would_fill_the_memory_is_refused(store: Path) -> None:
-    (store / "journal").unlink()
+    (store / "frames.journal").unlink()
     file = store / "values" / "zarr.json"
     data = json.loads(file.read_text())
     data["shape"] = [10, 10**9, 10**9]
