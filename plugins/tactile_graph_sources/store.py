@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -61,6 +62,5 @@ def _tell_damage(stored: Stored, report: Report) -> None:
     for trouble in stored.troubles:
         report.trouble(str(stored.path), trouble)
     if stored.troubles:
-        report.trouble(
-            str(stored.path), f"'tactile-graph check --repair {stored.path}' may mend it"
-        )
+        command = f"tactile-graph check --repair {shlex.quote(str(stored.path))}"
+        report.trouble(str(stored.path), f"'{command}' may mend it")

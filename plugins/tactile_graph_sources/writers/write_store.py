@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import shutil
 import time
 from collections.abc import Mapping
@@ -268,7 +269,8 @@ class StoreWriter:
 
 
 def _damaged(path: Path, what: str) -> UsageError:
-    return UsageError(f"{path}: {what}; 'tactile-graph check --repair {path}' may mend it")
+    command = f"tactile-graph check --repair {shlex.quote(str(path))}"
+    return UsageError(f"{path}: {what}; '{command}' may mend it")
 
 
 def _seconds(times: list[float | None]) -> Any:

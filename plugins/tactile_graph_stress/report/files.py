@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
-from tactile_graph.foreign_text import csv_line
+from tactile_graph.foreign_text import csv_line, visible
 from tactile_graph_stress.report.markdown import markdown
 from tactile_graph_stress.study import Row
 
@@ -30,7 +30,7 @@ def check_ending(path: Path) -> None:
 def write(path: Path, rows: Sequence[Row], command: str) -> None:
     """Write the rows; ``command`` is what made them."""
     make = {".md": markdown, ".csv": _csv, ".json": _json}[path.suffix.lower()]
-    write_whole(path, make(rows, command))
+    write_whole(path, visible(make(rows, command)))
 
 
 def _fields(row: Row) -> list[object]:
