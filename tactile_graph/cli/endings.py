@@ -33,6 +33,7 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
     debug : bool
         Show tracebacks.
     """
+    Interrupts.latest = None
     try:
         with Interrupts():
             code = run()
@@ -41,21 +42,26 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
         stop_writing()
         return PIPE_CLOSED
     except (click.Abort, KeyboardInterrupt) as error:
-        came = error.__cause__ if isinstance(error, click.Abort) else error
-        say(words_of(came or error), err=True)
-        return code_of(came or error)
+        return _interrupted((error.__cause__ if isinstance(error, click.Abort) else None) or error)
     except SystemExit as error:
         if _of_click(error):
             raise
         show(exited(error), debug)
         return NOT_DONE
     except Exception as error:  # whatever a plugin raises: people get a line, not a traceback
+        if Interrupts.latest is not None and not isinstance(error, TactileGraphError):
+            return _interrupted(Interrupts.latest)
         show(error, debug)
         return error.exit_code if isinstance(error, click.ClickException) else NOT_DONE
     except BaseException as error:
         show(exited(error), debug)
         return NOT_DONE
     return code if isinstance(code, int) else 0
+
+
+def _interrupted(error: BaseException) -> int:
+    say(words_of(error), err=True)
+    return code_of(error)
 
 
 def exited(error: BaseException) -> PluginError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, ClassVar
 
 ENDS = tuple(
     signal.Signals(getattr(signal, name))
@@ -48,6 +48,9 @@ class Interrupts:
     signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so.
     """
 
+    latest: ClassVar[KeyboardInterrupt | None] = None
+    """What was raised last: a library may catch it and raise something else."""
+
     def __init__(self) -> None:
         self.held = _Held()
         self._before: dict[int, Any] = {}
@@ -65,6 +68,7 @@ class Interrupts:
 
     def _came(self, number: int, _frame: FrameType | None) -> None:
         error = KeyboardInterrupt() if number == signal.SIGINT else Ended(number)
+        Interrupts.latest = error
         if self.held.depth:
             self.held.waiting = error
         else:

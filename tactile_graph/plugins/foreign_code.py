@@ -46,9 +46,9 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
             with redirect_stdout(sys.stderr):
                 yield
         except BaseException as error:
-            if signals.came:
-                raise
-            raise Broken from error
+            if signals.came is None:
+                raise Broken from error
+            raise signals.came from None  # what was imported may have made another error of it
         finally:
             told.cancel()
 
@@ -65,7 +65,7 @@ class _Signals:
     """Tells a KeyboardInterrupt that a signal brought from one that a plugin raises itself."""
 
     def __init__(self) -> None:
-        self.came = False
+        self.came: BaseException | None = None
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> _Signals:
@@ -85,5 +85,8 @@ class _Signals:
                 signal.signal(number, before)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self.came = True
-        self._before[number](number, frame)
+        try:
+            self._before[number](number, frame)
+        except BaseException as error:
+            self.came = error
+            raise

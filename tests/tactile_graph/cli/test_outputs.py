@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import resource
+import signal
 import sys
 import threading
 from collections.abc import Iterator
@@ -230,3 +231,19 @@ def test_verify_finds_the_step_that_writes_and_others_get_their_answers(
     assert "step clipped of " in got.stderr
     assert "writes into input 1, which others read: change a copy" in " ".join(got.stderr.split())
     assert call("run", "discs", "--verify", "--frames", "3").exit_code == 0
+
+
+def test_ctrl_c_is_told_as_such_though_a_library_makes_another_error_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def validated(*_: object) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except BaseException as error:
+            raise ValueError("no schema can be built") from error
+
+    monkeypatch.setattr("tactile_graph.api.pipeline.load", validated)
+    monkeypatch.setattr(sys, "argv", ["tactile-graph", "run", "discs"])
+    with pytest.raises(SystemExit) as got:
+        cli.main()
+    assert got.value.code == 128 + signal.SIGTERM

@@ -63,6 +63,19 @@ def test_ctrl_c_during_an_import_is_no_fault_of_the_plugin() -> None:
     assert signal.getsignal(signal.SIGINT) is before
 
 
+def test_ctrl_c_stays_what_it_is_when_what_is_imported_makes_another_error_of_it() -> None:
+    def load() -> ModuleType:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+        except BaseException as error:  # as compiled code does
+            raise ValueError("cannot be built") from error
+        return ModuleType("bad")
+
+    with pytest.raises(KeyboardInterrupt):
+        registry(load)
+
+
 def test_a_handler_that_a_plugin_sets_stays() -> None:
     before = signal.signal(signal.SIGTERM, lambda number, frame: None)
     try:
