@@ -113,6 +113,11 @@ class Frame:
         """Return the same frame under another number."""
         return replace(self, index=index)
 
+    def _repr_html_(self) -> str:
+        from tactile_graph.wires.notebook import frame_html
+
+        return frame_html(self)
+
 
 def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     """Return a copy as float64; errors as of `Frame.of`."""

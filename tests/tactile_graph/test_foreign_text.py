@@ -20,6 +20,7 @@ ECHOES = {
     "tactile_graph/cli/say.py",
     "tactile_graph/cli/endings.py",  # a coloured word before what is made visible
     "tactile_graph/cli/schema.py",
+    "tactile_graph/cli/graph.py",  # the bytes of a picture
     "plugins/tactile_graph_sources/commands/record.py",  # a counter that goes back to its line
 }
 
