@@ -226,7 +226,9 @@ def open_stored(path: Path) -> Stored:
     troubles = [] if attributes["version"] < JOURNALED else list(_troubles(path, journal))
     n, claimed, why = _numbered(path, metadata, journal.n_frames)
     # A writer that was killed leaves less than a chunk without numbers, and a whole journal.
-    whole = int(attributes["version"]) < JOURNALED or (journal.head is not None and journal.whole)
+    whole = int(attributes["version"]) < JOURNALED or (
+        journal.head is not None and journal.whole and _counted(path, metadata, journal.n_frames)
+    )
     unnumbered = claimed - n if why or not whole or claimed - n > chunk_of(path, metadata) else 0
     if unnumbered:
         text = f"{unnumbered} frames from {n} on are lost: nothing numbers them"
@@ -284,6 +286,16 @@ def _numbered(path: Path, metadata: Mapping[str, Metadata], n: int) -> tuple[int
     except Exception as error:  # a damaged chunk
         return n, claimed, f"number is damaged: {_short(error)}"
     return n, claimed, ""
+
+
+def _counted(path: Path, metadata: Mapping[str, Metadata], n: int) -> bool:
+    """Return whether the array of numbers still holds the last frame that the journal knows."""
+    try:
+        numbers = array_of(path, "number", metadata["number"], n)[max(0, n - 1) : n]
+    except Exception:  # a damaged chunk
+        return False
+    whole = same_metadata(path, "number", metadata["number"])
+    return whole and numbers.tolist() == list(range(max(0, n - 1), n))
 
 
 def _claimed(path: Path, metadata: Mapping[str, Metadata]) -> int:

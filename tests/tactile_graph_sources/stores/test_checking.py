@@ -173,3 +173,17 @@ def test_a_shape_that_would_fill_the_memory_is_refused(store: Path) -> None:
     file.write_text(json.dumps(data))
     with pytest.raises(DataError, match=r"values/zarr.json is damaged"):
         list(read_store(store))
+
+
+def test_frames_of_a_cut_journal_that_nothing_numbers_any_more_stay_told_as_lost(
+    store: Path,
+) -> None:
+    """They are less than a chunk, as a killed writer leaves them, and yet were whole."""
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    (store / "frames.journal").write_bytes(b"".join(lines[:-1]))
+    shutil.rmtree(store / "number")
+    told = "frames 8 to 9: lost: nothing numbers them"
+    assert check(store, repair=True).wrong == (told,)
+    report = Report()
+    assert len(list(read_store(store, report))) == 8
+    assert report.troubles == [(str(store), told)]
