@@ -23,6 +23,7 @@ PUBLIC = (
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",
     "tactile_graph.plugins.file_check",
+    "tactile_graph.plugins.file_kind",
     "tactile_graph.inspect",
     "tactile_graph.provenance",
 )
