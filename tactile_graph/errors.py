@@ -110,6 +110,14 @@ def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
+def text_of(error: BaseException) -> str:
+    """Return an error's text; empty if a plugin's error cannot tell it."""
+    try:
+        return str(error)
+    except Exception:
+        return ""
+
+
 def key_typo(got: str, allowed: Iterable[str]) -> str:
     """Return what is wrong between a key and its value, which YAML then takes for one key."""
     names = set(allowed)

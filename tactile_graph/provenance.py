@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.files import write_whole
+from tactile_graph.foreign_text import visible
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Plugin, Registry, installed
@@ -77,4 +78,4 @@ def used_plugins(pipeline: Graph, registry: Registry) -> Iterator[Plugin]:
 
 def write_provenance(output: str | Path, data: Mapping[str, Any]) -> None:
     """Write the sidecar of an output file, at once or not at all."""
-    write_whole(sidecar(output), json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_whole(sidecar(output), visible(json.dumps(data, indent=1, ensure_ascii=False)) + "\n")

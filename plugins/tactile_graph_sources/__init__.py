@@ -56,3 +56,9 @@ def tactile_graph_commands() -> Mapping[str, str]:
         "record": "tactile_graph_sources.commands.record:record",
         "scenes": "tactile_graph_sources.commands.scenes:scenes",
     }
+
+
+@hookimpl
+def tactile_graph_checks() -> Mapping[str, str]:
+    """Offer what looks through recordings."""
+    return {"store": "tactile_graph_sources.stores.checking:STORES"}

@@ -20,7 +20,8 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
-from tactile_graph_sources.store import is_store, read_store
+from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
 QuantityName = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
@@ -147,7 +148,7 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     """
     _check_file(path)
     if is_store(path):
-        name, why = "Zarr store of ours", "a folder with zarr.json"
+        name, why = "Zarr store of ours", "by the files in it, zarr.json or frames.journal"
         frames, start = read_store(path, report), told.skip
         kept = without_garbage(islice(frames, start, None), report, str(path))
         return Opened(name, lambda: why, kept)

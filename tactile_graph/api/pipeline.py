@@ -153,12 +153,17 @@ class Pipeline(Graph):
                 self.promises.check(result)
             yield result
 
-    def runner(self, only: Sequence[str] | None = None, seed: int = 0) -> Runner[Result]:
-        """Return a callable of frames that keeps state, for loops of your own."""
+    def runner(
+        self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False
+    ) -> Runner[Result]:
+        """Return a callable of frames that keeps state, for loops of your own.
+
+        With ``verify`` a step fails that writes into what others read; this costs time.
+        """
         from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner
 
-        return Runner(self, tuple(only or self.outputs), seed, Result)
+        return Runner(self, tuple(only or self.outputs), seed, Result, verify)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""

@@ -12,6 +12,7 @@ Exit codes:
   1    done, but some frame failed, or has an output that is no finite number
   2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
   130  interrupted by Ctrl-C; what was done is kept
+  143  ended by SIGTERM (129: its terminal was closed); likewise
   141  whoever read the output went away (| head)
 """
 

@@ -46,8 +46,9 @@ def complete_file(ctx: click.Context, param: click.Parameter, incomplete: str) -
     "--watch", "watched", is_flag=True,
     help="Look again at every save of the files, and of those they use, until Ctrl-C.",
 )  # fmt: skip
-def check(files: tuple[str, ...], kind: str, watched: bool) -> None:
-    """Report all that is wrong with files of pipelines, pads, presets or scenes.
+@click.option("--repair", is_flag=True, help="Mend what can be mended of recordings.")
+def check(files: tuple[str, ...], kind: str, watched: bool, repair: bool) -> None:
+    """Report all that is wrong with files of pipelines, pads, presets or scenes, and with stores.
 
     Installed ones go by name; without any, all that are installed are checked.
     """
@@ -58,9 +59,9 @@ def check(files: tuple[str, ...], kind: str, watched: bool) -> None:
     if watched:
         from tactile_graph.cli.watch import watch
 
-        right = watch(lambda: show_outcomes(out, targets), _paths(targets), out)
+        right = watch(lambda: show_outcomes(out, targets, repair), _paths(targets), out)
     else:
-        right = show_outcomes(out, targets)
+        right = show_outcomes(out, targets, repair)
     if not right:
         click.get_current_context().exit(NOT_DONE)
 
@@ -93,15 +94,21 @@ def _offers(found: registry.Registry, kind: str) -> str:
     return "pipelines" if kind == PIPELINE else file_kind(found, kind).offers
 
 
-def show_outcomes(out: Console, targets: Sequence[Target]) -> bool:
+def show_outcomes(out: Console, targets: Sequence[Target], repair: bool = False) -> bool:
     """Print of each whether it is right, or all that is wrong; return whether all are right."""
     from rich.text import Text
 
+    from tactile_graph.cli.file_checks import check_for, show_checked
     from tactile_graph.cli.problems import show_problems
 
     n_wrong = 0
     for target in targets:
         try:
+            of_file = None if target.kind else check_for(registry.installed(), target.name)
+            if of_file is not None:
+                checked = of_file.check(Path(target.name), repair)
+                n_wrong += not show_checked(out, target.name, checked, repair)
+                continue
             out.print(_right(target), soft_wrap=True)
         except TactileGraphError as error:
             n_wrong += 1

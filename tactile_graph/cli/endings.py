@@ -12,11 +12,13 @@ from typing import Any
 
 import click
 
-from tactile_graph.errors import PipelineError, PluginError, TactileGraphError
+from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.say import say
+from tactile_graph.errors import PipelineError, PluginError, TactileGraphError, text_of
+from tactile_graph.foreign_text import visible
 
 SOME_FAILED = 1
 NOT_DONE = 2
-INTERRUPTED = 130
 PIPE_CLOSED = 141
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
@@ -31,31 +33,42 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
     debug : bool
         Show tracebacks.
     """
+    Interrupts.latest = None
     try:
-        code = run()
+        with Interrupts():
+            code = run()
         sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
     except BrokenPipeError:
         stop_writing()
         return PIPE_CLOSED
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return INTERRUPTED
+    except (click.Abort, KeyboardInterrupt) as error:
+        return _interrupted((error.__cause__ if isinstance(error, click.Abort) else None) or error)
     except SystemExit as error:
         if _of_click(error):
             raise
         show(exited(error), debug)
         return NOT_DONE
     except Exception as error:  # whatever a plugin raises: people get a line, not a traceback
+        if Interrupts.latest is not None and not isinstance(error, TactileGraphError):
+            return _interrupted(Interrupts.latest)
         show(error, debug)
         return error.exit_code if isinstance(error, click.ClickException) else NOT_DONE
+    except BaseException as error:
+        show(exited(error), debug)
+        return NOT_DONE
     return code if isinstance(code, int) else 0
 
 
-def exited(error: SystemExit) -> PluginError:
+def _interrupted(error: BaseException) -> int:
+    say(words_of(error), err=True)
+    return code_of(error)
+
+
+def exited(error: BaseException) -> PluginError:
     """Return what to say when a plugin's code ends the program."""
     from tactile_graph.engine.outcome import raised_at
 
-    what = f"SystemExit({error.code!r}), {raised_at(error)}"
+    what = f"{error!r}, {raised_at(error)}"
     told = PluginError(f"a plugin ended the program: {what}")
     told.__cause__ = error
     return told
@@ -89,11 +102,11 @@ def show(error: BaseException, debug: bool = False) -> None:
     elif isinstance(error, click.UsageError):
         _line(error.format_message())
         if error.ctx is not None:
-            click.echo(f"try: {error.ctx.command_path} --help", err=True)
+            say(f"try: {error.ctx.command_path} --help", err=True)
     else:
         _line(words(error))
         if not (debug or isinstance(error, TactileGraphError | click.ClickException | OSError)):
-            click.echo("(--debug shows where)", err=True)
+            say("(--debug shows where)", err=True)
 
 
 def words(error: BaseException) -> str:
@@ -106,8 +119,8 @@ def words(error: BaseException) -> str:
         return f"{error.filename}: {error.strerror or error}"
     if isinstance(error, OSError) and error.errno in NO_ROOM:  # what has a name says it
         return f"the output cannot be written: {error.strerror}"
-    return f"{type(error).__name__}: {error}".removesuffix(": ")
+    return f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
 
 
 def _line(text: str) -> None:
-    click.echo(f"{click.style('error:', fg='red', bold=True)} {text}", err=True)
+    click.echo(f"{click.style('error:', fg='red', bold=True)} {visible(text)}", err=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 
 NEW_OBJECTS = 100_000
@@ -11,6 +12,7 @@ NEW_OBJECTS = 100_000
 
 def main() -> None:
     """Run the command line and exit."""
+    _open_streams()
     gc.set_threshold(NEW_OBJECTS, *gc.get_threshold()[1:])
     try:
         from tactile_graph.cli.app import cli
@@ -18,3 +20,16 @@ def main() -> None:
         sys.stderr.write("interrupted\n")
         sys.exit(130)
     cli.main()
+
+
+def _open_streams() -> None:
+    """Refuse a standard output that is closed; a standard error that is goes nowhere.
+
+    The next file opened would take the number of one that is closed, and what libraries print with
+    it.
+    """
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115 -- until the end
+    if sys.stdout is None:
+        sys.stderr.write("error: standard output is closed (>&-); send it to /dev/null instead\n")
+        sys.exit(2)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tactile_graph.cli.arguments import offered, pipeline_argument
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
@@ -53,9 +54,11 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
     drawn = _drawn(load(pipeline, registry.installed()), form)
     if to_file:
         write_whole(str(output), drawn)
-        click.echo(f"wrote {output}", err=True)
-    else:
+        say(f"wrote {output}", err=True)
+    elif isinstance(drawn, bytes):
         click.echo(drawn, nl=False)
+    else:
+        say(drawn, nl=False)
 
 
 def on_screen() -> bool:

@@ -1,44 +1,84 @@
-"""Ctrl-C between lines, never within one."""
+"""Ctrl-C, and what else ends programs, between lines, never within one."""
 
 from __future__ import annotations
 
 import signal
 import threading
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, ClassVar
+
+ENDS = tuple(
+    signal.Signals(getattr(signal, name))
+    for name in ("SIGTERM", "SIGHUP")  # the latter is not on Windows
+    if hasattr(signal, name)
+)
+"""What comes at a shutdown, from a batch system, from a terminal that is closed."""
+
+
+class Ended(KeyboardInterrupt):
+    """A signal ends the program: what was done is kept as with Ctrl-C.
+
+    Parameters
+    ----------
+    number : int
+        The signal's.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def code_of(error: BaseException) -> int:
+    """Return the exit code that tells by which signal a command ended."""
+    return 128 + (error.number if isinstance(error, Ended) else signal.SIGINT)
+
+
+def words_of(error: BaseException) -> str:
+    """Return what to say of a command that Ctrl-C or a signal ended."""
+    if isinstance(error, Ended):
+        return f"ended by {signal.Signals(error.number).name}"
+    return "interrupted"
 
 
 class Interrupts:
     """While entered, Ctrl-C raises KeyboardInterrupt, but not inside ``with interrupts.held:``.
 
-    There it waits for the end of the block, so that what is being written is written whole.
+    There it waits for the end of the block, so that what is being written is written whole. The
+    signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so.
     """
+
+    latest: ClassVar[KeyboardInterrupt | None] = None
+    """What was raised last: a library may catch it and raise something else."""
 
     def __init__(self) -> None:
         self.held = _Held()
-        self._before: Any = None
-        self._here = threading.current_thread() is threading.main_thread()
+        self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Interrupts:
-        if self._here:
-            self._before = signal.signal(signal.SIGINT, self._came)
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, *ENDS):
+                if signal.getsignal(number) is not signal.SIG_IGN:
+                    self._before[number] = signal.signal(number, self._came)
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._here:
-            signal.signal(signal.SIGINT, self._before)
+        for number, before in self._before.items():
+            signal.signal(number, before)
 
-    def _came(self, _signal: int, _frame: FrameType | None) -> None:
+    def _came(self, number: int, _frame: FrameType | None) -> None:
+        error = KeyboardInterrupt() if number == signal.SIGINT else Ended(number)
+        Interrupts.latest = error
         if self.held.depth:
-            self.held.waiting = True
+            self.held.waiting = error
         else:
-            raise KeyboardInterrupt
+            raise error
 
 
 class _Held:
     def __init__(self) -> None:
         self.depth = 0
-        self.waiting = False
+        self.waiting: KeyboardInterrupt | None = None
 
     def __enter__(self) -> None:
         self.depth += 1
@@ -50,6 +90,6 @@ class _Held:
         traceback: TracebackType | None,
     ) -> None:
         self.depth -= 1
-        if self.waiting and not self.depth:
-            self.waiting = False
-            raise KeyboardInterrupt
+        if self.waiting is not None and not self.depth:
+            waiting, self.waiting = self.waiting, None
+            raise waiting

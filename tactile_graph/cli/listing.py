@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -33,7 +32,7 @@ def list_files(kind: str, name: str | None) -> None:
 
     found = registry.installed()
     if name is not None:
-        click.echo(file_text(found.path(kind, name)), nl=False)
+        say(file_text(found.path(kind, name)), nl=False)
         return
     names = found.names(kind)
     out = console()

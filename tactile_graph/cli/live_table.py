@@ -13,6 +13,7 @@ from rich.text import Text
 from tactile_graph.api.result import Result
 from tactile_graph.engine.columns import Column, OutputColumns, values_of
 from tactile_graph.engine.outcome import NO_VALUE, Failed
+from tactile_graph.foreign_text import visible
 
 GAP = "  "
 ERRORS = "error"
@@ -31,7 +32,7 @@ def shown(value: Any, unit: str = "") -> str:
         # Seconds may count from long ago: their decimals are what tells one frame from the next.
         most = 1e11 if unit == "s" else 1e4
         return f"{value:.5g}" if digits is None or abs(value) >= most else f"{value:.{digits}f}"
-    return str(value)
+    return visible(str(value))
 
 
 @dataclass

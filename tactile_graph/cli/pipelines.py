@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tactile_graph.cli.listing import complete, file_text
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -64,7 +65,7 @@ def pipelines(words: tuple[str, ...], search: bool) -> None:
     if not words:
         _show_tree(heads(found))
     elif len(words) == 1 and not search and found.has("pipelines", words[0]):
-        click.echo(file_text(found.path("pipelines", words[0])), nl=False)
+        say(file_text(found.path("pipelines", words[0])), nl=False)
     else:
         _show_hits(found, words)
 

@@ -19,7 +19,8 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
     source_options,
 )
-from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED, exited
+from tactile_graph.cli.endings import SOME_FAILED, exited
+from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.outputs import FORMATS, Output
 from tactile_graph.cli.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
@@ -76,6 +77,11 @@ STALLED_S = 1.0
     help=f"Draw the first {IN_A_STRIP} frames, a row a frame, a column a node (.png, .svg, .pdf); "
     "or a film, what was found drawn over every frame (.gif, .mp4).",
 )
+@click.option(
+    "--verify",
+    is_flag=True,
+    help="Look after every step whether it wrote into what others read; slower.",
+)
 def run(
     pipeline: str | None,
     recordings: tuple[str, ...],
@@ -90,6 +96,7 @@ def run(
     full: bool,
     long: bool,
     plot: str | None,
+    verify: bool,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
 
@@ -99,7 +106,7 @@ def run(
     lines = Output.of(output, form, full, long)
     _check_files(recordings, lines, plot)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, lines, plot).go()
+    _Run(opened, tuple(only), span, seed, lines, plot, verify).go()
 
 
 def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
@@ -123,7 +130,8 @@ class _Run:
     seed: int
     output: Output | None
     plot: str | None
-    interrupted: bool = False
+    verify: bool
+    interrupted: KeyboardInterrupt | None = None
     form_of_table: Table | None = None
     quantity: str = "raw"
     last_frame_s: float = field(default_factory=time.monotonic)
@@ -138,7 +146,7 @@ class _Run:
         from tactile_graph.steps.injected import Report
 
         self.report = Report(listener=self._trouble)
-        self.runner = self.pipeline.runner(self.only, self.seed)
+        self.runner = self.pipeline.runner(self.only, self.seed, self.verify)
         self.asked = self.only or tuple(self.pipeline.outputs)
         self.columns = columns_of(self.pipeline, self.asked)
         self.tally = Tally(self.columns)
@@ -185,14 +193,14 @@ class _Run:
             for result in self._results():
                 with held:
                     self._one(result)
-        except KeyboardInterrupt:
-            self.interrupted = True
+        except KeyboardInterrupt as error:
+            self.interrupted = error
         except BrokenPipeError:
             raise
-        except SystemExit as error:
-            self.error = exited(error)
         except Exception as error:  # a source may raise anything; what was done is kept
             self.error = error
+        except BaseException as error:
+            self.error = exited(error)
         finally:
             self.bar.stop()
 
@@ -239,12 +247,13 @@ class _Run:
             self._no_frames()
         if self.tally.n or self.error is None:
             self._finish_lines()
-            self.tally.close(self.people, self.report, self.interrupted)
+            came = self.interrupted
+            self.tally.close(self.people, self.report, words_of(came) if came else "")
             self._hints(self.drawing is not None and self.drawing.save(self.stderr))
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
-        if self.interrupted:
-            return INTERRUPTED
+        if self.interrupted is not None:
+            return code_of(self.interrupted)
         tally = self.tally
         return SOME_FAILED if tally.n_failed or tally.n_items_failed or tally.not_finite else 0
 

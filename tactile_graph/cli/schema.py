@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.file_kinds import PIPELINE, file_kind, kind_names
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
+from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
@@ -42,10 +44,10 @@ def schema(kind: str, output: str | None, keys: bool) -> None:
         return
     text = json.dumps(_made(kind), indent=2, ensure_ascii=False) + "\n"
     if output in (None, "-"):
-        click.echo(text, nl=False)
+        say(text, nl=False)
     else:
         write_whole(str(output), text)
-        click.echo(f"wrote {output}", err=True)
+        say(f"wrote {output}", err=True)
 
 
 def _made(kind: str) -> dict[str, Any]:
@@ -58,7 +60,7 @@ def _made(kind: str) -> dict[str, Any]:
 
     made, troubles = pipeline_schema(found)
     for trouble in troubles:
-        click.echo(f"{click.style('left open:', fg='yellow')} {trouble}", err=True)
+        click.echo(f"{click.style('left open:', fg='yellow')} {visible(str(trouble))}", err=True)
     return made
 
 

@@ -187,8 +187,11 @@ class Tally:
 
     # -- in closing --------------------------------------------------------------------------
 
-    def close(self, console: Console, report: Report, interrupted: bool = False) -> None:
-        """Print what the run came to and what the source had to say."""
+    def close(self, console: Console, report: Report, interrupted: str = "") -> None:
+        """Print what the run came to and what the source had to say.
+
+        ``interrupted`` says what ended it before its end, if anything did.
+        """
         lines = [*self._errors(), *self._outcomes(), *_source(report), self._last(interrupted)]
         for line in lines:
             console.print(line, soft_wrap=True)
@@ -221,11 +224,11 @@ class Tally:
             text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
             yield _labelled("skipped", "yellow", text)
 
-    def _last(self, interrupted: bool) -> Text:
+    def _last(self, interrupted: str) -> Text:
         rate = f" ({self.n / self.seconds:.4g} a second)" if self.seconds > 0 and self.n else ""
         frames = "frame" if self.n == 1 else "frames"
         text = Text.assemble(
-            ("interrupted: " if interrupted else "", "bold red"),
+            (f"{interrupted}: " if interrupted else "", "bold red"),
             (f"{self.n} {frames} in {self.seconds:.2f} s{rate}", "bold"),
         )
         if not self.n:

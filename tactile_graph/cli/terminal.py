@@ -6,14 +6,29 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, redirect_stdout
-from typing import NoReturn
+from typing import Any, NoReturn
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
+from rich.text import Text
+
+from tactile_graph.foreign_text import visible
 
 WIDE = 200
 
 
 class _Console(Console):
+    def render_str(self, text: str, **style: Any) -> Text:
+        """Spell out what a name would do before it is measured for a table."""
+        return super().render_str(visible(text), **style)
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        """Spell it out wherever it is not yet; rich's own controls stay."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=visible(segment.text))
+
     def on_broken_pipe(self) -> NoReturn:
         """Let the command line end it: rich's own way exits with 1."""
         raise BrokenPipeError

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 import sys
@@ -17,6 +15,7 @@ from tactile_graph.engine.table import Table
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain, said
+from tactile_graph.foreign_text import csv_line, visible
 
 
 class Lines(Protocol):
@@ -48,7 +47,7 @@ class JsonLines:
     def line(self, result: Result) -> str:
         """Return a frame's line."""
         row = without_nan(json_row(result, self.full))
-        return json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
+        return visible(json.dumps(row, ensure_ascii=False, allow_nan=False)) + "\n"
 
 
 def json_row(result: Result, full: bool) -> dict[str, Any]:
@@ -93,18 +92,12 @@ class Csv:
 
     def head(self) -> str:
         """Return the line of names."""
-        return _csv_line(self.names)
+        return csv_line(self.names)
 
     def line(self, result: Result) -> str:
         """Return a frame's rows; empty cells where an output has no value."""
         rows = self.table.rows(result)
-        return "".join(_csv_line([row.get(name) for name in self.names]) for row in rows)
-
-
-def _csv_line(cells: list[Any]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(cells)
-    return text.getvalue()
+        return "".join(csv_line([row.get(name) for name in self.names]) for row in rows)
 
 
 class LineFile:

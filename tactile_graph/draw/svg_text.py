@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
+
+from tactile_graph.foreign_text import visible
 
 TITLE_PX = 13.0
 SMALL_PX = 11.0
 LINE_PX = 15.0
 INK, SOFT = "#16202e", "#46546a"
-_NOT_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ def px(value: float) -> str:
 
 def escaped(text: str) -> str:
     """Return a text as it may stand in an element."""
-    return escape(_NOT_XML.sub("\ufffd", text))
+    return escape(visible(text))
 
 
 def quoted(text: str) -> str:
     """Return a text as the value of an attribute, quotes and all."""
-    return quoteattr(_NOT_XML.sub("\ufffd", text))
+    return quoteattr(visible(text))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from tactile_graph.errors import Degenerate, Skip
+from tactile_graph.errors import Degenerate, Skip, text_of
 
 
 class Skipped:
@@ -93,7 +93,7 @@ class Failed:
         """What went wrong, in words."""
         if isinstance(self.error, Degenerate):
             return str(self.error)
-        return f"{type(self.error).__name__}: {self.error}"
+        return f"{type(self.error).__name__}: {text_of(self.error)}"
 
     def at(self, origin: str) -> Failed:
         """Return the same, begun at a node of another name."""

@@ -5,14 +5,16 @@ from __future__ import annotations
 import sys
 from typing import Generic, TypeVar
 
-from tactile_graph.engine.calls import make_call
+from tactile_graph.engine.calls import Call, make_call
 from tactile_graph.engine.context import Context, RunInner
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
+from tactile_graph.engine.step_operation import step_label
+from tactile_graph.engine.watched import watched
 from tactile_graph.errors import RuleError
 from tactile_graph.pipeline.facts import quantity_trouble
-from tactile_graph.pipeline.graph import FrameRule, Graph
+from tactile_graph.pipeline.graph import FrameRule, Graph, Node
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 
@@ -31,18 +33,24 @@ class Runner(Generic[ResultT]):
         Seed of the steps that take randomness.
     result : type
         What a frame's outcomes are handed out as.
+    verify : bool
+        Whether steps that write into what they share fail; costs time.
     """
 
     def __init__(
-        self, pipeline: Graph, asked: tuple[str, ...], seed: int, result: type[ResultT]
+        self,
+        pipeline: Graph,
+        asked: tuple[str, ...],
+        seed: int,
+        result: type[ResultT],
+        verify: bool = False,
     ) -> None:
         self.plan: Plan = make_plan(pipeline, asked or tuple(pipeline.outputs))
         self._result = result
         self._context = Context(seed, self._embedded)
         self._blank = blank_state(self.plan.n_slots)
-        self._operations = make_program(
-            self.plan, lambda node: make_call(node, self._context), self._blank
-        )
+        self._verify = verify
+        self._operations = make_program(self.plan, self._call, self._blank)
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
         self._last: tuple[bytes, ResultT] | None = None
@@ -71,9 +79,13 @@ class Runner(Generic[ResultT]):
         """Forget the last frame: the next one is computed, whatever it holds."""
         self._last = None
 
+    def _call(self, node: Node) -> Call:
+        call = make_call(node, self._context)
+        return watched(call, step_label(node)) if self._verify else call
+
     def _embedded(self, pipeline: Graph) -> RunInner:
         """Return what runs a pipeline that a node of this one runs over a list."""
-        inner = Runner(pipeline, (), self._context.seed, self._result)
+        inner = Runner(pipeline, (), self._context.seed, self._result, self._verify)
 
         def run(frame: Frame, item: tuple[int, ...]) -> Outcomes:
             inner._context.item = item  # or every item would draw the same numbers

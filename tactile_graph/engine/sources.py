@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.outcome import raised_at
-from tactile_graph.errors import DataError, TactileGraphError
+from tactile_graph.errors import DataError, TactileGraphError, text_of
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
@@ -39,7 +39,7 @@ def open_source(source: Source, seed: int, report: Report) -> Iterator[Frame]:
     except (Exception, SystemExit) as error:  # a source may raise anything
         if isinstance(error, OSError) and error.filename is not None:
             raise  # it names the file
-        text = f"{type(error).__name__}: {error}".removesuffix(": ")
+        text = f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
         raise DataError(f"source {source.name!r}", f"{text} ({raised_at(error)})") from error
 
 

@@ -54,3 +54,8 @@ def tactile_graph_file_kinds() -> Mapping[str, str]:  # type: ignore[empty-body]
 @hookspec
 def tactile_graph_commands() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Command name -> import string of a click command, ``"package.module:name"``."""
+
+
+@hookspec
+def tactile_graph_checks() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Kind of file -> import string of its `FileCheck`, by which ``check`` looks it through."""

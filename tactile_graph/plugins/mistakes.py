@@ -11,7 +11,7 @@ from types import ModuleType
 
 import pluggy
 
-from tactile_graph.errors import PluginError, did_you_mean, one_of
+from tactile_graph.errors import PluginError, did_you_mean, one_of, text_of
 
 _PASSED = tuple(str(Path(str(f)).parent) for f in (__file__, importlib.__file__, pluggy.__file__))
 """Where frames that lead to a plugin's code lie."""
@@ -19,7 +19,7 @@ _PASSED = tuple(str(Path(str(f)).parent) for f in (__file__, importlib.__file__,
 
 def why(error: BaseException) -> str:
     """Return an error that importing raised: type, text in one line, and file and line."""
-    text = " ".join(str(error).split())
+    text = " ".join(text_of(error).split())
     if not isinstance(error, ImportError | PluginError | pluggy.PluginValidationError) or not text:
         text = f"{type(error).__name__}: {text}".removesuffix(": ")
     where = "" if isinstance(error, SyntaxError) else _where(error)

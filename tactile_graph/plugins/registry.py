@@ -17,6 +17,7 @@ import pluggy
 
 from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, shown
 from tactile_graph.plugins import hookspecs
+from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
 OFFERS = (
     "steps", "readers", "pipelines", "pads", "presets", "scenes", "file_kinds", "commands",
+    "checks",
 )  # fmt: skip
 _FILES = ("pipelines", "pads", "presets", "scenes")
 _TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
@@ -120,7 +122,8 @@ class Registry:
     def _load(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> None:
         start = time.perf_counter()
         try:
-            module = loader()
+            with foreign_code(plugin.name, plugin.label):
+                module = loader()
             if self._manager.has_plugin(plugin.name):
                 other = next(p for p in self.plugins if p.name == plugin.name)
                 raise PluginError(
@@ -129,9 +132,11 @@ class Registry:
                 )
             self._register(module, plugin.name)
             for kind in OFFERS:
-                plugin.offers[kind] = self._ask(module, kind)
-        except (Exception, SystemExit) as error:  # it may raise anything; the rest must go on
-            plugin.error = why(error) + stale(error, plugin.package)
+                with foreign_code(plugin.name, plugin.label):
+                    plugin.offers[kind] = self._ask(module, kind)
+        except Exception as error:  # it may raise anything; the rest must go on
+            raised = error.error if isinstance(error, Broken) else error
+            plugin.error = why(raised) + stale(raised, plugin.package)
             plugin.offers.clear()
         plugin.import_ms = 1e3 * (time.perf_counter() - start)
         for kind, offers in plugin.offers.items():
@@ -254,8 +259,10 @@ def _import(offer: Offer) -> Any:
     if not module_name or not attribute:
         raise PluginError(f"{where}: {offer.target!r} is no import string 'module:name'")
     try:
-        module = importlib.import_module(module_name)
-    except (Exception, SystemExit) as error:
+        with foreign_code(offer.plugin.name, where):
+            module = importlib.import_module(module_name)
+    except Broken as broken:
+        error = broken.error
         raise PluginError(f"{where}: cannot import {module_name}: {why(error)}") from error
     try:
         return getattr(module, attribute)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
 
+from tactile_graph.foreign_text import html_text
 from tactile_graph.wires.cells_png import HEAT, YES_NO, data_uri, heat_stops, levels
 
 TRUE = "#00838f"
@@ -79,12 +79,12 @@ def _scale(image: Any) -> str:
         '<span style="display:inline-block;width:8em;height:.7em;margin:0 .4em;'
         f'background:linear-gradient(90deg,{",".join(heat_stops())})"></span>'
     )
-    return f"<div>{low:.4g}{bar}{high:.4g} {escape(image.unit)}</div>"
+    return f"<div>{low:.4g}{bar}{high:.4g} {html_text(image.unit)}</div>"
 
 
 def _figure(svg: str, words: str, below: str = "") -> str:
     style = "font:12px sans-serif;display:inline-block;max-width:100%"
-    return f'<div style="{style}">{svg}{below}<div>{escape(words)}</div></div>'
+    return f'<div style="{style}">{svg}{below}<div>{html_text(words)}</div></div>'
 
 
 def _svg(extent_cm: Extent, uri: str, truth: Sequence[Any] = ()) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps import Report
 from tactile_graph_sources.store import read_store
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -27,26 +27,110 @@ def store(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_damaged_chunk_is_left_out_counted_and_followed_by_a_gap(store: Path) -> None:
+def index_and_gaps(path: Path) -> tuple[list[int], list[int], Report]:
+    report = Report()
+    frames = list(read_store(path, report))
+    return [f.index for f in frames], [f.index for f in frames if f.gap], report
+
+
+def test_a_damaged_chunk_is_lost_named_and_followed_by_a_gap(store: Path) -> None:
     part = store / "values" / "c" / "1" / "0" / "0"
     part.write_bytes(part.read_bytes()[:10])
+    index, gaps, report = index_and_gaps(store)
+    assert (index, gaps) == ([0, 1, 2, 3, 8, 9], [8])
+    assert report.counts["damaged records skipped"] == 4
+    told = "frames 4 to 7: lost: values/c/1/0/0 is damaged: its checksum is wrong"
+    assert report.troubles == [(str(store), told)]
+
+
+def test_a_chunk_that_is_gone_is_lost_and_named(store: Path) -> None:
+    shutil.rmtree(store / "values" / "c" / "1")
+    index, gaps, report = index_and_gaps(store)
+    assert (index, gaps) == ([0, 1, 2, 3, 8, 9], [8])
+    assert report.troubles == [(str(store), "frames 4 to 7: lost: values/c/1/0/0 is gone")]
+
+
+def test_a_chunk_of_another_place_is_not_given_for_it(store: Path) -> None:
+    shutil.copy(store / "values" / "c" / "0" / "0" / "0", store / "values" / "c" / "1" / "0" / "0")
+    index, _, report = index_and_gaps(store)
+    assert index == [0, 1, 2, 3, 8, 9]
+    told = "frames 4 to 7: lost: values/c/1/0/0 is not what was written"
+    assert report.troubles == [(str(store), told)]
+
+
+def test_frames_of_which_no_cell_is_valid_are_no_damage(tmp_path: Path) -> None:
+    """Zarr writes no chunk for them, so that it looks like one that is gone."""
+    with StoreWriter(tmp_path / "a.zarr", chunk=2) as writer:
+        for i in range(4):
+            values = np.full((2, 2), np.nan if i < 2 else 1.0)
+            writer.write(Frame.of(values, quantity="volt", index=i))
+    index, _, report = index_and_gaps(tmp_path / "a.zarr")
+    assert (index, report.troubles) == ([0, 1, 2, 3], [])
+
+
+@pytest.mark.parametrize("name", ["", "values", "time_s", "number"])
+@pytest.mark.parametrize("how", ["gone", "cut", "other"])
+def test_damaged_metadata_are_told_and_every_frame_is_read(
+    store: Path, name: str, how: str
+) -> None:
+    """A shape, a type or a unit that says something else would be read as other numbers."""
+    whole = [f.image.values.tolist() for f in read_store(store)]
+    file = store / name / "zarr.json"
+    if how == "gone":
+        file.unlink()
+    else:
+        text = file.read_text()
+        other = text.replace("float64", "int64").replace("volt", "gram").replace("-1", "5")
+        file.write_text(text[:50] if how == "cut" else other)
+        assert file.read_text() != text
     report = Report()
     frames = list(read_store(store, report))
-    assert [f.index for f in frames] == [0, 1, 2, 3, 8, 9]
-    assert [f.index for f in frames if f.gap] == [8]
-    assert report.counts["damaged records skipped"] == 4
-    assert report.troubles[0][0] == str(store)
-    assert report.troubles[0][1].startswith("frames 4 to 7 cannot be read: ")
+    assert [f.image.values.tolist() for f in frames] == whole
+    assert {f.image.quantity for f in frames} == {"volt"}
+    assert not any(f.doubtful for f in frames)
+    told = f"{name}/zarr.json is damaged".removeprefix("/")
+    assert report.troubles[0] == (str(store), told)
+    assert "check --repair" in report.troubles[1][1]
 
 
-def test_a_chunk_that_is_gone_is_doubted_and_its_cells_are_invalid(store: Path) -> None:
-    shutil.rmtree(store / "values" / "c" / "1")
+def test_a_line_of_the_journal_that_is_damaged_makes_its_frames_doubtful(store: Path) -> None:
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    lines[2] = lines[2].replace(b"4", b"5", 1)
+    (store / "frames.journal").write_bytes(b"".join(lines))
+    report = Report()
+    frames = list(read_store(store, report))
+    assert [f.index for f in frames if f.doubtful] == [4, 5, 6, 7]
+    assert len(frames) == 10
+    assert report.troubles[0] == (str(store), "line 3 of its journal is damaged")
+
+
+@pytest.mark.parametrize("n_lines", [0, 1, 2, 3])
+def test_a_journal_that_was_cut_short_makes_no_store_short(store: Path, n_lines: int) -> None:
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    (store / "frames.journal").write_bytes(b"".join(lines[:n_lines]))
+    frames = list(read_store(store))
+    assert [f.index for f in frames] == list(range(10))
+    assert [f.index for f in frames if f.doubtful] == list(range(4 * max(0, n_lines - 1), 10))
+
+
+def test_a_journal_that_is_gone_makes_all_frames_doubtful(store: Path) -> None:
+    (store / "frames.journal").unlink()
     report = Report()
     frames = list(read_store(store, report))
     assert len(frames) == 10
-    assert not np.any(frames[5].image.valid)
-    told = "frames 4 to 7 hold no valid cell: is a part of the store missing?"
-    assert report.troubles == [(str(store), told)]
+    assert all(f.doubtful for f in frames)
+    told = "its journal is gone: what is in the arrays is given as doubtful"
+    assert report.troubles[0] == (str(store), told)
+
+
+def test_frames_that_nothing_numbers_are_told_as_lost(store: Path) -> None:
+    shutil.rmtree(store / "number" / "c")
+    (store / "frames.journal").write_bytes(
+        (store / "frames.journal").read_bytes().splitlines(True)[0]
+    )
+    report = Report()
+    assert list(read_store(store, report)) == []
+    assert report.troubles[0][1] == "10 frames from 0 on are lost: nothing numbers them"
 
 
 def test_a_store_of_which_nothing_can_be_read_is_an_error(store: Path) -> None:
@@ -55,6 +139,37 @@ def test_a_store_of_which_nothing_can_be_read_is_an_error(store: Path) -> None:
             part.write_bytes(b"junk")
     with pytest.raises(DataError, match=r"a\.zarr: not a single frame of it can be read"):
         list(read_store(store))
-    (store / "number" / "c" / "0").write_bytes(b"junk")
-    with pytest.raises(DataError, match=r"a\.zarr: its frame numbers cannot be read: "):
-        list(read_store(store))
+
+
+def as_version_2(store: Path) -> None:
+    import zarr
+
+    (store / "frames.journal").unlink()
+    zarr.open_group(str(store), mode="r+").attrs["version"] = 2
+
+
+def test_an_older_store_without_journal_is_read_and_not_gone_on_with(store: Path) -> None:
+    whole = [f.image.values.tolist() for f in read_store(store)]
+    as_version_2(store)
+    report = Report()
+    frames = list(read_store(store, report))
+    assert [f.image.values.tolist() for f in frames] == whole
+    assert (report.troubles, [f for f in frames if f.doubtful]) == ([], [])
+    with pytest.raises(UsageError, match="is of version 2 of the format, which is read but not"):
+        StoreWriter(store, append=True)
+
+
+def test_a_chunk_of_an_older_store_that_is_gone_is_lost(store: Path) -> None:
+    as_version_2(store)
+    shutil.rmtree(store / "values" / "c" / "1")
+    index, gaps, report = index_and_gaps(store)
+    assert (index, gaps) == ([0, 1, 2, 3, 8, 9], [8])
+    assert report.troubles == [(str(store), "frames 4 to 7: lost: values/c/1/0/0 is gone")]
+
+
+def test_a_damaged_store_is_not_gone_on_with(store: Path) -> None:
+    (store / "values" / "zarr.json").unlink()
+    with pytest.raises(
+        UsageError, match=r"values/zarr.json is damaged; 'tactile-graph check --rep"
+    ):
+        StoreWriter(store, append=True)

@@ -15,7 +15,8 @@ from tactile_graph import Circle, Frame
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import TrueObject
-from tactile_graph_sources.store import is_store, read_store
+from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores.layout import is_store
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -217,8 +218,9 @@ def test_other_zarr_stores_are_no_recordings(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("version", 99, "is a recording of version 99, 1 and 2 can be read"),
+        ("version", 99, "is a recording of version 99, 1, 2 and 3 can be read"),
         ("quantity", "bananas", "unknown quantity 'bananas'"),
+        ("pitch_cm", [0.5], r"pitch_cm must be two numbers, got \[0.5\]"),
     ],
 )
 def test_attributes_that_cannot_be_true_are_refused(
@@ -229,6 +231,7 @@ def test_attributes_that_cannot_be_true_are_refused(
     with StoreWriter(tmp_path / "a.zarr") as store:
         store.write(frames(1)[0])
     zarr.open_group(str(tmp_path / "a.zarr"), mode="r+").attrs[name] = value
+    (tmp_path / "a.zarr" / "frames.journal").unlink()
     with pytest.raises(DataError, match=message):
         list(read_store(tmp_path / "a.zarr"))
 

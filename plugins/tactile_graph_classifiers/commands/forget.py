@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from tactile_graph.cli.say import say
 from tactile_graph_classifiers.commands.shared import database_option, tell_apart
 
 
@@ -18,5 +19,5 @@ def forget(name: str, database: Path, timeout_s: float) -> None:
 
     store = ObjectDatabase(database, timeout_s)
     n = store.forget(name)
-    click.echo(f"{database}: {name} forgotten, with {n} readings")
+    say(f"{database}: {name} forgotten, with {n} readings")
     tell_apart(store)

@@ -10,6 +10,7 @@ import click
 
 from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_options
 from tactile_graph.cli.endings import SOME_FAILED
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option
 
@@ -59,7 +60,7 @@ def identify(
     for frame in span.of(opened.frames(seed, report)):
         lines.add(runner(frame))
     for where, what in report.troubles:
-        click.echo(f"{where}: {what}", err=True)
+        say(f"{where}: {what}", err=True)
     lines.summarise()
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
@@ -113,12 +114,12 @@ class _Lines:
         if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
             raise outcome.error  # no other frame of these recordings would fare better
         if not self.counts:
-            click.echo(_line(*HEAD))
+            say(_line(*HEAD))
         if isinstance(outcome, Failed | Skipped):
             kind = "failed" if isinstance(outcome, Failed) else "skipped"
             self.n_failed += kind == "failed"
             self.counts[f"({kind})"] += 1
-            click.echo(f"{result.frame.index:>5}  {kind}: {outcome.reason}")
+            say(f"{result.frame.index:>5}  {kind}: {outcome.reason}")
             return
         self.counts[outcome.name] += 1
         second = outcome.runner_up or "-"
@@ -126,7 +127,7 @@ class _Lines:
         if not outcome.known:
             note = f"nearest: {outcome.nearest}, accepted up to {outcome.limit:.3g} {note}".rstrip()
         number, margin = f"{outcome.distance:.3g}", f"{outcome.margin:.3f}"
-        click.echo(_line(str(result.frame.index), outcome.name, number, second, margin, note))
+        say(_line(str(result.frame.index), outcome.name, number, second, margin, note))
 
     def _judged(self, result: Result, identity: Any) -> str:
         from tactile_graph_classifiers.measuring.shapes import true_name
@@ -148,9 +149,9 @@ class _Lines:
         """
         if not self.counts:
             raise UsageError("the source gave no frame")
-        click.echo(", ".join(f"{name}: {n}" for name, n in self.counts.most_common()))
+        say(", ".join(f"{name}: {n}" for name, n in self.counts.most_common()))
         if self.n_true:
-            click.echo(f"right: {self.n_right} of {self.n_true}")
+            say(f"right: {self.n_right} of {self.n_true}")
 
 
 def _line(number: str, name: str, distance: str, second: str, margin: str, note: str) -> str:

@@ -10,6 +10,7 @@ import click
 
 from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_options
 from tactile_graph.cli.endings import SOME_FAILED
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, tell_apart
 from tactile_graph_classifiers.measuring.shapes import SHAPES
@@ -62,15 +63,15 @@ def learn(
     store = ObjectDatabase(database, timeout_s)
     store.learn(Setting(first.names, first.quantity, opened.name), [lesson])
     total = next(s for s in store.summaries() if s.name == " ".join(name.split()))
-    click.echo(
+    say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
         f"{len(read.rows)} readings learned, {total.n_readings} in all"
     )
     tell_apart(store)
     for what, n in read.left_out.items():
-        click.echo(f"left out: {n} frames: {what}", err=True)
+        say(f"left out: {n} frames: {what}", err=True)
     for where, what in read.troubles:
-        click.echo(f"{where}: {what}", err=True)
+        say(f"{where}: {what}", err=True)
     if read.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
 
@@ -38,7 +39,7 @@ def objects(
 
         setting, lessons = read_export(imported)
         store.learn(setting, lessons, new=True)
-        click.echo(f"{database}: {len(lessons)} objects imported")
+        say(f"{database}: {len(lessons)} objects imported")
         tell_apart(store)
         return
     known = store.known()
@@ -59,15 +60,15 @@ def _export(known: Known, file: str) -> None:
 
     text = to_text(known)
     if file == "-":
-        click.echo(text, nl=False)
+        say(text, nl=False)
         return
     write_whole(file, text)
-    click.echo(f"{file}: {len(known.objects)} objects exported")
+    say(f"{file}: {len(known.objects)} objects exported")
 
 
 def _list(known: Known) -> None:
     if not known.objects:
-        click.echo(f"{known.where}: no objects")
+        say(f"{known.where}: no objects")
         return
     shown = [f for f in LISTED if f in known.features] or list(known.features[:2])
     rows = [
@@ -78,7 +79,7 @@ def _list(known: Known) -> None:
     by = f", measured by {known.pipeline}" if known.pipeline else ""
     print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
     if known.choice is not None:
-        click.echo(f"{known.choice}.")
+        say(f"{known.choice}.")
 
 
 def _spread(known: Known, it: KnownObject, feature: str) -> str:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
@@ -53,7 +55,7 @@ def tell_apart(store: ObjectDatabase) -> None:
         return
     choice = choose(Examples.of(known))
     store.keep(choice, known)
-    click.echo(f"{store.path}: {choice}")
+    say(f"{store.path}: {choice}")
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

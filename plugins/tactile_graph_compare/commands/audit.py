@@ -15,16 +15,18 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
     source_options,
 )
-from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
+from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
     from tactile_graph_compare.output.tables import Table
     from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
 EPILOG = """\b
-Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C; what was done is shown.
+Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM; what was done is
+shown.
 """
 
 
@@ -57,7 +59,7 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
     interrupted = _frames(auditor, span, asked.seed)
-    found = auditor.summarise(interrupted)
+    found = auditor.summarise(interrupted is not None)
     if not found.n_frames:
         raise UsageError(
             f"none of {found.n_seen} frames is in the sample of {asked.sample:g}: give a larger "
@@ -69,8 +71,8 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
         _write(found, asked.json_path)
         out.print(f"wrote {asked.json_path}", style="dim", soft_wrap=True)
     if interrupted:
-        out.print("interrupted", style="bold red")
-        click.get_current_context().exit(INTERRUPTED)
+        out.print(words_of(interrupted), style="bold red")
+        click.get_current_context().exit(code_of(interrupted))
 
 
 @dataclass(frozen=True)
@@ -86,8 +88,8 @@ class _Options:
     json_path: str | None
 
 
-def _frames(auditor: Auditor, span: Span, seed: int) -> bool:
-    """Take the frames; return whether Ctrl-C came."""
+def _frames(auditor: Auditor, span: Span, seed: int) -> KeyboardInterrupt | None:
+    """Take the frames; return what ended them before their end, if anything did."""
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.progress import Bar
     from tactile_graph.cli.terminal import console
@@ -101,11 +103,11 @@ def _frames(auditor: Auditor, span: Span, seed: int) -> bool:
                 with interrupts.held:
                     auditor.add(frame)
                 bar.at(auditor.n_seen, span.expected(report.n_expected))
-        except KeyboardInterrupt:
-            return True
+        except KeyboardInterrupt as error:
+            return error
         finally:
             bar.stop()
-    return False
+    return None
 
 
 def _show(found: Audit, out: Any) -> None:
@@ -193,4 +195,4 @@ def _write(found: Audit, path: str) -> None:
         "guards": [asdict(g) for g in found.guards],
         "provenance": found.everything.provenance,
     }
-    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, visible(json.dumps(data, indent=1, ensure_ascii=False)) + "\n")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -12,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
-from tactile_graph.cli.endings import INTERRUPTED
+from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
+from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ A sweep makes a variant of each value:
 Exit codes:
   0    done
   2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
-  130  interrupted by Ctrl-C; what was done is shown
+  130  interrupted by Ctrl-C; what was done is shown and written
+  143  ended by SIGTERM (129: its terminal was closed); likewise
 """
 
 
@@ -166,13 +167,16 @@ def _prepared(
 
 def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
     """Return the variants and the recordings among the words of a command line."""
-    from tactile_graph_compare.variants.request import parse_request
+    from tactile_graph_compare.variants.request import parse_request, words_of
 
     found = registry.installed()
     requests: list[VariantRequest] = []
     recordings: list[str] = []
     for word in words:
-        name = _first(word)
+        try:
+            name = next(iter(words_of(word)), "")
+        except ValueError:  # a quotation that does not end
+            name = word
         if found.has("pipelines", name) or name.endswith((".yaml", ".yml")):
             requests.append(parse_request(word, found))
         elif Path(word).exists():
@@ -180,13 +184,6 @@ def _told_apart(words: Sequence[str]) -> tuple[list[VariantRequest], list[str]]:
         else:
             raise UsageError(f"no file {word!r}, and {found.unknown('pipelines', name)}")
     return requests, recordings
-
-
-def _first(word: str) -> str:
-    try:
-        return (shlex.split(word) or [""])[0]
-    except ValueError:
-        return word
 
 
 # -- the frames ------------------------------------------------------------------------------
@@ -226,9 +223,9 @@ class _Run:
                 error = UsageError(f"there is nothing to compare: the source gave {got} frames")
         if error is not None:
             raise error
-        return INTERRUPTED if interrupted else 0
+        return code_of(interrupted) if interrupted else 0
 
-    def _frames(self, held: Any) -> tuple[bool, Exception | None]:
+    def _frames(self, held: Any) -> tuple[KeyboardInterrupt | None, Exception | None]:
         from tactile_graph.cli.progress import Bar
 
         bar = Bar(self.stderr, "compare")
@@ -240,23 +237,27 @@ class _Run:
                 with held:
                     self.session.add(frame)
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))
-        except KeyboardInterrupt:
-            return True, None
+        except KeyboardInterrupt as error:
+            return error, None
         except Exception as error:  # a source may raise anything; what was done is shown
-            return False, error
+            return None, error
         finally:
             bar.stop()
-        return False, None
+        return None, None
 
     # -- the end -----------------------------------------------------------------------------
 
-    def _finish(self, interrupted: bool) -> None:
+    def _finish(self, interrupted: KeyboardInterrupt | None) -> None:
         from tactile_graph_compare.output.shown import show
         from tactile_graph_compare.run.summarise import summarise
 
-        comparison = summarise(self.session, self.report, interrupted, self.notes, self.span.start)
-        if interrupted:
-            self.people.print("interrupted", style="bold red")
+        comparison = summarise(
+            self.session, self.report, interrupted is not None, self.notes, self.span.start
+        )
+        if interrupted is not None:
+            n = self.session.n
+            frames = f"{n} frame{'s' if n != 1 else ''}"
+            self.people.print(f"{words_of(interrupted)} after {frames}", style="bold red")
         try:
             show(comparison, self.people)
             for where, what in self.report.troubles[:10]:
@@ -275,7 +276,7 @@ class _Run:
         if options.csv_path is not None:
             yield from write_csv(comparison, options.csv_path)
         for name, text in ((options.markdown, markdown), (options.json_path, as_json)):
-            yield from _put(name, text(comparison)) if name is not None else ()
+            yield from _put(name, visible(text(comparison))) if name is not None else ()
         if options.report is not None:
             _report_writer()(comparison, options.report)
             yield options.report

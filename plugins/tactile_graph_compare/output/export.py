@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.files import said, write_whole
+from tactile_graph.foreign_text import csv_line, visible
 from tactile_graph.inspect import plain, without_nan
 from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.scores import Score
@@ -111,11 +110,7 @@ def _fields(record: Any, names: Sequence[str]) -> Row:
 
 def csv_text(names: Row, rows: Iterable[Row]) -> str:
     """Return CSV with a line of names."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(names)
-    writer.writerows(rows)
-    return text.getvalue()
+    return "".join(map(csv_line, (names, *rows)))
 
 
 # -- JSON ------------------------------------------------------------------------------------
@@ -152,9 +147,8 @@ def as_json(comparison: Comparison) -> str:
         ],
         "provenance": c.provenance,
     }  # fmt: skip
-    return (
-        json.dumps(without_nan(plain(data)), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    )
+    text = json.dumps(without_nan(plain(data)), indent=1, ensure_ascii=False, allow_nan=False)
+    return visible(text) + "\n"
 
 
 def _named(record: Score | Any, names: Sequence[str]) -> dict[str, Any]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from html import escape
 from itertools import groupby
 
+from tactile_graph.foreign_text import html_text
 from tactile_graph_compare.output.tables import LEFT, Table, heading, saving, tables
 from tactile_graph_compare.records.comparison import Comparison
 
@@ -18,19 +18,19 @@ class ShownComparison(Comparison):
         return f"<Comparison of {', '.join(self.labels)}: {heading(self)}>"
 
     def _repr_html_(self) -> str:
-        parts = [f"<p><b>{escape(heading(self))}</b></p>"]
-        parts += [f"<p>Note: {escape(note)}</p>" for note in self.notes]
+        parts = [f"<p><b>{html_text(heading(self))}</b></p>"]
+        parts += [f"<p>Note: {html_text(note)}</p>" for note in self.notes]
         parts += [_table(table) for table in tables(self)]
-        parts.append(f"<p>{escape(saving(self))}</p>")
+        parts.append(f"<p>{html_text(saving(self))}</p>")
         return f'<div style="font:12px sans-serif">{"".join(parts)}</div>'
 
 
 def _table(table: Table) -> str:
     head = "".join(_cell("th", name, name) for name in table.columns)
     body = "".join(_group(table, list(rows)) for _, rows in groupby(table.rows, lambda r: r[0]))
-    note = f"<p>{escape(table.note)}</p>" if table.note else ""
+    note = f"<p>{html_text(table.note)}</p>" if table.note else ""
     return (
-        f"<p><b>{escape(table.title)}</b></p>"
+        f"<p><b>{html_text(table.title)}</b></p>"
         f'<table style="border-collapse:collapse"><tr>{head}</tr>{body}</table>{note}'
     )
 
@@ -48,4 +48,4 @@ def _group(table: Table, rows: list[tuple[str, ...]]) -> str:
 
 def _cell(kind: str, column: str, text: str) -> str:
     side = "left" if column in LEFT else "right"
-    return f'<{kind} style="{_CELL}{side}">{escape(text)}</{kind}>'
+    return f'<{kind} style="{_CELL}{side}">{html_text(text)}</{kind}>'

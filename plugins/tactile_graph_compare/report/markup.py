@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from html import escape
 from typing import TypeAlias
 
+from tactile_graph.foreign_text import visible
+
 _VOID = {"meta", "br", "col", "image"}
-_NOT_TEXT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Html(str):
@@ -23,7 +23,7 @@ Child: TypeAlias = "str | Iterable[Child] | None"
 
 def text(value: object) -> Html:
     """Return anything as text, safe between tags and in quoted attributes."""
-    return Html(escape(_NOT_TEXT.sub("\ufffd", str(value)), quote=True))
+    return Html(escape(visible(str(value)), quote=True))
 
 
 def tag(name: str, /, *children: Child, **attributes: object) -> Html:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -45,10 +46,10 @@ def parse_request(text: str, registry: Registry) -> VariantRequest:
     UsageError
         If it holds anything else.
     """
-    if " " not in text.strip() or registry.has("pipelines", text) or Path(text).is_file():
+    if " " not in text.strip() or registry.has("pipelines", text):
         return VariantRequest(text)
     try:
-        name, *rest = shlex.split(text)
+        name, *rest = words_of(text)
     except ValueError as error:
         raise UsageError(f"variant {text!r}: {error}") from None
     settings: dict[str, Any] = {}
@@ -70,6 +71,20 @@ def parse_request(text: str, registry: Registry) -> VariantRequest:
         else:
             settings |= dict([assignment("--set", value)])
     return VariantRequest(name, settings, tuple(only))
+
+
+def words_of(text: str) -> list[str]:
+    """Return a variant's words, the pipeline's name or file first; its spaces need no quotes.
+
+    Raises
+    ------
+    ValueError
+        If a quotation does not end.
+    """
+    found = re.match(r"(?P<file>.+?\.ya?ml)(?P<rest>\s+--.*)?$", text, re.DOTALL)
+    if found is None or found["file"][0] in "\"'":
+        return shlex.split(text)
+    return [found["file"], *shlex.split(found["rest"] or "")]
 
 
 def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from tactile_graph_pads.calibration.calibration import Calibration, Origin, Provenance
     from tactile_graph_pads.calibration.groups import GroupReader
@@ -87,17 +89,17 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
         provenance=_provenance(asked, observed),
     )
     if observed.assumed:
-        click.echo(
+        say(
             f"recordings that do not say their quantity are taken for counts of pad "
             f"{asked.pad_name}; frames of such a recording want --with quantity=counts"
         )
     _say(made, fitted_g(made.fit, points, seen if fit == "sums" else ()), fit)
     if asked.output is not None:
         write_calibration(asked.output, made)
-        click.echo(f"wrote {asked.output}")
+        say(f"wrote {asked.output}")
     if asked.plot is not None:
         save_calibration_plot(asked.plot, made)
-        click.echo(f"wrote {asked.plot}")
+        say(f"wrote {asked.plot}")
 
 
 @dataclass(frozen=True)

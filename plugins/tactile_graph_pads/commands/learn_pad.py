@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from tactile_graph_pads.learning.learn import LearnedPad
     from tactile_graph_pads.learning.pad_file import Making
@@ -58,12 +60,12 @@ def learn_pad(
     _say(found)
     if output is not None:
         for path in write_pad(output, found, base, making):
-            click.echo(f"wrote {path}")
+            say(f"wrote {path}")
     if plots is not None:
         from tactile_graph_pads.learning.page import write_page
 
         write_page(plots, found, making, "my-pad.yaml" if output is None else output.name)
-        click.echo(f"wrote {plots}")
+        say(f"wrote {plots}")
 
 
 def _check(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import base64
 import io
-from html import escape
 from pathlib import Path
 
 from tactile_graph.files import write_whole
+from tactile_graph.foreign_text import html_text
 from tactile_graph_pads.learning.learn import LearnedPad
 from tactile_graph_pads.learning.pad_file import Making
 from tactile_graph_pads.learning.pictures import Picture, pictures
@@ -45,18 +45,18 @@ def write_page(path: Path, found: LearnedPad, making: Making, pad: str) -> None:
 def page(found: LearnedPad, making: Making, pad: str) -> str:
     """Return the page as HTML."""
     rows = "".join(
-        f"<tr><th scope=row>{escape(name)}</th><td>{escape(text)}</td></tr>"
+        f"<tr><th scope=row>{html_text(name)}</th><td>{html_text(text)}</td></tr>"
         for name, text in summary(found)
     )
-    notes = "".join(f"<li>{escape(note)}</li>" for note in found.notes)
+    notes = "".join(f"<li>{html_text(note)}</li>" for note in found.notes)
     body = [
         "<header><h1>A pad learned from recordings</h1></header><main>",
         f"<table>{rows}</table>",
         f"<h2>What could not be told, and what to mind</h2><ul>{notes}</ul>" if notes else "",
         *(_figure(picture) for picture in pictures(found)),
-        f"<h2>In a pipeline</h2><pre>{escape(nodes(found, pad))}</pre>",
-        f"</main><footer><p>{escape(making.made_by)}, {escape(making.made_at)}: "
-        f"{len(making.recordings)} recordings.</p><pre>{escape(making.command)}</pre></footer>",
+        f"<h2>In a pipeline</h2><pre>{html_text(nodes(found, pad))}</pre>",
+        f"</main><footer><p>{html_text(making.made_by)}, {html_text(making.made_at)}: "
+        f"{len(making.recordings)} recordings.</p><pre>{html_text(making.command)}</pre></footer>",
     ]
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -104,7 +104,7 @@ def _figure(picture: Picture) -> str:
     picture.figure.savefig(file, format="png")
     data = base64.b64encode(file.getvalue()).decode()
     return (
-        f"<h2>{escape(picture.title)}</h2><figure>"
-        f'<img alt="{escape(picture.title)}" src="data:image/png;base64,{data}">'
-        f"<figcaption>{escape(picture.caption)}</figcaption></figure>"
+        f"<h2>{html_text(picture.title)}</h2><figure>"
+        f'<img alt="{html_text(picture.title)}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{html_text(picture.caption)}</figcaption></figure>"
     )

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
@@ -75,14 +77,14 @@ def convert(
         n = _write(target, kept.watch(frames), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
-    click.echo(f"{target}: {n} frame{'s' if n != 1 else ''}")
+    say(f"{target}: {n} frame{'s' if n != 1 else ''}")
     for what, count in report.counts.items():
         if what.startswith("recordings"):
-            click.echo(f"{what}: {count}", err=True)
+            say(f"{what}: {count}", err=True)
     for where, trouble in report.troubles:
-        click.echo(f"{where}: {trouble}", err=True)
+        say(f"{where}: {trouble}", err=True)
     if target.suffix == ".csv" and kept.names:
-        click.echo(f"left out, as a table has no place for it: {', '.join(kept.names)}", err=True)
+        say(f"left out, as a table has no place for it: {', '.join(kept.names)}", err=True)
 
 
 def _check(recordings: list[Path], target: Path, source: str | None) -> None:
@@ -140,6 +142,7 @@ class _Kept:
                 ("truth", frame.truth is not None),
                 ("device time", frame.device_time_s is not None),
                 ("gaps", frame.gap),
+                ("doubts", frame.doubtful),
                 ("labels", bool(frame.label)),
             ):
                 if there:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -62,20 +64,18 @@ def inspect(
             if len(files) == 1:
                 raise
             failed = error
-            click.echo(json.dumps({"file": str(path), "error": str(error)}) if as_json else error)
+            say(json.dumps({"file": str(path), "error": str(error)}) if as_json else error)
             continue
         works = _works(looked.sensors[0].frames[0])
         if as_json:
-            click.echo(
-                json.dumps({**data_of(looked), "commands": _commands(looked, works, settings)})
-            )
+            say(json.dumps({**data_of(looked), "commands": _commands(looked, works, settings)}))
         else:
             if k:
-                click.echo()
+                say()
             _tell(looked, works, settings)
         if picture is not None:
             save_picture(looked, picture)
-            click.echo(f"picture: {picture}", err=as_json)
+            say(f"picture: {picture}", err=as_json)
     if failed is not None:
         click.get_current_context().exit(1)
 
@@ -84,18 +84,18 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
     from tactile_graph_sources.inspection.words import lines_of, shades_of
 
     for line in lines_of(looked):
-        click.echo(line)
+        say(line)
     for line in shades_of(looked.sensors[0]):
-        click.echo(line)
-    click.echo("  takes it:")
+        say(line)
+    say("  takes it:")
     for command in _commands(looked, works, settings)[: MOST_SHOWN + 1]:
-        click.echo(f"    {command}")
+        say(f"    {command}")
     if len(works.names) > MOST_SHOWN:
-        click.echo(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
+        say(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
     for reason, names in works.reasons.items():
-        click.echo(f"  not {names}: {reason}")
+        say(f"  not {names}: {reason}")
     if looked.pitch_assumed:
-        click.echo("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
+        say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
 
 
 def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[str]:

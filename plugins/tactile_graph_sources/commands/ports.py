@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import click
 
+from tactile_graph.cli.say import say
+
 
 @click.command()
 @click.option(
@@ -19,10 +21,10 @@ def ports(wait_s: float | None) -> None:
     from tactile_graph_sources.devices.port_list import PortInfo, list_ports, wait_for_new_port
 
     def show(port: PortInfo) -> None:
-        click.echo("  ".join(t for t in (*port[:4], port.serial_number) if t))
+        say("  ".join(t for t in (*port[:4], port.serial_number) if t))
 
     if wait_s is not None:
-        click.echo("plug the pad in now (unplug it first if it is in) …", err=True)
+        say("plug the pad in now (unplug it first if it is in) …", err=True)
         new = wait_for_new_port(wait_s)
         if new is None:
             raise UsageError(f"no new port within {wait_s:g} s")
@@ -30,6 +32,6 @@ def ports(wait_s: float | None) -> None:
         return
     found = list_ports()
     if not found:
-        click.echo("no serial ports found; a pad may need its driver, or another cable", err=True)
+        say("no serial ports found; a pad may need its driver, or another cable", err=True)
     for port in found:
         show(port)

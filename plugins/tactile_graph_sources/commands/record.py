@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
 import time
 from collections.abc import Generator, Iterator
 from itertools import islice
 from pathlib import Path
-from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
+
+from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
@@ -72,6 +71,7 @@ def record(
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
     lost. A pad that is unplugged is waited for.
     """
+    from tactile_graph.cli.interrupt import Ended, Interrupts, code_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.serial_port import serial
@@ -79,7 +79,7 @@ def record(
 
     _check_source(port, preset, source)
     _check_target(target)
-    report = Report(listener=lambda where, what: click.echo(f"{where}: {what}", err=True))
+    report = Report(listener=lambda where, what: say(f"{where}: {what}", err=True))
     if source is not None:
         frames = _until(_of_source(source, settings, n_frames, report), seconds)
     else:
@@ -93,24 +93,27 @@ def record(
             report=report,
         )
     failure: Exception | None = None
-    with _Ended() as ended:
+    ended: KeyboardInterrupt | None = None
+    store: StoreWriter | None = None
+    with Interrupts():
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
                 _keep(frames, store)
-        except KeyboardInterrupt:
-            pass  # the usual way to end a recording; what was held is written by now
+        except KeyboardInterrupt as error:
+            ended = error  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
             failure = error
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    if failure is None or report.counts["good frames"] or report.counts["frames"]:
+    n_came = report.counts["good frames"] + report.counts["frames"]
+    if store is not None and (failure is None or n_came):
         _tell(store, report)
     if failure is not None:
         raise failure
-    if ended.by:
-        click.get_current_context().exit(128 + ended.by)
+    if ended is not None and (store is None or isinstance(ended, Ended)):
+        click.get_current_context().exit(code_of(ended))
 
 
 def _check_source(port: str | None, preset: str | None, source: str | None) -> None:
@@ -146,30 +149,6 @@ def _check_target(target: Path) -> None:
         check_target("TARGET", target)
 
 
-class _Ended:
-    """While entered, what ends programs (a shutdown, a closed terminal) ends as Ctrl-C does."""
-
-    def __init__(self) -> None:
-        self.by = 0
-        self._before: dict[signal.Signals, Any] = {}
-
-    def __enter__(self) -> _Ended:
-        if threading.current_thread() is threading.main_thread():
-            for name in ("SIGTERM", "SIGHUP"):  # the latter is not on Windows
-                number = getattr(signal, name, None)
-                if number is not None:
-                    self._before[number] = signal.signal(number, self._came)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, before in self._before.items():
-            signal.signal(number, before)
-
-    def _came(self, number: int, _frame: FrameType | None) -> None:
-        self.by = number
-        raise KeyboardInterrupt
-
-
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
     end = None if seconds is None else time.monotonic() + seconds
     for frame in frames:
@@ -191,18 +170,18 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
             click.echo(f"\r{store.n_frames} frames, {rate:.0f} a second ", nl=False, err=True)
             since, n = now, 0
     if shown:
-        click.echo("", err=True)
+        say("", err=True)
 
 
 def _tell(store: StoreWriter, report: Report) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
     if not store.path.exists():
-        click.echo(f"{store.path}: no frame came, and nothing was written", err=True)
+        say(f"{store.path}: no frame came, and nothing was written", err=True)
         n_bytes = report.counts["bytes"]
-        click.echo(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
-    click.echo(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
+    say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in UNTOLD]
     for name in names:
-        click.echo(f"  {name}: {report.counts[name]}", err=True)
+        say(f"  {name}: {report.counts[name]}", err=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -160,6 +161,7 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     times = arrays.optional("time_s", (n,), "fiu")
     device_times = arrays.optional("device_time_s", (n,), "fiu")
     gaps = arrays.optional("gap", (n,), "b")
+    doubtful = arrays.optional("doubtful", (n,), "b")
     labels = arrays.optional("label", (n,), "U")
     quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
     if quantity not in QUANTITIES:
@@ -170,7 +172,7 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     for k in range(n):
         sensor = "" if labels is None else str(labels[k])
         if reading.wants(sensor):
-            yield reading.frame(
+            frame = reading.frame(
                 values[k],
                 pitch_cm=pitch,
                 origin_cm=origin,
@@ -182,6 +184,8 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
                 device_time_s=_time(device_times, k),
                 gap=gaps is not None and bool(gaps[k]),
             )
+            unsure = doubtful is not None and bool(doubtful[k])
+            yield replace(frame, doubtful=True) if unsure else frame
 
 
 def _time(times: NDArray[Any] | None, k: int) -> float | None:

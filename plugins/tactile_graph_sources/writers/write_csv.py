@@ -17,7 +17,7 @@ def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
 
     The table keeps values, frame numbers and times (where the first frame has one), and says
     shape, pitch, origin and quantity in a comment, which `recording` reads back; cells that are
-    not valid become ``nan``. Truth, device time and gaps have no place in it.
+    not valid become ``nan``. Truth, device time, gaps and doubts have no place in it.
 
     Parameters
     ----------

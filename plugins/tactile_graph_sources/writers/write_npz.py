@@ -34,8 +34,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     -----
     Arrays: ``values`` (N, rows, columns), ``pitch_cm`` (2,), ``origin_cm`` (2,), ``quantity``;
     where a frame has them ``valid`` (N, rows, columns), ``time_s``, ``device_time_s``, ``gap``,
-    ``label`` (N,), and ``truth``, a JSON text: for each frame null or a list of objects with
-    ``kind``, the fields of that shape, ``weight_g`` and ``name``.
+    ``doubtful``, ``label`` (N,), and ``truth``, a JSON text: for each frame null or a list of
+    objects with ``kind``, the fields of that shape, ``weight_g`` and ``name``.
     """
     arrays = _arrays(list(frames))
     with whole_file(path) as file:
@@ -74,8 +74,10 @@ def _arrays(frames: list[Frame]) -> dict[str, Any]:
         times = [getattr(f, name) for f in frames]
         if any(t is not None for t in times):
             arrays[name] = np.array([np.nan if t is None else t for t in times], dtype=np.float64)
-    if any(f.gap for f in frames):
-        arrays["gap"] = np.array([f.gap for f in frames])
+    for name in ("gap", "doubtful"):
+        marks = [getattr(f, name) for f in frames]
+        if any(marks):
+            arrays[name] = np.array(marks)
     if any(f.label for f in frames):
         arrays["label"] = np.array([f.label for f in frames])
     if any(f.truth is not None for f in frames):

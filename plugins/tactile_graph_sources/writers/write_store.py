@@ -1,10 +1,9 @@
-"""Write frames to a Zarr store while they come; `store` says what is in it."""
+"""Write frames to a Zarr store while they come; `stores.layout` says what is in it."""
 
 from __future__ import annotations
 
 import json
-import os
-import platform
+import shlex
 import shutil
 import time
 from collections.abc import Mapping
@@ -16,16 +15,30 @@ import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import said
-from tactile_graph.locks import Lock
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.truth import truth_to_json
-from tactile_graph_sources.store import FORMAT, ROWS, VERSION, load_zarr, n_whole, opened
+from tactile_graph_sources.stores import journal
+from tactile_graph_sources.stores.layout import (
+    COLUMNS,
+    FORMAT,
+    JOURNAL,
+    NOTES,
+    VERSION,
+    Metadata,
+    array_of,
+    load_zarr,
+    read_metadata,
+)
+from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
+from tactile_graph_sources.stores.sole_writer import SoleWriter
+from tactile_graph_sources.stores.stored import Lost, open_stored
 
 CHUNK = 256
 SMALL_CHUNKS = 16
 """Chunks of frames that share one chunk of the small arrays, or there would be too many files."""
 NOTE_BYTES = 1 << 16
+GRID = ("shape", "pitch_cm", "origin_cm", "quantity")
 
 
 def _grid(image: Image) -> dict[str, Any]:
@@ -45,55 +58,6 @@ def _said(grid: Mapping[str, Any]) -> str:
         f"{rows} x {columns} cells of {x:g} x {y:g} cm from ({left:g}, {top:g}) cm on, "
         f"{grid['quantity']}"
     )
-
-
-COLUMNS: dict[str, tuple[str, float]] = {
-    "values": ("float64", np.nan),
-    "time_s": ("float64", np.nan),
-    "device_time_s": ("float64", np.nan),
-    "gap": ("bool", False),
-    "doubtful": ("bool", False),
-    "notes_end": ("int64", 0),
-    "number": ("int64", -1),
-}
-
-
-class SoleWriter:
-    """The right to write to a store, which one process at a time has.
-
-    Two files stand beside the store, hidden: the lock, which stays, and who holds it.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self._lock = Lock(path.with_name(f".{path.name}.lock"))
-        self._holder = path.with_name(f".{path.name}.writer")
-
-    def take(self) -> None:
-        """Take it, or say who has it.
-
-        Raises
-        ------
-        UsageError
-        """
-        with said(self.path):
-            if not self._lock.take():
-                raise UsageError(f"{self.path}: is being written to{self._who()}")
-            since = time.strftime("%Y-%m-%d %H:%M:%S")
-            name = f"process {os.getpid()} on {platform.node()}, since {since}"
-            self._holder.write_text(name, encoding="utf-8")
-
-    def _who(self) -> str:
-        try:
-            return f" by {self._holder.read_text(encoding='utf-8')[:200]}"
-        except OSError:  # it has the lock, and has not written down who it is
-            return " by another process"
-
-    def release(self) -> None:
-        """Give it back."""
-        if self._lock.held:
-            self._holder.unlink(missing_ok=True)
-            self._lock.release()
 
 
 class StoreWriter:
@@ -129,7 +93,7 @@ class StoreWriter:
         self.about = dict(about or {})
         self.n_written = 0
         self._zarr = load_zarr()
-        self._group: Any = None
+        self._metadata: Mapping[str, Metadata] = {}
         self._grid: dict[str, Any] = {}
         self._held: list[Frame] = []
         self._marks_gap = False
@@ -179,7 +143,7 @@ class StoreWriter:
             If a chunk cannot be written.
         """
         grid = _grid(frame.image)
-        if self._group is None:
+        if not self._metadata:
             self._create(grid)
         if grid != self._grid:
             raise DataError(str(self.path), f"holds {_said(self._grid)}; this one is {_said(grid)}")
@@ -199,16 +163,17 @@ class StoreWriter:
         part = self.path.with_name(f".{self.path.name}.part")
         with said(self.path):
             shutil.rmtree(part, ignore_errors=True)
-            self._make(part, attributes, (int(grid["shape"][0]), int(grid["shape"][1])))
+            self._metadata = self._make(part, attributes)
             part.rename(self.path)
-            self._group = self._zarr.open_group(str(self.path), mode="r+")
         self._grid = grid
 
-    def _make(self, part: Path, attributes: dict[str, Any], grid: tuple[int, int]) -> None:
+    def _make(self, part: Path, attributes: dict[str, Any]) -> dict[str, Metadata]:
+        """Make an empty store, and return its arrays' metadata by name."""
         group = self._zarr.create_group(str(part), attributes=attributes)
         codecs = self._zarr.codecs
         packed = [codecs.ZstdCodec(), codecs.Crc32cCodec()]
         few = (SMALL_CHUNKS * self.chunk,)
+        grid = tuple(attributes["shape"])
         for name, (dtype, fill) in COLUMNS.items():
             wide = name == "values"
             group.create_array(
@@ -220,29 +185,36 @@ class StoreWriter:
                 compressors=packed,
             )
         group.create_array(
-            "notes", shape=(0,), chunks=(NOTE_BYTES,), dtype="uint8", fill_value=0,
+            NOTES, shape=(0,), chunks=(NOTE_BYTES,), dtype="uint8", fill_value=0,
             compressors=packed,
         )  # fmt: skip
+        metadata: dict[str, Metadata] = {n: read_metadata(part, n) or {} for n in (*COLUMNS, NOTES)}
+        head = journal.head_line(journal.Head(attributes, metadata))
+        (part / JOURNAL).write_bytes(head)
+        return metadata
 
     def _reopen(self) -> None:
-        """Go on behind the last whole chunk; the first new frame follows a gap."""
-        group = opened(self.path, "r+")
-        if "doubtful" not in group:
+        """Go on behind the last frame; the first new one follows a gap."""
+        stored = open_stored(self.path)
+        if not stored.journaled:
             raise UsageError(
-                f"{self.path} is of version 1 of the format, which is read but not gone on with; "
-                "choose another name"
+                f"{self.path} is of version {stored.attributes['version']} of the format, which is "
+                "read but not gone on with; choose another name"
             )
-        self._group = group
-        self._grid = {k: group.attrs[k] for k in ("shape", "pitch_cm", "origin_cm", "quantity")}
-        self.chunk = int(group["values"].chunks[0])
-        self.n_written = n_whole(group)
-        ends = group["notes_end"][: self.n_written]
-        self._notes_end = int(ends[-1]) if len(ends) else 0
+        if stored.troubles:
+            raise _damaged(self.path, stored.troubles[0])
+        with said(self.path):
+            cut(stored.journal)
+            stored = adopt(stored)
+        self._metadata = stored.metadata
+        self._grid = {k: stored.attributes[k] for k in GRID}
+        self.chunk = stored.chunk
+        self.n_written = stored.n_frames
+        try:
+            self._notes_end = notes_end(stored)
+        except Lost as why:
+            raise _damaged(self.path, str(why)) from why
         self._marks_gap = self.n_written > 0
-        for name in ROWS:
-            array = group[name]
-            array.resize((self.n_written, *array.shape[1:]))
-        group["notes"].resize((self._notes_end,))
 
     def flush(self) -> None:
         """Write what is held; the rows count from the moment ``number`` is written.
@@ -258,31 +230,47 @@ class StoreWriter:
 
     def _put(self, frames: list[Frame]) -> None:
         low, high = self.n_written, self.n_written + len(frames)
-        notes = [_note(f) for f in frames]
-        ends = self._notes_end + np.cumsum([len(n) for n in notes])
-        gaps = np.array([f.gap for f in frames])
-        gaps[0] |= self._marks_gap
-        self._write("notes", self._notes_end, np.frombuffer(b"".join(notes), np.uint8))
-        columns: dict[str, Any] = {
-            "values": np.stack([f.image.filled(np.nan) for f in frames]),
-            "time_s": _seconds([f.time_s for f in frames]),
-            "device_time_s": _seconds([f.device_time_s for f in frames]),
-            "gap": gaps,
-            "doubtful": np.array([f.doubtful for f in frames]),
+        values = np.stack([f.image.filled(np.nan) for f in frames])
+        columns = self._columns(frames)
+        ends = self._notes_end + np.cumsum([len(n) for n in columns.notes])
+        rows: dict[str, Any] = {
+            "values": values,
+            "time_s": columns.time_s,
+            "device_time_s": columns.device_time_s,
+            "gap": columns.gap,
+            "doubtful": columns.doubtful,
             "notes_end": ends,
             "number": np.arange(low, high),
         }
-        for name in ROWS:
-            self._write(name, low, columns[name])
+        self._write(NOTES, self._notes_end, np.frombuffer(b"".join(columns.notes), np.uint8))
+        for name in COLUMNS:
+            self._write(name, low, rows[name])
+        journal.append(self.path, journal.block_line(low, values, columns))
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
         self._held, self._marks_gap = [], False
         self.n_written, self._notes_end = high, int(ends[-1])
 
+    def _columns(self, frames: list[Frame]) -> journal.Columns:
+        gaps = np.array([f.gap for f in frames])
+        gaps[0] |= self._marks_gap
+        return journal.Columns(
+            _seconds([f.time_s for f in frames]),
+            _seconds([f.device_time_s for f in frames]),
+            gaps,
+            np.array([f.doubtful for f in frames]),
+            tuple(_note(f) for f in frames),
+        )
+
     def _write(self, name: str, low: int, rows: Any) -> None:
         if len(rows):
-            array = self._group[name]
+            array = array_of(self.path, name, self._metadata[name], low, "r+")
             array.resize((low + len(rows), *array.shape[1:]))
             array[low:] = rows
+
+
+def _damaged(path: Path, what: str) -> UsageError:
+    command = f"tactile-graph check --repair {shlex.quote(str(path))}"
+    return UsageError(f"{path}: {what}; '{command}' may mend it")
 
 
 def _seconds(times: list[float | None]) -> Any:

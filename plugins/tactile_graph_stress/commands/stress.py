@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tactile_graph.cli.say import say
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -35,7 +37,7 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
     is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, or an
     answer was wrong.
     """
-    from tactile_graph.cli.endings import INTERRUPTED
+    from tactile_graph.cli.interrupt import code_of, words_of
     from tactile_graph.cli.terminal import console
     from tactile_graph.errors import UsageError
     from tactile_graph.plugins.registry import installed
@@ -50,22 +52,24 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         check_ending(output)
     found, left = subjects(installed())
     wanted = chosen(found, names, left)
-    rows, n = _rows(wanted, seed, quick, console(stderr=True))
+    rows, n, ended = _rows(wanted, seed, quick, console(stderr=True))
     _show(rows)
     if output is not None:
         options = "" if quick else " --full"
         options += f" --seed {seed}" if seed else ""
         write(output, rows, " ".join(["tactile-graph stress", *names]) + options)
-        click.echo(f"wrote {output}")
-    if n < len(wanted):
-        click.echo(f"interrupted: {n} of {len(wanted)} steps", err=True)
-        click.get_current_context().exit(INTERRUPTED)
+        say(f"wrote {output}")
+    if ended is not None:
+        say(f"{words_of(ended)}: {n} of {len(wanted)} steps", err=True)
+        click.get_current_context().exit(code_of(ended))
     if any(r.verdict.outcome.name == "BROKEN" for r in rows):
         click.get_current_context().exit(1)
 
 
-def _rows(wanted: list[Subject], seed: int, quick: bool, say: Console) -> tuple[list[Row], int]:
-    """Return the rows of all steps, or of those done when Ctrl-C came, and of how many."""
+def _rows(
+    wanted: list[Subject], seed: int, quick: bool, say: Console
+) -> tuple[list[Row], int, KeyboardInterrupt | None]:
+    """Return the rows of the steps that were done, of how many, and what ended them early."""
     from tactile_graph_stress.study import stressed
 
     rows: list[Row] = []
@@ -75,9 +79,9 @@ def _rows(wanted: list[Subject], seed: int, quick: bool, say: Console) -> tuple[
             for k, subject in enumerate(wanted):
                 at(k, subject.label)
                 rows += list(stressed(subject, seed, quick))
-    except KeyboardInterrupt:
-        return rows, k
-    return rows, len(wanted)
+    except KeyboardInterrupt as error:
+        return rows, k, error
+    return rows, len(wanted), None
 
 
 @contextmanager

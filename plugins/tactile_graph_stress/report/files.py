@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
+from tactile_graph.foreign_text import csv_line, visible
 from tactile_graph_stress.report.markdown import markdown
 from tactile_graph_stress.study import Row
 
@@ -29,7 +30,7 @@ def check_ending(path: Path) -> None:
 def write(path: Path, rows: Sequence[Row], command: str) -> None:
     """Write the rows; ``command`` is what made them."""
     make = {".md": markdown, ".csv": _csv, ".json": _json}[path.suffix.lower()]
-    write_whole(path, make(rows, command))
+    write_whole(path, visible(make(rows, command)))
 
 
 def _fields(row: Row) -> list[object]:
@@ -39,14 +40,7 @@ def _fields(row: Row) -> list[object]:
 
 
 def _csv(rows: Sequence[Row], command: str) -> str:
-    import csv
-    import io
-
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(["" if f is None else f for f in _fields(row)] for row in rows)
-    return text.getvalue()
+    return "".join(map(csv_line, (COLUMNS, *map(_fields, rows))))
 
 
 def _json(rows: Sequence[Row], command: str) -> str:

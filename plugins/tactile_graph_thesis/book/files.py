@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from tactile_graph.files import write_whole
+from tactile_graph.foreign_text import csv_line
 from tactile_graph_thesis.book.pictures import pictures
 from tactile_graph_thesis.item import Made
 from tactile_graph_thesis.making import Outcome
@@ -24,11 +23,7 @@ def csv_text(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
     columns : sequence of str
     rows : sequence of sequences
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
-    return text.getvalue()
+    return "".join(map(csv_line, (columns, *rows)))
 
 
 def files_of(name: str, made: Made) -> dict[str, bytes]:

@@ -6,7 +6,7 @@ import signal
 
 import pytest
 
-from tactile_graph.cli.interrupt import Interrupts
+from tactile_graph.cli.interrupt import ENDS, Ended, Interrupts, code_of, words_of
 
 
 def test_outside_of_what_is_held_it_comes_at_once():
@@ -14,10 +14,10 @@ def test_outside_of_what_is_held_it_comes_at_once():
         signal.raise_signal(signal.SIGINT)
 
 
-def write_a_line(done: list[str]) -> None:
+def write_a_line(done: list[str], number: signal.Signals = signal.SIGINT) -> None:
     with Interrupts() as interrupts:
         with interrupts.held:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
             done.append("whole line")
         done.append("never")
 
@@ -34,3 +34,14 @@ def test_afterwards_the_handler_is_as_it_was():
     with Interrupts():
         assert signal.getsignal(signal.SIGINT) is not before
     assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize("number", ENDS)
+def test_what_ends_programs_is_held_like_ctrl_c_and_told_apart(number: signal.Signals):
+    done: list[str] = []
+    with pytest.raises(Ended) as got:
+        write_a_line(done, number)
+    assert done == ["whole line"]
+    assert code_of(got.value) == 128 + number
+    assert words_of(got.value) == f"ended by {number.name}"
+    assert (code_of(KeyboardInterrupt()), words_of(KeyboardInterrupt())) == (130, "interrupted")

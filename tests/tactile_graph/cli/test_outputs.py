@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import resource
+import signal
 import sys
 import threading
 from collections.abc import Iterator
@@ -143,3 +144,106 @@ def test_a_narrow_terminal_still_shows_whole_words_of_what_plugins_offer(
     assert "…" not in got.stdout
     assert "import" not in got.stdout
     assert "2 pipelines" in " ".join(got.stdout.split())
+
+
+ODD = ("=1+1.txt", "\x1b[31mred.txt", "a\u202etxt.txt")
+
+
+@pytest.fixture
+def odd_files(tmp_path: Path) -> tuple[str, ...]:
+    for name in ODD:
+        (tmp_path / name).write_text("1\nword\n")
+    return ODD
+
+
+@pytest.mark.parametrize("form", [(), ("-o", "-"), ("--format", "csv")], ids=" ".join)
+def test_a_name_neither_acts_on_the_terminal_nor_turns_text_round(
+    odd_files: tuple[str, ...], form: tuple[str, ...]
+) -> None:
+    got = call("run", "discs", *odd_files, *form)
+    assert got.exit_code == 0, got.output
+    assert [c for c in got.output if c in "\x1b\u202e"] == []
+    assert r"\u001b[31mred.txt" in got.output
+    assert r"a\u202etxt.txt" in got.output
+
+
+def test_a_name_is_no_formula_in_csv_and_itself_in_json(odd_files: tuple[str, ...]) -> None:
+    lines = call("run", "discs", *odd_files, "--format", "csv").stdout.splitlines()
+    assert [line.split(",")[2] for line in lines] == [
+        "label", "'=1+1.txt", r"\u001b[31mred.txt", r"a\u202etxt.txt"
+    ]  # fmt: skip
+    lines = call("run", "discs", *odd_files, "-o", "-").stdout.splitlines()
+    assert [json.loads(line)["label"] for line in lines] == list(ODD)
+
+
+def test_an_error_shows_a_name_without_its_escapes() -> None:
+    got = call("run", "discs", "no\x1b[2Jfile.txt")
+    assert got.exit_code == 2
+    assert "\x1b" not in got.output
+    assert r"no\u001b[2Jfile.txt" in got.output
+
+
+class Boom(BaseException):
+    pass
+
+
+@pytest.mark.parametrize("error", [Boom("no more"), GeneratorExit("no more")])
+def test_no_exception_of_a_step_is_taken_for_a_frame_that_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    """Exit code 1 says that the run went through and some frame failed."""
+
+    def exploding(image: Image) -> float:
+        raise error
+
+    install(monkeypatch, tmp_path, steps={"exploding": exploding})
+    Path("p.yaml").write_text(
+        "{pipeline: p, nodes: {a: {step: exploding, in: frame}}, outputs: [a]}"
+    )
+    got = call("run", "p.yaml", "--source", "made", "-o", "out.jsonl")
+    assert got.exit_code == 2
+    assert f"error: a plugin ended the program: {type(error).__name__}('no more'), " in got.stderr
+    assert call("explain", "p.yaml", "--source", "made").exit_code == 2
+
+
+def clipped(image: Image) -> float:
+    image.values.setflags(write=True)
+    image.values[:] = 0.0
+    return 1.0
+
+
+def peak(image: Image) -> float:
+    return image.peak
+
+
+def test_verify_finds_the_step_that_writes_and_others_get_their_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, tmp_path, steps={"clipped": clipped, "peak": peak})
+    nodes = "{a: {step: clipped, in: frame}, b: {step: peak, in: frame}}"
+    Path("p.yaml").write_text(f"{{pipeline: p, nodes: {nodes}, outputs: [a, b]}}")
+    words = ("run", "p.yaml", "--source", "made", "--frames", "3", "-o", "-")
+    got = call(*words, "--verify")
+    assert got.exit_code == 1
+    outputs = [json.loads(line)["outputs"] for line in got.stdout.splitlines()]
+    assert [o["b"] >= 1.0 for o in outputs] == [True] * 3
+    assert ["failed" in o["a"] for o in outputs] == [True] * 3
+    assert "step clipped of " in got.stderr
+    assert "writes into input 1, which others read: change a copy" in " ".join(got.stderr.split())
+    assert call("run", "discs", "--verify", "--frames", "3").exit_code == 0
+
+
+def test_ctrl_c_is_told_as_such_though_a_library_makes_another_error_of_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def validated(*_: object) -> None:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except BaseException as error:
+            raise ValueError("no schema can be built") from error
+
+    monkeypatch.setattr("tactile_graph.api.pipeline.load", validated)
+    monkeypatch.setattr(sys, "argv", ["tactile-graph", "run", "discs"])
+    with pytest.raises(SystemExit) as got:
+        cli.main()
+    assert got.value.code == 128 + signal.SIGTERM

@@ -13,7 +13,7 @@ import pytest
 from helpers_cli import call, install
 from helpers_compare import COMPARE
 from tactile_graph import Image
-from tactile_graph.cli.endings import INTERRUPTED, PIPE_CLOSED
+from tactile_graph.cli.endings import PIPE_CLOSED
 
 TWO = ("compare", "discs", "next.yaml", "--frames", "10")
 
@@ -190,6 +190,20 @@ def test_what_was_done_before_a_source_broke_is_shown(hand_made):
     assert "the cable is off" in got.stderr
 
 
+@pytest.mark.parametrize(
+    "word",
+    ["a dir/x y.yaml", "a dir/x y.yaml --set footprint.level_v=0.02",
+     "'a dir/x y.yaml' --set footprint.level_v=0.02"],
+)  # fmt: skip
+def test_a_file_may_stand_in_a_folder_with_spaces(hand_made, word):
+    (hand_made / "a dir").mkdir()
+    text = (hand_made / "next.yaml").read_text().replace("pipeline: next", "pipeline: spaced")
+    (hand_made / "a dir" / "x y.yaml").write_text(text)
+    got = call("compare", "discs", word, "--frames", "5")
+    assert got.exit_code == 0, got.output
+    assert "5 frames" in got.output
+
+
 def test_ctrl_c_shows_what_is_done_so_far(hand_made, monkeypatch):
     from tactile_graph_compare.run.session import Session
 
@@ -202,7 +216,7 @@ def test_ctrl_c_shows_what_is_done_so_far(hand_made, monkeypatch):
 
     monkeypatch.setattr(Session, "add", add)
     got = call("compare", "discs", "next.yaml", "--frames", "30", "--json", "out.json")
-    assert got.exit_code == INTERRUPTED
+    assert got.exit_code == 130
     assert "interrupted" in got.output
     assert "12 frames" in got.output
     data = json.loads((hand_made / "out.json").read_text())

@@ -31,7 +31,14 @@ def film(n: int = 4) -> list[Frame]:
         truth = None if k == 2 else tuple(TrueObject(s, 10.0 * k, "disc") for s in SHAPES[: k + 1])
         frames.append(
             Frame(
-                image, k, None if k == 1 else 0.5 * k, truth, 7.0 + k, k == 3, "left" if k else ""
+                image,
+                k,
+                None if k == 1 else 0.5 * k,
+                truth,
+                7.0 + k,
+                k == 3,
+                "left" if k else "",
+                k == 2,
             )
         )
     return frames
@@ -56,7 +63,7 @@ def test_frames_come_back_with_everything_they_had(tmp_path: Path) -> None:
         np.testing.assert_array_equal(got.image.filled(-1.0), put.image.filled(-1.0))
         for name in ("pitch_cm", "origin_cm", "quantity"):
             assert getattr(got.image, name) == getattr(put.image, name)
-        for name in ("index", "time_s", "device_time_s", "gap", "label"):
+        for name in ("index", "time_s", "device_time_s", "gap", "label", "doubtful"):
             assert getattr(got, name) == getattr(put, name)
         assert (got.truth is None) == (put.truth is None)
         assert all(map(same, got.truth or (), put.truth or ()))

@@ -1,0 +1,195 @@
+"""Attack commands with signals at any moment, and with streams that are closed.
+
+    python benchmarks/attacks/signals.py                  # 60 tries, two minutes
+    python benchmarks/attacks/signals.py --tries 2000     # an hour
+
+Each try runs a command that writes, sends it SIGINT, SIGTERM, SIGHUP or SIGKILL at a moment drawn
+at random, and looks at what is left: lines must be whole, files whole or not there, stores open;
+the exit code must be 128 and the signal's number and no traceback may be shown. At first each
+command is run with standard input, output or error closed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tactile_graph_sources.store import read_store
+
+SOURCE = ("--source", "simulate", "--with", "scene=discs")
+COMMANDS: dict[str, tuple[str, ...]] = {
+    "run jsonl": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.jsonl"),
+    "run csv": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.csv"),
+    "compare": ("compare", "circle-1", "circle-2", *SOURCE, "--frames", "30", "--json", "out.json",
+                "--report", "out.html"),
+    "audit": ("audit", "circle-3", *SOURCE, "--frames", "30", "--json", "out.json"),
+    "convert npz": ("convert", "out.npz", *SOURCE, "--with", "frames=100"),
+    "convert zarr": ("convert", "out.zarr", *SOURCE, "--with", "frames=100"),
+    "record": ("record", "out.zarr", *SOURCE, "--with", "frames=100", "--chunk", "8"),
+}  # fmt: skip
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGKILL")
+LONGEST_S = 600.0
+
+
+def started(words: Sequence[str], folder: Path, shell: str = "") -> subprocess.Popen[bytes]:
+    """Return a command that runs in a folder; ``shell`` may close its streams."""
+    env = {**os.environ, "TACTILE_GRAPH_KERNELS": "plain"}
+    command = [sys.executable, "-m", "tactile_graph", *words]
+    if shell:
+        command = ["sh", "-c", f'exec "$@" {shell}', "sh", *command]
+    return subprocess.Popen(
+        command, cwd=folder, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+# -- what is left ------------------------------------------------------------------------------
+
+
+def _lines(path: Path) -> str:
+    text = path.read_text()
+    if text and not text.endswith("\n"):
+        return "the last line is cut"
+    for line in text.splitlines() if path.suffix == ".jsonl" else ():
+        json.loads(line)
+    return ""
+
+
+def _json(path: Path) -> str:
+    json.loads(path.read_text())
+    return ""
+
+
+def _page(path: Path) -> str:
+    return "" if path.read_text().rstrip().endswith("</html>") else "the page is cut"
+
+
+def _archive(path: Path) -> str:
+    with np.load(path) as data:
+        return "" if len(data["values"]) == 100 else "frames are missing"
+
+
+def _store(path: Path) -> str:
+    index = [f.index for f in read_store(path)]
+    return "" if index == list(range(len(index))) else f"frames {index}"
+
+
+LOOKS: dict[str, Callable[[Path], str]] = {
+    ".jsonl": _lines, ".csv": _lines, ".json": _json, ".html": _page, ".npz": _archive,
+    ".zarr": _store,
+}  # fmt: skip
+
+
+def left_in(folder: Path, killed: bool) -> str:
+    """Return what is wrong with the files a command left; "" if nothing is."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith("."):
+            if path.suffix == ".part" and not killed:
+                return f"{path.name} is left behind"
+            continue
+        try:
+            why = LOOKS[path.suffix](path)
+        except Exception as error:
+            why = repr(error)
+        if why:
+            return f"{path.name}: {why}"
+    return ""
+
+
+# -- tries -------------------------------------------------------------------------------------
+
+
+def once(name: str, number: signal.Signals, after_s: float, folder: Path) -> str:
+    """Return what is wrong after a command got a signal; "" if nothing is."""
+    running = started(COMMANDS[name], folder)
+    time.sleep(after_s)
+    running.send_signal(number)
+    try:
+        _, said = running.communicate(timeout=LONGEST_S)
+    except subprocess.TimeoutExpired:
+        running.kill()
+        running.communicate()
+        return "does not end"
+    # Until its handlers are set, which is in its first tenths of a second, a signal kills it.
+    if running.returncode not in (0, 128 + number, -number):
+        return f"exit code {running.returncode}: {said[-300:].decode(errors='replace')}"
+    if b"Traceback" in said and running.returncode != -number:
+        return f"traceback: {said[-300:].decode(errors='replace')}"
+    return left_in(folder, number == signal.SIGKILL or running.returncode == -number)
+
+
+def closed(name: str, stream: str, folder: Path) -> str:
+    """Return what is wrong with a command that runs with a stream closed."""
+    running = started(COMMANDS[name], folder, stream)
+    _, said = running.communicate(timeout=LONGEST_S)
+    if b"Traceback" in said or b"Error:" in said:
+        return f"traceback: {said[-300:].decode(errors='replace')}"
+    if stream == ">&-":
+        told = running.returncode == 2 and b"standard output is closed" in said
+        return "" if told else f"exit code {running.returncode}: {said[-300:]!r}"
+    if running.returncode:
+        return f"exit code {running.returncode}: {said[-300:].decode(errors='replace')}"
+    return left_in(folder, killed=False)
+
+
+def attack(n_tries: int, seed: int) -> Iterator[tuple[str, str, str]]:
+    """Yield command, what was done to it, and what is wrong, if anything is."""
+    rng = random.Random(seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        lasts: dict[str, float] = {}
+        for command in COMMANDS:
+            begun = time.monotonic()
+            yield command, "nothing", closed(command, "", _emptied(folder))
+            lasts[command] = time.monotonic() - begun
+        for command in COMMANDS:
+            for stream in ("<&-", ">&-", "2>&-"):
+                yield command, stream, closed(command, stream, _emptied(folder))
+        for _ in range(n_tries):
+            command, number = rng.choice(list(COMMANDS)), signal.Signals[rng.choice(SIGNALS)]
+            after_s = rng.random() * lasts[command]
+            why = once(command, number, after_s, _emptied(folder))
+            yield command, number.name, f"after {after_s:.2f} s: {why}" if why else ""
+
+
+def _emptied(folder: Path) -> Path:
+    shutil.rmtree(folder)
+    folder.mkdir()
+    return folder
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Attack, and return 1 if anything went wrong."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tries", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args(arguments)
+    begun, failed = time.monotonic(), 0
+    tries: Counter[tuple[str, str]] = Counter()
+    for command, what, why in attack(args.tries, args.seed):
+        tries[command, what] += 1
+        if why:
+            failed += 1
+            print(f"{command}: {what}: {why}", flush=True)
+    for (command, what), n in sorted(tries.items()):
+        print(f"{command:14} {what:8} {n:5}")
+    n = sum(tries.values())
+    seconds = time.monotonic() - begun
+    print(f"{failed} failures in {n} tries; {seconds:.0f} s; {json.dumps(vars(args))}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

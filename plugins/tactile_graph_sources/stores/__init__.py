@@ -1,0 +1,1 @@
+"""Recordings as Zarr stores: what lies in them, what vouches for it, what is mended."""

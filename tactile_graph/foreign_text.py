@@ -1,0 +1,58 @@
+"""Text from names and files, made safe to show, and to open as a spreadsheet."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable
+from html import escape
+from typing import Any
+
+_HIDDEN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f"  # control characters, ESC among them, but tab and new line
+    "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # what turns the direction of the text around it
+    "\u2028\u2029\ufeff\ufff9-\ufffb\ud800-\udfff\ufffe\uffff\U000e0000-\U000e007f]"
+)
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def visible(text: str) -> str:
+    r"""Return a text in which characters that are not seen, but act, stand as ``\u001b``.
+
+    A terminal obeys them, and what shows text turns it round by them. JSON stays what it is: this
+    is how it spells them.
+    """
+    return _HIDDEN.sub(_spelled, text)
+
+
+def _spelled(found: re.Match[str]) -> str:
+    units = found[0].encode("utf-16-be", "surrogatepass").hex()
+    return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4))
+
+
+def html_text(text: str) -> str:
+    """Return a text as it may stand in an element of HTML, or in a quoted attribute."""
+    return escape(visible(text))
+
+
+def csv_line(cells: Iterable[Any]) -> str:
+    """Return a line of CSV; a text that a spreadsheet would run as a formula gets a ``'`` first."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerow(
+        _unharmed(c) if isinstance(c, str) else c for c in cells
+    )
+    return text.getvalue()
+
+
+def _unharmed(cell: str) -> str:
+    formula = cell.lstrip(" ").startswith(_FORMULA) and not _is_number(cell)
+    return visible(f"'{cell}" if formula else cell)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

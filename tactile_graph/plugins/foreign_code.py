@@ -1,0 +1,92 @@
+"""Run a plugin's code while it is imported: it prints nowhere, ends nothing, and hangs by name."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+from types import FrameType
+from typing import Any
+
+SLOW_S = 5.0
+"""How long an import may take until it is told who takes so long."""
+
+
+class Broken(Exception):  # noqa: N818 -- what became of the plugin
+    """Whatever a plugin's code raised, KeyboardInterrupt and SystemExit too; it is the cause."""
+
+    @property
+    def error(self) -> BaseException:
+        """What was raised."""
+        assert self.__cause__ is not None
+        return self.__cause__
+
+
+@contextmanager
+def foreign_code(name: str, label: str) -> Iterator[None]:
+    """Run a plugin's code; what it prints goes to stderr: lines for programs own stdout.
+
+    Parameters
+    ----------
+    name, label : str
+        The plugin, as ``--plugins`` takes it and as errors name it.
+
+    Raises
+    ------
+    Broken
+        Whatever was raised in it, unless it was Ctrl-C or another signal.
+    """
+    told = threading.Timer(SLOW_S, _tell, (name, label))
+    told.daemon = True
+    with _Signals() as signals:
+        told.start()
+        try:
+            with redirect_stdout(sys.stderr):
+                yield
+        except BaseException as error:
+            if signals.came is None:
+                raise Broken from error
+            raise signals.came from None  # what was imported may have made another error of it
+        finally:
+            told.cancel()
+
+
+def _tell(name: str, label: str) -> None:
+    from tactile_graph.foreign_text import visible
+
+    text = f"{label} is still being imported after {SLOW_S:g} s; --plugins=-{name} does without it"
+    sys.stderr.write(visible(text) + "\n")
+    sys.stderr.flush()
+
+
+class _Signals:
+    """Tells a KeyboardInterrupt that a signal brought from one that a plugin raises itself."""
+
+    def __init__(self) -> None:
+        self.came: BaseException | None = None
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> _Signals:
+        if threading.current_thread() is threading.main_thread():
+            for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+                number = getattr(signal, name, None)  # the last is not on Windows
+                before = None if number is None else signal.getsignal(number)
+                if number is not None and callable(before):
+                    self._before[number] = before
+                    signal.signal(number, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            # A plugin may have set a handler of its own meanwhile: that one stays.
+            if signal.getsignal(number) == self._note:
+                signal.signal(number, before)
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        try:
+            self._before[number](number, frame)
+        except BaseException as error:
+            self.came = error
+            raise
