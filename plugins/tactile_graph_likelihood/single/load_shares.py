@@ -1,7 +1,7 @@
 """What share of a fully covered element's load an outline brings to each element of a window.
 
 Its coverage, weighed by how the pressure varies, which leans to a side and falls or rises to the
-rim, and blurred as by foam; to a power, where readings are one of the load.
+rim, and blurred as by foam.
 
 With r the distance from the centre over that of the outline in the same direction, a place bears
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
@@ -30,7 +30,6 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse
 from tactile_graph_likelihood.single.element_terms import (
-    CONTRAST,
     FALL,
     FOAM,
     LEAN_X,
@@ -52,6 +51,12 @@ def is_even(noise: Values) -> bool:
     """Return whether the pressure is the same everywhere."""
     even: bool = noise[FALL] == 0.0 and noise[LEAN_X] == 0.0 and noise[LEAN_Y] == 0.0
     return even
+
+
+@compiled_as_is
+def is_plain(noise: Values) -> bool:
+    """Return whether shares are coverage and nothing else."""
+    return is_even(noise) and noise[FOAM] <= 0.0
 
 
 @compiled_as_is
@@ -224,7 +229,7 @@ def shares_of(
     kind, corners, p, grid, box
         As in `covered.covered`.
     noise : ndarray, shape (9,)
-        As in `element_terms`; its foam, fall, lean and contrast.
+        As in `element_terms`; its foam, fall and lean.
     rows, columns : int
         Of the whole image.
     """
@@ -233,9 +238,4 @@ def shares_of(
         press(kind, corners, p, grid, noise, box, shares)
     if noise[FOAM] > 0.0:
         shares = blurred(shares, noise[FOAM], box, rows, columns)
-    if noise[CONTRAST] != 1.0:
-        for i in range(shares.shape[0]):
-            for j in range(shares.shape[1]):
-                if 0.0 < shares[i, j] != 1.0:
-                    shares[i, j] = math.exp(noise[CONTRAST] * math.log(shares[i, j]))
     return shares
