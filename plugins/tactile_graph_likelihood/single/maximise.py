@@ -19,9 +19,10 @@ from tactile_graph_likelihood.single.log_posterior import log_rest
 from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
 
 ROUNDS, HALVINGS = 25, 6
-TIED, DISC_TIED = 2.0, 6.0
-"""Information, per squared pitch, that every length has: an edge in a gap, or a disc within an
-element, slides freely, but no farther."""
+TIED, HELD = 0.01, 6.0
+"""Information, per squared pitch, that every length has. Readings may leave one free: an edge in a
+gap, or a disc within an element, slides freely; a disc, and on a large pad any outline, is held to
+where it lies, since few of the points to be sampled would come near it."""
 
 ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second search end
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the first search
@@ -75,7 +76,7 @@ def maximise(
         loose[TURN] = p[turn]
     keep_current(problem, whole, p)
     now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
-    tied = DISC_TIED if kind == DISC else TIED
+    tied = HELD if kind == DISC or whole is not None else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
         keep_current(problem, whole, p)
