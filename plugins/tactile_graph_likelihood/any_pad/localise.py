@@ -130,9 +130,7 @@ class AnyPad:
         if even.unsure:
             even = model.likeliest(readings, before=even)
         if even.mode.height == -math.inf:
-            raise Degenerate(
-                f"{readings.touched} touched elements: no such outline on the pad explains them"
-            )
+            raise self.told.impossible(readings)
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
         if strays > MANY * self.told.noise.strays and not large:
@@ -206,15 +204,14 @@ class AnyPad:
         scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
         noise = learned(self.told.noise, scatter, readings.touched, strays)
+        loose = looseness(readings)
         if part == EVEN and not large:
-            model = self._with(noise, "contrast")
             begin = np.append(point[: self._count], noise.contrast)
-            mode = self._search(noise, "contrast").likeliest_near(readings, begin).mode
-        else:
-            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
-            p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
-            mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
-        return model.posterior_around(readings, loosened(mode, readings))
+            return self._with(noise, "contrast").posterior_near(readings, begin, loose)
+        model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+        p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
+        mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
+        return model.posterior_around(readings, mode, loose)
 
 
 def asked_by(fit: GoodnessOfFit) -> list[str]:
@@ -240,14 +237,7 @@ def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
 
 
-def loosened(mode: Mode, readings: Readings) -> Mode:
-    """Return a mode whose outline is less certain where few elements are touched."""
-    few = 1.0 - readings.touched / FEW
-    if few <= 0.0:
-        return mode
-    spread = np.linalg.inv(mode.root)
-    covariance = spread.T @ spread
-    for k in range(3):
-        covariance[k, k] += few * (LOOSE * readings.grid[2]) ** 2
-    root = np.asarray(np.linalg.cholesky(np.linalg.inv(covariance)), np.float64)
-    return mode._replace(root=root)
+def looseness(readings: Readings) -> float:
+    """Return the variance in cm^2 by which an outline is less certain where few are touched."""
+    few = max(1.0 - readings.touched / FEW, 0.0)
+    return few * (LOOSE * float(readings.grid[2])) ** 2

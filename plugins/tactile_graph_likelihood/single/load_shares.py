@@ -38,6 +38,7 @@ from tactile_graph_likelihood.single.element_terms import (
 )
 
 FOAM_REACH = 3.5  # widths of the blur
+FAINT = 1e-5  # share that foam passes on below which an element is as good as bare
 LEAST_FALL, MOST_FALL = -0.7, 3.0
 NARROW = 0.5
 """Of 1 - r**2 over an element, over its mean: less is integrated by its series."""
@@ -187,7 +188,12 @@ def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> 
         far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
         weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
     turned = _blurred_down(shares, weights, box[0], rows)
-    return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+    found = _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+    for i in range(found.shape[0]):
+        for j in range(found.shape[1]):
+            if found[i, j] < FAINT:
+                found[i, j] = 0.0
+    return found
 
 
 @compiled_as_is

@@ -39,8 +39,8 @@ from tactile_graph_likelihood.single.importance import (
     weighted_moments,
 )
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
-from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.problem import Problem, with_prior
+from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
+from tactile_graph_likelihood.single.problem import Problem, over_the_edge, with_prior
 
 SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
@@ -292,7 +292,7 @@ def importance_sample(
 @compiled_as_is
 def sample_around(
     problem: Problem, whole: CoveredWhole | None, table: Values, block: int, worth: float,
-    p: Values, root: Values, height: float,
+    loose: float, p: Values, root: Values, height: float,
 ) -> Sample:  # fmt: skip
     """Return the posterior around a mode.
 
@@ -302,9 +302,14 @@ def sample_around(
         As in `evaluate.log_likelihood_at`.
     table, block, worth
         Of the `Plan`: handing over more than one record costs 15 us.
+    loose : float
+        Variance in cm^2 that is added to each length where it is first looked for.
     p, root, height
-        Of the `Mode`, a possible one.
+        Of the `Mode`. A height of -inf is that of a point near the top, which is looked for as if
+        there were no more pad beyond its edge than before it; ``p`` and ``root`` are written.
     """
+    if height == -math.inf:
+        height = maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
     plan, mode = Plan(table, block, worth), Mode(p, root, height)
     kind, n, count = problem.kind, mode.p.shape[0], plan.table.shape[0]
     prior = problem.prior.copy()
@@ -315,6 +320,8 @@ def sample_around(
         np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
     )
     covariance = inverted(mode.root)
+    for k in range(2 + sizes(kind)):
+        covariance[k, k] += loose
     widen_to_other_ends(near, whole, mode, covariance)
     used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, draws)
     fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
