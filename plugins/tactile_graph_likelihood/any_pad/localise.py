@@ -18,6 +18,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
 )
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     FIRST,
@@ -29,7 +30,7 @@ from tactile_graph_likelihood.single.any_pressure import (
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import Likeliest, Model, Start
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
@@ -79,6 +80,15 @@ class AnyPad:
     """
 
     told: Model
+
+    @classmethod
+    def of(cls, settings: FootprintSettings, kind: int) -> AnyPad:
+        """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
+        told, untold = settings.model(kind), Noise()
+        if told.noise.sigma < LEAST_SIGMA:
+            noise = replace(told.noise, sigma=untold.sigma, voids=told.noise.voids or untold.voids)
+            told = replace(told, noise=noise)
+        return cls(told)
 
     @cached_property
     def _fits(self) -> dict[str, Model]:
