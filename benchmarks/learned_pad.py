@@ -142,7 +142,7 @@ def people(tuning: Path, others: Path) -> None:
 # -- simulated pads --------------------------------------------------------------------------
 
 N_DISCS = 120
-LOCALISERS = ("circle-3", "circle-by-order", "circle-likelihood")
+LOCALISERS = ("circle-3", "circle-by-order", "circle-likelihood", "locate-circle")
 LEARNED_KINDS: dict[str, Kind] = {
     "noise 0.2 mV": KINDS["noise 0.2 mV"],
     "noise 3 mV": KINDS["noise 3 mV"],
@@ -197,6 +197,8 @@ def fitted(name: str, volts: str, pad: str) -> dict[str, Node]:
     pad : str
         What the likelihood takes for the pad; evened by it where it was learned.
     """
+    if name == "locate-circle":
+        return {"circle": step("locate_disc", "frame", pad=pad)}
     if name == "circle-3":
         return {
             "fine": step("subdivide", "footprint", factor=2),

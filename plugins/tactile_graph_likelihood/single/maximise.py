@@ -10,7 +10,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
 from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, period, sizes
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
 from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.evaluate import information_at, log_likelihood_at
@@ -19,10 +19,10 @@ from tactile_graph_likelihood.single.log_posterior import log_rest
 from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
 
 ROUNDS, HALVINGS = 25, 6
-TIED, HELD = 0.01, 6.0
+TIED, SLIDING, HELD = 0.01, 2.0, 6.0
 """Information, per squared pitch, that every length has. Readings may leave one free: an edge in a
-gap, or a disc within an element, slides freely; a disc, and on a large pad any outline, is held to
-where it lies, since few of the points to be sampled would come near it."""
+gap, or a disc within an element, slides freely. Where slopes are exact nothing else says how far,
+and on a large pad few of the points to be sampled would come near."""
 
 ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second search end
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the first search
@@ -76,7 +76,7 @@ def maximise(
         loose[TURN] = p[turn]
     keep_current(problem, whole, p)
     now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
-    tied = HELD if kind == DISC or whole is not None else TIED
+    tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
         keep_current(problem, whole, p)
