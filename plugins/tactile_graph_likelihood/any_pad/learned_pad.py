@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,14 @@ from tactile_graph_pads.learning.place import PlaceCorrection, read_place
 from tactile_graph_pads.pad import Pad
 
 Found = TypeVar("Found", bound=Posterior)
+
+
+LAWFUL = ("volt", "siemens", "gram")
+"""Quantities of readings with a law: by it an outline is placed better than by a correction, which
+was learned for the centroids of contacts."""
+
+LEAST_UNEVEN = 0.3
+"""Of a told unevenness, what is left of it at least once elements are evened."""
 
 
 class Taught(NamedTuple):
@@ -68,13 +77,29 @@ def taught(pad: Pad, image: Image) -> Taught | None:
 
 def _of_elements(learned: Learned, table: Elements, quantity: str) -> Taught:
     as_recorded, stuck = quantity == learned.reading, table.state == "stuck"
-    law = quantity in ("volt", "siemens", "gram")
-    gain = table.gain if learned.gain_of == ("gram" if law else quantity) else 1.0
+    load = "gram" if quantity in LAWFUL else quantity
+    gain = table.gain if learned.gain_of == load else 1.0
     if not as_recorded:
         return Taught(0.0, gain, None, 0.0, table.good, stuck)
     noise = np.hypot(table.noise, learned.drift)
     offset = np.where(stuck, 0.0, table.offset)
     return Taught(offset, gain, noise, learned.touched_from, table.good, stuck)
+
+
+def unevenness_left(pad: Pad, sigma: float) -> float:
+    """Return what is left of a pad's unevenness once its learned gains are divided by.
+
+    Parameters
+    ----------
+    pad : Pad
+    sigma : float
+        Standard deviation of the logarithm of an element's gain, as told.
+    """
+    learned = pad.learned
+    if learned is None or learned.gain_of is None:
+        return sigma
+    variance = float(np.var(np.log(learned.table.gain[learned.table.good])))
+    return max(math.sqrt(max(sigma * sigma - variance, 0.0)), LEAST_UNEVEN * sigma)
 
 
 class Placing:
@@ -83,7 +108,8 @@ class Placing:
     Parameters
     ----------
     pad : Pad
-        Of one that has learned no correction of place, posteriors stay as they are.
+        Of one that has learned no correction of place, or whose readings have a law, posteriors
+        stay as they are.
 
     Raises
     ------
@@ -93,7 +119,7 @@ class Placing:
 
     def __init__(self, pad: Pad) -> None:
         self._pad, self._place = pad, None
-        if pad.learned is not None and pad.learned.place:
+        if pad.learned is not None and pad.learned.place and pad.learned.reading not in LAWFUL:
             self._place = read_place(Path(pad.learned.place))
 
     def __call__(self, image: Image, found: Sequence[Found]) -> list[Found]:

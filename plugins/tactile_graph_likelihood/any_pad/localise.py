@@ -16,6 +16,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
@@ -85,10 +86,12 @@ class AnyPad:
     def of(cls, settings: FootprintSettings, kind: int) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
-        if told.noise.sigma < LEAST_SIGMA:
-            noise = replace(told.noise, sigma=untold.sigma, voids=told.noise.voids or untold.voids)
-            told = replace(told, noise=noise)
-        return cls(told)
+        sigma, voids = told.noise.sigma, told.noise.voids
+        if sigma < LEAST_SIGMA:
+            sigma, voids = untold.sigma, voids or untold.voids
+        elif settings.sigma is None:
+            sigma = unevenness_left(settings.known_pad, sigma)
+        return cls(replace(told, noise=replace(told.noise, sigma=sigma, voids=voids)))
 
     @cached_property
     def _fits(self) -> dict[str, Model]:

@@ -12,7 +12,7 @@ import yaml
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.choose import Locate
-from tactile_graph_likelihood.any_pad.learned_pad import Placing, at, taught
+from tactile_graph_likelihood.any_pad.learned_pad import Placing, at, taught, unevenness_left
 from tactile_graph_likelihood.any_pad.locate import QUICK, LocateDisc
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
@@ -103,8 +103,8 @@ def test_a_learned_pad_takes_away_what_offsets_and_stuck_elements_spoil(pad, ben
     assert centre_off(told, frames) < 0.6 * centre_off(step(**named), frames)
 
 
-@pytest.mark.usefixtures("warm_kernels")
-def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path, bench):
+def placed(folder, bench):
+    """Write a correction of half a cell to the right and a quarter up."""
     kind = PatchKind(reach=1)
     n = N_PLACE + kind.size
     weights = np.zeros((n, 2))
@@ -112,16 +112,44 @@ def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path
     place = PlaceCorrection(
         kind, (16, 16), np.zeros(kind.size), 1.0, weights, np.zeros((n, n)), np.array([0.1, 0.2])
     )
-    write_place(tmp_path / "place.npz", place)
-    plain = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench)))
-    moved = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, place="place.npz")))
-    image = next(bench.frames(1)).image
+    write_place(folder / "place.npz", place)
+
+
+@pytest.mark.usefixtures("warm_kernels")
+def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path, bench):
+    placed(tmp_path, bench)
+    plain = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, reading="raw")))
+    more = {"reading": "raw", "place": "place.npz"}
+    moved = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, **more)))
+    volts = next(bench.frames(1)).image
+    image = Image(volts.values, volts.pitch_cm, volts.origin_cm, "raw")
     before, after = plain(image), moved(image)
     assert after.x_cm - before.x_cm == pytest.approx(0.5 * 1.3)
     assert after.y_cm - before.y_cm == pytest.approx(-0.25 * 1.3)
     assert after.radius_cm == before.radius_cm
     assert after.posterior.std(0) == pytest.approx(0.13)
     assert after.posterior.std(1) == pytest.approx(0.26)
+
+
+@pytest.mark.usefixtures("warm_kernels")
+def test_where_readings_have_a_law_it_places_better_than_a_correction_does(tmp_path, bench):
+    placed(tmp_path, bench)
+    plain = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench)))
+    corrected = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, place="place.npz")))
+    image = next(bench.frames(1)).image
+    assert corrected(image).x_cm == plain(image).x_cm
+
+
+def test_learned_gains_leave_less_unevenness(tmp_path, bench):
+    even = load_pad(written(tmp_path, bench))
+    assert unevenness_left(even, 0.5) == 0.5
+    evened = load_pad(written(tmp_path, bench, gain_of="gram"))
+    logs = np.random.default_rng(1).normal(0.0, 0.4, bench.zero_v.shape)
+    table = evened.learned.table._replace(gain=np.exp(logs))
+    object.__setattr__(evened.learned, "table", table)
+    left = math.sqrt(0.25 - np.var(logs[~bench.stuck]))
+    assert unevenness_left(evened, 0.5) == pytest.approx(left)
+    assert unevenness_left(evened, 0.3) == pytest.approx(0.09)
 
 
 @pytest.mark.usefixtures("warm_kernels")
