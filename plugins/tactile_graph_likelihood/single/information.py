@@ -32,7 +32,7 @@ from tactile_graph_likelihood.single.problem import Problem
 STEP = 0.02  # of a pitch: over which coverage is differenced
 FOAM_STEP = 0.005
 PRESSURE_STEP = 0.01
-SLIVER = 0.1  # covered less, an element's slope is no guide to how far the outline may go
+SLIVER = 0.1  # read less, an element's slope is no guide to how far the outline may go
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
 
 
@@ -242,6 +242,7 @@ def information(problem: Problem, p: Values, out: Information) -> None:
     scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(n)
     row, column, load, own = box[0], box[1], p[first], noise[LEAST]
     power, by_power = noise[CONTRAST], -1
+    sliver = SLIVER ** (1.0 / power)
     for k in range(problem.estimated.shape[0]):
         if problem.estimated[k] == CONTRAST:
             by_power = first + 1 + k
@@ -254,7 +255,7 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             log = own if state == OFF else logs[row + i, column + j]
             score = score_of(state, log, load + power * log_share, scatter)
             for k in range(n):
-                along[k] = power * rise[k, i, j] / (max(its, SLIVER) if k < first else its)
+                along[k] = power * rise[k, i, j] / (max(its, sliver) if k < first else its)
                 moves = moves or along[k] != 0.0
             if moves:
                 if by_power >= 0:
