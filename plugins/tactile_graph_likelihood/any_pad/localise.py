@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
+    LAW,
     learned,
     scatter_of_covered,
     strays_beyond,
@@ -70,6 +71,8 @@ class AnyPad:
     ----------
     told : Model
         An outline on the pad as told: the middle of every guess.
+    law : float
+        As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
 
     Notes
     -----
@@ -81,6 +84,7 @@ class AnyPad:
     """
 
     told: Model
+    law: float = LAW
 
     @classmethod
     def of(cls, settings: FootprintSettings, kind: int) -> AnyPad:
@@ -91,7 +95,9 @@ class AnyPad:
             sigma, voids = untold.sigma, voids or untold.voids
         elif settings.sigma is None:
             sigma = unevenness_left(settings.known_pad, sigma)
-        return cls(replace(told, noise=replace(told.noise, sigma=sigma, voids=voids)))
+        evened = sigma < told.noise.sigma
+        noise = replace(told.noise, sigma=sigma, voids=voids)
+        return cls(replace(told, noise=noise), 0.0 if evened else LAW)
 
     @cached_property
     def _fits(self) -> dict[str, Model]:
@@ -147,7 +153,8 @@ class AnyPad:
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
         if strays > MANY * self.told.noise.strays and not large:
-            its = AnyPad(replace(self.told, noise=replace(self.told.noise, strays=strays)))
+            noise = replace(self.told.noise, strays=strays)
+            its = replace(self, told=replace(self.told, noise=noise))
             even = its._fits[EVEN].likeliest_near(readings, point)
             even = its._fits[EVEN].likeliest(readings, before=even)
         found = {EVEN: even}
@@ -216,7 +223,7 @@ class AnyPad:
         large = readings.states.size > LARGE_PAD
         scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, scatter, readings.touched, strays)
+        noise = learned(self.told.noise, scatter, readings.touched, strays, self.law)
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
