@@ -61,42 +61,56 @@ nodes:
   touched: {{step: threshold_learned, in: readings, with: {{pad: {pad}}}}}
   contacts: {{step: contacts, in: [readings, touched]}}
   placed: {{step: correct_place, in: [readings, contacts.contacts], with: {{pad: {pad}}}}}
-outputs: [contacts, placed]
+  located: {{step: locate_contacts, in: [frame, contacts.contacts],
+             with: {{pad: {told}, shapes: [disc]}}}}
+outputs: [contacts, placed, located]
 """
 
 
 class Told(NamedTuple):
-    """Errors in cells before and after the correction, and the deviations stated; (n, 2) each."""
+    """Errors in cells, and the deviations stated of them where any are; (n, 2) each."""
 
     session: list[str]
-    before: Values
-    after: Values
+    off: Values
     stated: Values
 
 
-def told(pad: Path, paths: Sequence[Path]) -> Told:
-    """Return what a learned pad makes of recordings; say how often the count is right."""
-    run = loads(PLACED.format(pad=pad)).with_source("recording", path=str(paths[0])).runner()
-    rows: list[tuple[str, Values, Values, Values]] = []
-    right = n_true = 0
+def nearest(frame: Frame, contacts: Sequence[Any]) -> Iterator[tuple[Values, Values]]:
+    """Yield each contact's error and stated deviation in cells, if a true one is near."""
+    true = np.array([(t.shape.x_cm, t.shape.y_cm) for t in frame.truth or ()])
+    pitch = np.array(frame.image.pitch_cm)
+    for its in contacts:
+        off = np.array([its.x_cm, its.y_cm]) - true
+        k = int(np.hypot(*off.T).argmin())
+        if np.hypot(*off[k]) <= GATE_CM:
+            posterior = getattr(its, "posterior", None)
+            x = posterior.std(0) if posterior else getattr(its, "x_std_cm", math.nan)
+            y = posterior.std(1) if posterior else getattr(its, "y_std_cm", math.nan)
+            yield off[k] / pitch, np.array([x, y]) / pitch
+
+
+def told(pad: Path, paths: Sequence[Path], known: Path | str) -> dict[str, Told]:
+    """Return what comes of recordings, with `locate_contacts` told the pad ``known``."""
+    text = PLACED.format(pad=pad, told=known)
+    run = loads(text).with_source("recording", path=str(paths[0])).runner()
+    rows: dict[str, list[tuple[str, Values, Values]]] = {}
     for path in paths:
         for frame in recording(path=path, report=Report()):
             result = run(frame)
-            plain, placed = result["contacts"].contacts, result["placed"].contacts
-            true = np.array([(t.shape.x_cm, t.shape.y_cm) for t in frame.truth or ()])
-            right += len(true) == len(plain)
-            n_true += len(true)
-            pitch = np.array(frame.image.pitch_cm)
-            for at, now in zip(plain, placed, strict=True):
-                off = np.array([at.x_cm, at.y_cm]) - true
-                k = int(np.hypot(*off.T).argmin())
-                if np.hypot(*off[k]) <= GATE_CM:
-                    after = np.array([now.x_cm, now.y_cm]) - true[k]
-                    std = np.array([now.x_std_cm, now.y_std_cm])
-                    rows.append((path.stem[:5], off[k] / pitch, after / pitch, std / pitch))
-    print(f"{len(paths)} recordings, {n_true} contacts, {len(rows)} found; count right in {right}")
-    session, before, after, stated = zip(*rows, strict=True)
-    return Told(list(session), np.array(before), np.array(after), np.array(stated))
+            of = {
+                "plain centroid": result["contacts"].contacts,
+                "correct_place": result["placed"].contacts,
+                f"locate_contacts, pad {Path(known).stem}": result["located"].shapes,
+            }
+            for name, contacts in of.items():
+                found = [(path.stem[:5], *both) for both in nearest(frame, contacts)]
+                rows.setdefault(name, []).extend(found)
+    return {
+        name: Told(
+            [r[0] for r in its], np.array([r[1] for r in its]), np.array([r[2] for r in its])
+        )
+        for name, its in rows.items()
+    }
 
 
 def people(tuning: Path, others: Path) -> None:
@@ -106,28 +120,29 @@ def people(tuning: Path, others: Path) -> None:
         if not found:
             raise SystemExit(f"no CapContact recordings in {folder}")
     with tempfile.TemporaryDirectory() as folder:
-        pad = Path(folder) / "panel.yaml"
+        pad = Path(folder) / "learned.yaml"
         print(learn(*learned_from, "-o", pad))
-        seen = told(pad, paths)
-    print("\nerror in cells       median   mean  95 % within")
-    session = np.array(seen.session)
-    for name, off in (("plain centroid", seen.before), ("corrected", seen.after)):
-        d = np.hypot(*off.T)
-        print(f"{name:18s} {np.median(d):8.3f} {d.mean():6.3f} {np.quantile(d, 0.95):12.3f}")
+        seen = {**told(pad, paths, "thesis"), **told(pad, paths, pad)}
+    print(
+        "\nerror in cells               found  median   mean  95 % within  over stated  within 90 %"
+    )
+    for name, its in seen.items():
+        d, over = np.hypot(*its.off.T), its.off / its.stated
+        held = np.mean((over**2).sum(axis=1) < -2 * np.log(0.1))
+        stated = "" if np.isnan(over).all() else f"{np.sqrt((over**2).mean()):12.2f} {held:12.0%}"
+        print(
+            f"{name:28s} {len(d):5d} {np.median(d):7.3f} {d.mean():6.3f} "
+            f"{np.quantile(d, 0.95):12.3f} {stated}"
+        )
+        session = np.array(its.session)
         by = ", ".join(f"{s} {np.median(d[session == s]):.3f}" for s in np.unique(session))
         print(f"  median by person and session: {by}")
-    over = seen.after / seen.stated
-    d2 = (over**2).sum(axis=1)
-    print(
-        f"error over stated deviation, root mean square: {np.sqrt((over**2).mean()):.2f}; "
-        f"within the stated 90 % region: {np.mean(d2 < -2 * np.log(0.1)):.0%}"
-    )
 
 
 # -- simulated pads --------------------------------------------------------------------------
 
 N_DISCS = 120
-LOCALISERS = ("circle-3", "circle-by-order", "circle-likelihood")
+LOCALISERS = ("circle-3", "circle-by-order", "circle-likelihood", "locate-circle")
 LEARNED_KINDS: dict[str, Kind] = {
     "noise 0.2 mV": KINDS["noise 0.2 mV"],
     "noise 3 mV": KINDS["noise 3 mV"],
@@ -182,6 +197,8 @@ def fitted(name: str, volts: str, pad: str) -> dict[str, Node]:
     pad : str
         What the likelihood takes for the pad; evened by it where it was learned.
     """
+    if name == "locate-circle":
+        return {"circle": step("locate_disc", "frame", pad=pad)}
     if name == "circle-3":
         return {
             "fine": step("subdivide", "footprint", factor=2),

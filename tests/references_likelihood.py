@@ -8,6 +8,7 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     HIGH,
     LEAST,
     OFF,
@@ -55,13 +56,13 @@ def ranked(values: Values, rank: int) -> float:
 
 
 def terms(
-    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
+    shares: Values, load: float, row: int, column: int, logs: Values, states: States, noise: Values
 ) -> float:
     """Return the log likelihood of a window's readings over that of a bare pad."""
-    rows, columns = expected.shape
+    rows, columns = shares.shape
     here = np.s_[row : row + rows, column : column + columns]
-    touched = expected > 0.0
-    mu = np.log(np.where(touched, expected, 1.0))
+    touched = shares > 0.0
+    mu = load + noise[CONTRAST] * np.log(np.where(touched, shares, 1.0))
     sigma, voids, least = noise[SIGMA], noise[VOIDS], noise[LEAST]
     u = (logs[here] - mu) / sigma
     on = np.logaddexp(0.0, on_level.call(noise) - 0.5 * u * u)

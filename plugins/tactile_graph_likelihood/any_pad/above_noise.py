@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.thresholds.thresholded import Thresholded
-from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise, told_noise
+from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise
+from tactile_graph_likelihood.any_pad.learned_pad import Taught, taught
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.readings import LARGEST
 from tactile_graph_pads.pad import Pad, load_pad
@@ -22,13 +23,16 @@ SHOWS = 4.0
 class Risen(NamedTuple):
     """Readings above the frame's zero, 0 where no more than noise, and what is more, in its unit.
 
-    ``least`` is what a reading must exceed, of all elements or of each; ``shows`` where it does.
+    ``least`` is what a reading must exceed, of all elements or of each; ``shows`` where it does;
+    ``taught`` what recordings say of the elements, if they do. A stuck element keeps its reading,
+    which is none of a load.
     """
 
     above: Values
     least: float | Values
     shows: NDArray[np.bool_]
     zero: float
+    taught: Taught | None
 
 
 def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
@@ -39,7 +43,8 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     image : Image
         In any quantity that rises with load.
     pad : Pad
-        Whose noise is taken, where it was learned from recordings of this quantity.
+        Where it was learned from recordings of this quantity, its offsets are taken off, its noise
+        is taken, and its bad elements show nothing.
     deviations : float
         Standard deviations of noise that count as none.
 
@@ -51,16 +56,23 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     if not np.abs(values).max(initial=0.0) <= LARGEST:
         raise ValueError(f"readings must be finite and at most {LARGEST:g}")
-    readings = values.ravel() if image.valid is None else values[image.valid]
+    its, known = taught(pad, image), image.valid
+    if its is not None:
+        values = values - its.offset
+        known = its.good if known is None else its.good & known
+    readings = values.ravel() if known is None else values[known]
     noise = frame_noise(readings) if readings.size else FrameNoise(0.0, 0.0, 0.0)
-    told = told_noise(pad, image.quantity, values.shape)
-    sigma = noise.sigma if told is None else told
-    least = np.maximum(deviations * sigma, 0.5 * noise.step)
+    least: float | Values = max(deviations * noise.sigma, 0.5 * noise.step)
+    if its is not None and its.noise is not None:
+        least = np.maximum(deviations * its.noise, max(its.least, 0.5 * noise.step))
     above = values - noise.zero
     shows = above > least
+    kept = shows if its is None else shows & (its.good | its.stuck)
+    if known is not None:
+        shows &= known
     if image.valid is not None:
-        shows &= image.valid
-    return Risen(np.where(shows, above, 0.0), least, shows, noise.zero)
+        kept = kept & image.valid
+    return Risen(np.where(kept, above, 0.0), least, shows, noise.zero, its)
 
 
 class AboveNoise:
@@ -69,7 +81,8 @@ class AboveNoise:
     Parameters
     ----------
     pad : str or mapping
-        Name of a pad, its YAML file, or the pad itself: what noise it has learned is taken.
+        Name of a pad, its YAML file, or the pad itself: what offsets, noise and bad elements it
+        has learned are taken.
     deviations : float
         Standard deviations of noise that count as none.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from annotated_types import Len
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
 from tactile_graph_likelihood.any_pad.observed import observed
@@ -57,8 +58,9 @@ class Locate:
         settings: AnyPadSettings = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
+        self._placing = Placing(self._pad)
         self._every: dict[str, AnyPad] = {
-            name: AnyPad(settings.model(KINDS[name])) for name in dict.fromkeys(shapes)
+            name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)
         }
 
     def __call__(self, image: Image) -> Located:
@@ -76,7 +78,15 @@ class Locate:
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """
-        return self.chosen(self.readings(image))
+        return self.placed(image, [self.chosen(self.readings(image))])[0]
+
+    def placed(self, image: Image, found: Sequence[Located]) -> list[Located]:
+        """Return all objects of an image where a learned pad says that they lie."""
+        moved = self._placing(image, [its.shape.posterior for its in found])
+        return [
+            its._replace(shape=likely(posterior))
+            for its, posterior in zip(found, moved, strict=True)
+        ]
 
     def readings(self, image: Image) -> Readings:
         """Return what an image shows; errors as of a call."""

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_pads.pad import Pad
 
 UNTOUCHED = 0.25
 """Share of a frame that is taken to be untouched at least: its closest readings are the zero."""
@@ -31,33 +30,15 @@ class FrameNoise(NamedTuple):
     ----------
     zero : float
         What untouched elements read.
-    sigma : float or ndarray, shape (rows, columns)
+    sigma : float
         Standard deviation of a reading around it.
     step : float
         Least difference of two readings: a converter's step, next to nothing without one.
     """
 
     zero: float
-    sigma: float | Values
+    sigma: float
     step: float
-
-
-def told_noise(pad: Pad, quantity: str, shape: tuple[int, ...]) -> Values | None:
-    """Return each element's noise as recordings have taught it, if the pad was learned from such.
-
-    Parameters
-    ----------
-    pad : Pad
-        Its section ``learned`` is asked, if it has one.
-    quantity : str
-        Of the image; noise that was learned in another unit says nothing.
-    shape : (int, int)
-        Of the image.
-    """
-    learned = pad.learned
-    if learned is None or learned.reading != quantity or (learned.rows, learned.columns) != shape:
-        return None
-    return np.asarray(np.hypot(learned.table.noise, learned.drift))
 
 
 def frame_noise(readings: Values) -> FrameNoise:

@@ -41,7 +41,7 @@ LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
 """Correlation of neighbours below which it is none, and to which it is held."""
 
 
-def learned(told: Noise, scatter: Values, touched: int, strays: float) -> Noise:
+def learned(told: Noise, scatter: Values, touched: int, strays: float, law: float = LAW) -> Noise:
     """Return the noise that a fit has found.
 
     Parameters
@@ -52,6 +52,8 @@ def learned(told: Noise, scatter: Values, touched: int, strays: float) -> Noise:
     touched : int
         Readings that show.
     strays : float
+    law : float
+        Of ln sigma that is not as told, the share that is the law's exponent, not the gains'.
 
     Notes
     -----
@@ -60,7 +62,7 @@ def learned(told: Noise, scatter: Values, touched: int, strays: float) -> Noise:
     """
     sigma = math.exp(scatter[0]) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
     voids = 1.0 / (1.0 + math.exp(-scatter[1]))
-    contrast = 1.0 + LAW * math.log(sigma / told.sigma)
+    contrast = 1.0 + law * math.log(sigma / told.sigma)
     return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
 

@@ -11,13 +11,16 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
+    LAW,
     learned,
     scatter_of_covered,
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
+from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     FIRST,
@@ -29,7 +32,7 @@ from tactile_graph_likelihood.single.any_pressure import (
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import Likeliest, Model, Start
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
@@ -68,6 +71,8 @@ class AnyPad:
     ----------
     told : Model
         An outline on the pad as told: the middle of every guess.
+    law : float
+        As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
 
     Notes
     -----
@@ -79,6 +84,20 @@ class AnyPad:
     """
 
     told: Model
+    law: float = LAW
+
+    @classmethod
+    def of(cls, settings: FootprintSettings, kind: int) -> AnyPad:
+        """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
+        told, untold = settings.model(kind), Noise()
+        sigma, voids = told.noise.sigma, told.noise.voids
+        if sigma < LEAST_SIGMA:
+            sigma, voids = untold.sigma, voids or untold.voids
+        elif settings.sigma is None:
+            sigma = unevenness_left(settings.known_pad, sigma)
+        evened = sigma < told.noise.sigma
+        noise = replace(told.noise, sigma=sigma, voids=voids)
+        return cls(replace(told, noise=noise), 0.0 if evened else LAW)
 
     @cached_property
     def _fits(self) -> dict[str, Model]:
@@ -130,13 +149,12 @@ class AnyPad:
         if even.unsure:
             even = model.likeliest(readings, before=even)
         if even.mode.height == -math.inf:
-            raise Degenerate(
-                f"{readings.touched} touched elements: no such outline on the pad explains them"
-            )
+            raise self.told.impossible(readings)
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
         if strays > MANY * self.told.noise.strays and not large:
-            its = AnyPad(replace(self.told, noise=replace(self.told.noise, strays=strays)))
+            noise = replace(self.told.noise, strays=strays)
+            its = replace(self, told=replace(self.told, noise=noise))
             even = its._fits[EVEN].likeliest_near(readings, point)
             even = its._fits[EVEN].likeliest(readings, before=even)
         found = {EVEN: even}
@@ -205,16 +223,15 @@ class AnyPad:
         large = readings.states.size > LARGE_PAD
         scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, scatter, readings.touched, strays)
+        noise = learned(self.told.noise, scatter, readings.touched, strays, self.law)
+        loose = looseness(readings)
         if part == EVEN and not large:
-            model = self._with(noise, "contrast")
             begin = np.append(point[: self._count], noise.contrast)
-            mode = self._search(noise, "contrast").likeliest_near(readings, begin).mode
-        else:
-            model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
-            p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
-            mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
-        return model.posterior_around(readings, loosened(mode, readings))
+            return self._with(noise, "contrast").posterior_near(readings, begin, loose)
+        model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+        p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
+        mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
+        return model.posterior_around(readings, mode, loose)
 
 
 def asked_by(fit: GoodnessOfFit) -> list[str]:
@@ -240,14 +257,7 @@ def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
 
 
-def loosened(mode: Mode, readings: Readings) -> Mode:
-    """Return a mode whose outline is less certain where few elements are touched."""
-    few = 1.0 - readings.touched / FEW
-    if few <= 0.0:
-        return mode
-    spread = np.linalg.inv(mode.root)
-    covariance = spread.T @ spread
-    for k in range(3):
-        covariance[k, k] += few * (LOOSE * readings.grid[2]) ** 2
-    root = np.asarray(np.linalg.cholesky(np.linalg.inv(covariance)), np.float64)
-    return mode._replace(root=root)
+def looseness(readings: Readings) -> float:
+    """Return the variance in cm^2 by which an outline is less certain where few are touched."""
+    few = max(1.0 - readings.touched / FEW, 0.0)
+    return few * (LOOSE * float(readings.grid[2])) ** 2

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
+from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
@@ -44,14 +45,15 @@ class Located:
         settings: AnyPadSettings = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
-        self._any_pad = AnyPad(settings.model(self._kind))
+        self._any_pad = AnyPad.of(settings, self._kind)
+        self._placing = Placing(self._pad)
 
     def posterior(
         self, image: Image, start: Circle | Ellipse | Rectangle | None = None
     ) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        return self._any_pad.posterior(readings, start)
+        return self._placing(image, [self._any_pad.posterior(readings, start)])[0]
 
 
 class LocateDisc(Located):

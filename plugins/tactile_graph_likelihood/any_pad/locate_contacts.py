@@ -79,6 +79,7 @@ class LocateContacts:
                 found.append(self._locate.chosen(alone(readings, owner, k + 1)))
             except Degenerate:
                 continue
+        found = self._locate.placed(image, found)
         shapes, names = tuple(f.shape for f in found), tuple(f.name for f in found)
         return LocatedContacts(shapes, names, len(found))
 

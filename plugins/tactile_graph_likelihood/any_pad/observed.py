@@ -47,6 +47,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         turned into loads by its law; any other quantity is taken to rise with load from the
         frame's own zero. Invalid cells say nothing.
     pad : Pad
+        What it has learned of its elements from recordings is applied, see `taught`.
     gap_cm : float, optional
         Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
         where the image's pitch is not the pad's.
@@ -72,9 +73,12 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     if not gap_cm < across:
         raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
-    above, least, shows, _ = risen(image, pad)
+    above, least, shows, _, its = risen(image, pad)
     loads, least_loads, possible = _loads(image.quantity, above, least, pad)
     known = possible if image.valid is None else image.valid & possible
+    if its is not None:
+        known = known & its.good
+        loads, least_loads = loads / its.gain, least_loads / its.gain
     shows = shows & known
     touched = int(np.count_nonzero(shows))
     if touched == 0:

@@ -69,9 +69,9 @@ def covered(kind: int, corners: int, p: Values, grid: Values, box: Box) -> Value
     -------
     ndarray, shape (rows, columns)
     """
-    shares = _covered(kind, corners, p, grid, grid[3], box)
+    shares = covered_by(kind, corners, p, grid, grid[3], box)
     if grid[4] > 0.0:
-        wide = _covered(kind, corners, p, grid, grid[3] + 2.0 * grid[5], box)
+        wide = covered_by(kind, corners, p, grid, grid[3] + 2.0 * grid[5], box)
         for i in range(box[2]):
             for j in range(box[3]):
                 shares[i, j] = (1.0 - grid[4]) * shares[i, j] + grid[4] * wide[i, j]
@@ -79,7 +79,9 @@ def covered(kind: int, corners: int, p: Values, grid: Values, box: Box) -> Value
 
 
 @compiled_as_is
-def _covered(kind: int, corners: int, p: Values, grid: Values, element: float, box: Box) -> Values:
+def covered_by(
+    kind: int, corners: int, p: Values, grid: Values, element: float, box: Box
+) -> Values:
     """Return the exact share of elements of a side, centred where the grid's own are."""
     r0, c0, rows, columns = box
     pitch, more = grid[2], 0.5 * (element - grid[3])

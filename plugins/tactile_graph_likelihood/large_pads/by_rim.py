@@ -32,7 +32,6 @@ from tactile_graph_likelihood.single.element_terms import (
     UNKNOWN,
     VOIDS,
     bare,
-    on_level,
     terms,
 )
 from tactile_graph_likelihood.single.goodness_of_fit import (
@@ -48,13 +47,20 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
     trend,
 )
 from tactile_graph_likelihood.single.information import (
+    NO_SCORE,
     SLIVER,
     STEP,
     Information,
-    add_noise_slopes,
+    Scatter,
+    Score,
     add_outer,
+    add_score,
+    mirror,
+    scatter_of,
     score_of,
     steps_of,
+    summed,
+    without_load,
 )
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
@@ -81,25 +87,24 @@ def log_likelihood_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> f
     on_rim, beyond = rim_count(runs), 0
     for i in range(box[2]):
         beyond += runs[i, 2] - runs[i, 1]
-    expected = np.empty((1, on_rim + beyond))
-    logs, states = np.empty(expected.shape), np.empty(expected.shape, problem.states.dtype)
-    rim_shares(numbers, xy, grid, box, runs, expected[0, :on_rim])
-    scale, at, more = math.exp(load), 0, on_rim
+    share = np.empty((1, on_rim + beyond))
+    logs, states = np.empty(share.shape), np.empty(share.shape, problem.states.dtype)
+    rim_shares(numbers, xy, grid, box, runs, share[0, :on_rim])
+    at, more = 0, on_rim
     for i in range(box[2]):
         row, last = box[0] + i, runs[i, 2]
         for part in range(2):
             for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
-                expected[0, at] *= scale
                 logs[0, at], states[0, at] = problem.logs[row, column], problem.states[row, column]
                 at += 1
         a, b = columns_covered(whole, row, last) if known else (last, last)
         for part in range(2):
             for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
-                expected[0, more] = scale
+                share[0, more] = 1.0
                 logs[0, more] = problem.logs[row, column]
                 states[0, more] = problem.states[row, column]
                 more += 1
-    found = terms(expected[:, :more], 0, 0, logs, states, noise)
+    found = terms(share[:, :more], load, 0, 0, logs, states, noise)
     return found + log_likelihood_of_covered(whole, load, noise) if known else found
 
 
@@ -108,16 +113,16 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
     """Write slope and information, where a face is even and without foam."""
     kind, corners, grid = problem.kind, problem.corners, problem.grid
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
-    noise, matrix = noise_at(problem, p), out.matrix
+    noise = noise_at(problem, p)
     out.slope[:] = 0.0
-    matrix[:] = 0.0
+    out.matrix[:] = 0.0
     box = window(kind, corners, p, grid, rows, columns, SLACK * grid[2])
     if box[2] <= 0 or box[3] <= 0:
         return
     numbers, xy = drawn_as(kind, corners, p)
     runs = runs_of(numbers, xy, grid, box, SLACK * grid[2])
     share, rise = _rises_on_rim(problem, p, box, runs)
-    level, at = on_level(noise), 0
+    scatter, at, total = scatter_of(noise), 0, NO_SCORE
     along = np.zeros(p.shape[0])
     along[first] = 1.0
     for i in range(box[2]):
@@ -131,13 +136,24 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
                 for k in range(first):
                     along[k] = rise[k, at - 1] / max(its, SLIVER)
                 log = noise[LEAST] if state == OFF else problem.logs[row, column]
-                score = score_of(state, log, math.log(its) + p[first], noise, level)
-                add_noise_slopes(state, score, problem, noise, out)
+                score = score_of(state, log, math.log(its) + p[first], scatter)
                 add_outer(score, along, out)
-    _add_whole(problem, whole, p, noise, box, runs, out)
-    for k in range(p.shape[0]):
-        for m in range(k):
-            matrix[m, k] = matrix[k, m]
+                total = summed(total, without_load(score), 1.0)
+    known = still_covered(whole, p[first], noise[SIGMA], box, runs)
+    for i in range(box[2]):
+        row, last = box[0] + i, runs[i, 2]
+        a, b = columns_covered(whole, row, last) if known else (last, last)
+        for part in range(2):
+            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
+                state = problem.states[row, column]
+                if state == UNKNOWN:
+                    continue
+                log = noise[LEAST] if state == OFF else problem.logs[row, column]
+                total = summed(total, score_of(state, log, p[first], scatter), 1.0)
+    if known:
+        total = summed(total, _score_of_covered(whole, p[first], noise[LEAST], scatter), 1.0)
+    add_score(problem, total, out)
+    mirror(out.matrix)
 
 
 @compiled_as_is
@@ -160,45 +176,15 @@ def _rises_on_rim(problem: Problem, p: Values, box: Box, runs: Runs) -> tuple[Va
 
 
 @compiled_as_is
-def _add_whole(
-    problem: Problem, whole: CoveredWhole, p: Values, noise: Values, box: Box, runs: Runs,
-    out: Information,
-) -> None:  # fmt: skip
-    """Add what elements that are covered whole say of the load and of the noise."""
-    first = unknowns(problem.kind, problem.corners)
-    load, level = p[first], on_level(noise)
-    known = still_covered(whole, load, noise[SIGMA], box, runs)
-    its = Information(np.zeros(p.shape[0]), np.zeros(out.matrix.shape))
-    for i in range(box[2]):
-        row = box[0] + i
-        last = runs[i, 2]
-        a, b = columns_covered(whole, row, last) if known else (last, last)
-        for part in range(2):
-            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
-                if problem.states[row, column] == UNKNOWN:
-                    continue
-                state = problem.states[row, column]
-                log = noise[LEAST] if state == OFF else problem.logs[row, column]
-                score = score_of(state, log, load, noise, level)
-                add_noise_slopes(state, score, problem, noise, out)
-                out.slope[first] += score[0]
-                out.matrix[first, first] += score[1]
-    if not known:
-        return
+def _score_of_covered(whole: CoveredWhole, load: float, least: float, scatter: Scatter) -> Score:
+    """Return what the record of elements that are covered whole says."""
     nodes = int(whole.numbers[NODES])
-    for k in range(nodes + 1):
-        on = k < nodes
-        state, log = (ON, whole.readings[k]) if on else (OFF, noise[LEAST])
-        weight = whole.weights[k] if on else whole.numbers[OFFS]
-        score = score_of(state, log, load, noise, level)
-        its.slope[:] = 0.0
-        its.matrix[:] = 0.0
-        add_noise_slopes(state, score, problem, noise, its)
-        its.slope[first] = score[0]
-        its.matrix[first, first] = score[1]
-        for m in range(first, p.shape[0]):
-            out.slope[m] += weight * its.slope[m]
-            out.matrix[m, m] += weight * its.matrix[m, m]
+    off = score_of(OFF, least, load, scatter)
+    total = summed(NO_SCORE, off, whole.numbers[OFFS])
+    for k in range(nodes):
+        on = score_of(ON, whole.readings[k], load, scatter)
+        total = summed(total, on, whole.weights[k])
+    return total
 
 
 @compiled_as_is

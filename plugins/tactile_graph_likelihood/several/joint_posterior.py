@@ -20,13 +20,13 @@ from tactile_graph_likelihood.single.element_terms import (
     OFF,
     UNKNOWN,
     States,
-    on_level,
     terms,
 )
 from tactile_graph_likelihood.single.information import (
     SLIVER,
     STEP,
     Information,
+    scatter_of,
     score_of,
     steps_of,
 )
@@ -167,7 +167,7 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
         return 0.0
     expected = problem.load[r0:r1, c0:c1].copy()
     total = problem.share[r0:r1, c0:c1].copy()
-    before = terms(expected, r0, c0, logs, states, noise) - overlap(total)
+    before = terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total)
     for k in range(kinds.shape[0]):
         kind, n = kinds[k], corners[k]
         box = window(kind, n, points[k], grid, rows, cols, margin)
@@ -179,7 +179,7 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
             for j in range(box[3]):
                 expected[box[0] - r0 + i, box[1] - c0 + j] += scale * own[i, j]
                 total[box[0] - r0 + i, box[1] - c0 + j] += own[i, j]
-    return terms(expected, r0, c0, logs, states, noise) - overlap(total) - before
+    return terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total) - before
 
 
 @compiled_as_is
@@ -237,7 +237,7 @@ def _sum_up(
     logs, states, noise = problem.logs, problem.states, problem.noise
     slope, matrix = out
     rows, cols = states.shape
-    level, size = on_level(noise), slope.shape[0]
+    scatter, size = scatter_of(noise), slope.shape[0]
     along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
     for i in range(rows):
         for j in range(cols):
@@ -262,7 +262,7 @@ def _sum_up(
             state = states[i, j]
             if state != UNKNOWN:
                 log = noise[LEAST] if state == OFF else logs[i, j]
-                found = score_of(state, log, math.log(expected[i, j]), noise, level)
+                found = score_of(state, log, math.log(expected[i, j]), scatter)
                 score, weight = found[0], found[1]
             excess = (total[i, j] - 1.0) / (OVERLAP * OVERLAP)
             push = 1.0 / (OVERLAP * OVERLAP) if excess > 0.0 else 0.0

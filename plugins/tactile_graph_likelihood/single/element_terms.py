@@ -54,14 +54,16 @@ def over_odds(noise: Values) -> float:
 
 @compiled_later
 def terms(
-    expected: Values, row: int, column: int, logs: Values, states: States, noise: Values
+    shares: Values, load: float, row: int, column: int, logs: Values, states: States, noise: Values
 ) -> float:
     """Return the log likelihood of a window's readings over that of a bare pad.
 
     Parameters
     ----------
-    expected : ndarray, shape (rows, columns)
-        Load expected on each element of the window, in the image's unit; 0 where bare.
+    shares : ndarray, shape (rows, columns)
+        Of a fully covered element's load, on each element of the window; 0 where bare.
+    load : float
+        Logarithm of a fully covered element's, in the image's unit.
     row, column : int
         Where the window begins.
     logs : ndarray, shape (all rows, all columns)
@@ -70,7 +72,7 @@ def terms(
     states : ndarray of uint8, the same shape
         As named by `OFF`, `ON` and so on.
     noise : ndarray, shape (9,)
-        As named by `SIGMA`, `VOIDS` and so on.
+        As named by `SIGMA`, `VOIDS` and so on; its contrast is a power of the shares.
 
     Notes
     -----
@@ -79,41 +81,42 @@ def terms(
     ``ln(1 - (1 - v) Phi(z))`` where it reads nothing. Where it reads the most, it adds
     ``ln(1 + (1 - e) (1 - v) Phi(z) / (e HIGH))``, z being from there.
     """
-    # Factors are multiplied up, and their logarithm taken now and then.
-    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
-    level, odds = on_level(noise), over_odds(noise)
-    total, product = 0.0, 1.0
-    load, mu, off, known = -1.0, 0.0, 0.0, math.nan
-    for i in range(expected.shape[0]):
-        for j in range(expected.shape[1]):
-            m = expected[i, j]
-            if m <= 0.0:
+    # What reads a load and what reads none are told apart without a branch, which would be guessed
+    # wrongly at each void, and the logarithm of their factors is taken now and then.
+    rows, columns = shares.shape
+    per_sigma, half, least = 1.0 / noise[SIGMA], 0.5 * (1.0 - noise[VOIDS]), noise[LEAST]
+    level, odds, contrast = on_level(noise), over_odds(noise), noise[CONTRAST]
+    on, off, n_on, n_off = np.empty(rows * columns), np.empty(rows * columns), 0, 0
+    total, product, last, mu = 0.0, 1.0, 1.0, load
+    for i in range(rows):
+        for j in range(columns):
+            share = shares[i, j]
+            if share <= 0.0:
                 continue
-            state = states[row + i, column + j]
-            if state == UNKNOWN:
-                continue
-            if m != load:
-                load, mu, known = m, math.log(m), math.nan
-            if state == ON:
-                u = (logs[row + i, column + j] - mu) / sigma
-                a = level - 0.5 * u * u
-                if a > 30.0:
-                    total += a
-                elif a > -30.0:
-                    product *= 1.0 + math.exp(a)
-            elif state == OVER:
-                z = (mu - logs[row + i, column + j]) / sigma
-                product *= 1.0 + odds * 0.5 * math.erfc(-SQRT_HALF * z)
-            else:
-                least = logs[row + i, column + j] if state == UNDER else noise[LEAST]
-                if least != known:
-                    z = (mu - least) / sigma
-                    off = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-                    known = least
-                product *= off
-            if not 1e-200 < product < 1e200:
-                total += math.log(product)
-                product = 1.0
+            if share != last:
+                last, mu = share, load + contrast * math.log(share)
+            state, log = states[row + i, column + j], logs[row + i, column + j]
+            on[n_on] = (log - mu) * per_sigma
+            n_on += 1 if state == ON else 0
+            off[n_off] = (mu - (log if state == UNDER else least)) * per_sigma
+            n_off += 1 if state in (OFF, UNDER) else 0
+            if state == OVER:
+                z = (mu - log) * per_sigma
+                total += math.log(1.0 + odds * 0.5 * math.erfc(-SQRT_HALF * z))
+    for k in range(n_on):
+        a = level - 0.5 * on[k] * on[k]
+        if a > 30.0:
+            total += a
+        else:
+            product *= 1.0 + math.exp(a)
+        if product > 1e200:
+            total += math.log(product)
+            product = 1.0
+    for k in range(n_off):
+        product *= 1.0 - half * math.erfc(-SQRT_HALF * off[k])
+        if product < 1e-200:
+            total += math.log(product)
+            product = 1.0
     return total + math.log(product)
 
 

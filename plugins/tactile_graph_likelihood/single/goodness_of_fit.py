@@ -12,6 +12,7 @@ from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     LEAST,
     ON,
     OVER,
@@ -242,7 +243,7 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
                 mean += mean_bare
                 variance += var_bare
                 continue
-            mu = math.log(share[r, c]) + p[first]
+            mu = here[CONTRAST] * math.log(share[r, c]) + p[first]
             least = logs[i, j] if states[i, j] == UNDER else here[LEAST]
             z = min(max((mu - least) / sigma, -40.0), 40.0)
             tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)

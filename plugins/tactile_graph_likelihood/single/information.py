@@ -10,7 +10,9 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
+from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     FOAM,
     LEAST,
     OFF,
@@ -23,14 +25,14 @@ from tactile_graph_likelihood.single.element_terms import (
     on_level,
     over_odds,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, is_even, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, is_plain, shares_of
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
 STEP = 0.02  # of a pitch: over which coverage is differenced
 FOAM_STEP = 0.005
 PRESSURE_STEP = 0.01
-SLIVER = 0.1  # covered less, an element's slope is no guide to how far the outline may go
+SLIVER = 0.1  # read less, an element's slope is no guide to how far the outline may go
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
 
 
@@ -52,83 +54,159 @@ def steps_of(kind: int, corners: int, p: Values, grid: Values) -> Values:
     return out
 
 
+class Scatter(NamedTuple):
+    """How readings scatter: a noise vector's sigma and voids, `on_level` and `over_odds` of it."""
+
+    sigma: float
+    voids: float
+    level: float
+    odds: float
+
+
+class Score(NamedTuple):
+    """What readings say: slopes of their log likelihood and information on what it depends on.
+
+    ``load`` is along the logarithm of the expected load, ``sigma`` along ln sigma, ``voids`` along
+    the log odds of a void.
+    """
+
+    load: float
+    load_information: float
+    sigma: float
+    sigma_information: float
+    voids: float
+    voids_information: float
+
+
+NO_SCORE = Score(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@compiled_as_is
+def scatter_of(noise: Values) -> Scatter:
+    """Return a noise vector's scatter of readings."""
+    return Scatter(noise[SIGMA], noise[VOIDS], on_level(noise), over_odds(noise))
+
+
+@compiled_as_is
+def score_of(state: int, log: float, mu: float, scatter: Scatter) -> Score:
+    """Return what an element's reading says, given the logarithm mu of its expected load.
+
+    ``log`` is that of its reading, of the least load that shows where it reads nothing, of the load
+    at which readings end where it reads the most. Of arguments and results none is an array: that
+    would cost more than all the rest.
+    """
+    sigma, voids, level, odds = scatter
+    some = voids * (1.0 - voids)
+    if state == ON:
+        u = (log - mu) / sigma
+        a = min(max(level - 0.5 * u * u, -700.0), 700.0)
+        chance = 1.0 / (1.0 + math.exp(-a))
+        weight = chance / (sigma * sigma)
+        return Score(
+            chance * u / sigma, weight, chance * (u * u - 1.0), 2.0 * chance, -voids * chance, some
+        )
+    z = (mu - log) / sigma
+    tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
+    if state == OVER:
+        likely = 1.0 + odds * tail
+        score, by_voids = odds * density / (sigma * likely), -voids * odds * tail / likely
+    else:
+        likely = 1.0 - (1.0 - voids) * tail
+        score, by_voids = (voids - 1.0) * density / (sigma * likely), some * tail / likely
+    return Score(score, score * score, -score * sigma * z, 0.0, by_voids, some)
+
+
+@compiled_as_is
+def summed(total: Score, more: Score, times: float) -> Score:
+    """Return a score with another one added so many times."""
+    return Score(
+        total.load + times * more.load,
+        total.load_information + times * more.load_information,
+        total.sigma + times * more.sigma,
+        total.sigma_information + times * more.sigma_information,
+        total.voids + times * more.voids,
+        total.voids_information + times * more.voids_information,
+    )
+
+
+@compiled_as_is
+def add_score(problem: Problem, score: Score, out: Information) -> None:
+    """Add what readings say of the load, where nothing else moves it, and of their scatter."""
+    first, estimated = unknowns(problem.kind, problem.corners), problem.estimated
+    slope, matrix = out.slope, out.matrix
+    slope[first] += score.load
+    matrix[first, first] += score.load_information
+    for k in range(estimated.shape[0]):
+        m = first + 1 + k
+        if estimated[k] == SIGMA:
+            slope[m] += score.sigma
+            matrix[m, m] += score.sigma_information
+        elif estimated[k] == VOIDS:
+            slope[m] += score.voids
+            matrix[m, m] += score.voids_information
+
+
+@compiled_as_is
+def add_outer(score: Score, along: Values, out: Information) -> None:
+    """Add an element's slope and information along all that moves its load: lower half only."""
+    slope, matrix, by, weight = out.slope, out.matrix, score.load, score.load_information
+    for k in range(along.shape[0]):
+        if along[k] == 0.0:
+            continue
+        slope[k] += by * along[k]
+        for m in range(k + 1):
+            matrix[k, m] += weight * along[k] * along[m]
+
+
+@compiled_as_is
+def without_load(score: Score) -> Score:
+    """Return what a score says of the scatter alone."""
+    return Score(
+        0.0, 0.0, score.sigma, score.sigma_information, score.voids, score.voids_information
+    )
+
+
+@compiled_as_is
+def mirror(matrix: Values) -> None:
+    """Write a symmetric matrix' upper half."""
+    for k in range(matrix.shape[0]):
+        for m in range(k):
+            matrix[m, k] = matrix[k, m]
+
+
 @compiled_as_is
 def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values, Values]:
     """Return coverage of a window, and its slope along each number of a point, (K, rows, cols)."""
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
-    share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
     rise = np.zeros((p.shape[0], box[2], box[3]))
-    steps, at = steps_of(kind, corners, p, grid), p.copy()
-    for k in range(first):
-        at[k] += steps[k]
-        moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
-        at[k] = p[k]
-        for i in range(box[2]):
-            for j in range(box[3]):
-                rise[k, i, j] = (moved[i, j] - share[i, j]) / steps[k]
+    if has_slopes(kind) and is_plain(noise):
+        share = covered_with_slopes(kind, p, grid, box, rise)
+    else:
+        share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+        steps, at = steps_of(kind, corners, p, grid), p.copy()
+        for k in range(first):
+            at[k] += steps[k]
+            moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
+            at[k] = p[k]
+            _difference(share, moved, steps[k], rise, k)
     for k in range(estimated.shape[0]):
         place = estimated[k]
-        if place < FOAM:
+        if place < FOAM or place == CONTRAST:
             continue
         other, step = noise.copy(), FOAM_STEP if place == FOAM else PRESSURE_STEP
         other[place] = noise[FOAM] * math.exp(step) if place == FOAM else noise[place] + step
         moved = shares_of(kind, corners, p, grid, other, box, rows, columns)
-        for i in range(box[2]):
-            for j in range(box[3]):
-                rise[first + 1 + k, i, j] = (moved[i, j] - share[i, j]) / step
+        _difference(share, moved, step, rise, first + 1 + k)
     return share, rise
 
 
 @compiled_as_is
-def score_of(state: int, log: float, mu: float, noise: Values, level: float) -> tuple[float, ...]:
-    """Return what an element's reading says of the logarithm mu of its expected load.
-
-    ``log`` is that of its reading, of the least load that shows where it reads nothing, of the load
-    at which readings end where it reads the most.
-
-    Returns
-    -------
-    tuple of float
-        The slope of its log likelihood, its information; the chance that it is no stray and its
-        residual, where it reads a load; the chance that its load shows, where it reads none or
-        the most.
-    """
-    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
-    if state == ON:
-        u = (log - mu) / sigma
-        a = min(max(level - 0.5 * u * u, -700.0), 700.0)
-        chance = 1.0 / (1.0 + math.exp(-a))
-        return chance * u / sigma, chance / (sigma * sigma), chance, u, 0.0
-    z = (mu - log) / sigma
-    tail = 0.5 * math.erfc(-SQRT_HALF * z)
-    if state == OVER:
-        odds = over_odds(noise)
-        score = odds * DENSITY * math.exp(-0.5 * z * z) / (sigma * (1.0 + odds * tail))
-        return score, score * score, odds * tail / (1.0 + odds * tail), z, tail
-    score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * (1.0 - present * tail))
-    return score, score * score, 1.0, z, tail
-
-
-@compiled_as_is
-def add_noise_slopes(
-    state: int, score: tuple[float, ...], problem: Problem, noise: Values, out: Information
-) -> None:
-    """Add what an element's reading says of the sigma and the voids that are estimated."""
-    voids, chance, u, tail = noise[VOIDS], score[2], score[3], score[4]
-    first, estimated = unknowns(problem.kind, problem.corners), problem.estimated
-    slope, matrix = out.slope, out.matrix
-    for k in range(estimated.shape[0]):
-        m = first + 1 + k
-        if estimated[k] == SIGMA:
-            on = state == ON
-            slope[m] += chance * (u * u - 1.0) if on else -score[0] * noise[SIGMA] * u
-            matrix[m, m] += 2.0 * chance if on else 0.0
-        elif estimated[k] == VOIDS:
-            none = 1.0 - (1.0 - voids) * tail
-            shows = state in (ON, OVER)
-            slope[m] += -voids * chance if shows else voids * (1.0 - voids) * tail / none
-            matrix[m, m] += voids * (1.0 - voids)
+def _difference(share: Values, moved: Values, step: float, rise: Values, k: int) -> None:
+    """Write how much shares rise over a step."""
+    for i in range(share.shape[0]):
+        for j in range(share.shape[1]):
+            rise[k, i, j] = (moved[i, j] - share[i, j]) / step
 
 
 @compiled_as_is
@@ -146,56 +224,48 @@ def information(problem: Problem, p: Values, out: Information) -> None:
     -----
     With mu the logarithm of an element's expected load, a touched one adds its chance of being
     no stray over sigma**2 times the outer product of the slopes of mu, an untouched one its
-    squared score: positive whatever was read. Coverage is differenced over 0.02 of a pitch.
+    squared score: positive whatever was read. Coverage of a disc or rectangle has its exact slope,
+    that of others is differenced over 0.02 of a pitch.
     """
-    kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
-    first, slope, matrix = unknowns(kind, corners), out.slope, out.matrix
-    rows, columns = problem.states.shape
+    kind, grid, states, logs = problem.kind, problem.grid, problem.states, problem.logs
+    first, n = unknowns(kind, problem.corners), p.shape[0]
     noise = noise_at(problem, p)
     margin = foam_margin(grid, noise) + grid[2] * STEP
-    box = window(kind, corners, p, grid, rows, columns, margin)
-    slope[:] = 0.0
-    matrix[:] = 0.0
+    box = window(kind, problem.corners, p, grid, states.shape[0], states.shape[1], margin)
+    for k in range(n):
+        out.slope[k] = 0.0
+        for m in range(n):
+            out.matrix[k, m] = 0.0
     if box[2] <= 0 or box[3] <= 0:
         return
     share, rise = _rises(problem, p, noise, box)
-    n, level = p.shape[0], on_level(noise)
-    plain = noise[FOAM] <= 0.0 and grid[4] <= 0.0 and is_even(noise)
-    along = np.zeros(n)
-    along[first] = 1.0
+    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(n)
+    row, column, load, own = box[0], box[1], p[first], noise[LEAST]
+    power, by_power = noise[CONTRAST], -1
+    sliver = SLIVER ** (1.0 / power)
+    for k in range(problem.estimated.shape[0]):
+        if problem.estimated[k] == CONTRAST:
+            by_power = first + 1 + k
     for i in range(box[2]):
         for j in range(box[3]):
-            state, its = problem.states[box[0] + i, box[1] + j], share[i, j]
+            state, its, moves = states[row + i, column + j], share[i, j], False
             if its <= 0.0 or state == UNKNOWN:
                 continue
-            mu = p[first] if its == 1.0 else math.log(its) + p[first]
-            log = noise[LEAST] if state == OFF else problem.logs[box[0] + i, box[1] + j]
-            score = score_of(state, log, mu, noise, level)
-            add_noise_slopes(state, score, problem, noise, out)
-            edge = its < 1.0 or not plain
-            for k in range(first):
-                along[k] = rise[k, i, j] / max(its, SLIVER)
-                edge = edge or along[k] != 0.0
-            for k in range(estimated.shape[0]):
-                along[first + 1 + k] = rise[first + 1 + k, i, j] / its
-                edge = edge or along[first + 1 + k] != 0.0
-            if edge:
+            log_share = 0.0 if its == 1.0 else math.log(its)
+            log = own if state == OFF else logs[row + i, column + j]
+            score = score_of(state, log, load + power * log_share, scatter)
+            for k in range(n):
+                along[k] = power * rise[k, i, j] / (max(its, sliver) if k < first else its)
+                moves = moves or along[k] != 0.0
+            if moves:
+                if by_power >= 0:
+                    along[by_power] = log_share
+                along[first] = 1.0
                 add_outer(score, along, out)
-            else:
-                slope[first] += score[0]
-                matrix[first, first] += score[1]
-    for k in range(n):
-        for m in range(k):
-            matrix[m, k] = matrix[k, m]
-
-
-@compiled_as_is
-def add_outer(score: tuple[float, ...], along: Values, out: Information) -> None:
-    """Add an element's slope and information along all numbers."""
-    for k in range(along.shape[0]):
-        out.slope[k] += score[0] * along[k]
-        for m in range(k + 1):
-            out.matrix[k, m] += score[1] * along[k] * along[m]
+                score = without_load(score)
+            total = summed(total, score, 1.0)
+    add_score(problem, total, out)
+    mirror(out.matrix)
 
 
 @compiled_as_is

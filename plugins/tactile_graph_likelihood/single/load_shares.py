@@ -1,7 +1,7 @@
 """What share of a fully covered element's load an outline brings to each element of a window.
 
 Its coverage, weighed by how the pressure varies, which leans to a side and falls or rises to the
-rim, and blurred as by foam; to a power, where readings are one of the load.
+rim, and blurred as by foam.
 
 With r the distance from the centre over that of the outline in the same direction, a place bears
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
@@ -30,7 +30,6 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse
 from tactile_graph_likelihood.single.element_terms import (
-    CONTRAST,
     FALL,
     FOAM,
     LEAN_X,
@@ -39,6 +38,7 @@ from tactile_graph_likelihood.single.element_terms import (
 )
 
 FOAM_REACH = 3.5  # widths of the blur
+FAINT = 1e-5  # share that foam passes on below which an element is as good as bare
 LEAST_FALL, MOST_FALL = -0.7, 3.0
 NARROW = 0.5
 """Of 1 - r**2 over an element, over its mean: less is integrated by its series."""
@@ -52,6 +52,12 @@ def is_even(noise: Values) -> bool:
     """Return whether the pressure is the same everywhere."""
     even: bool = noise[FALL] == 0.0 and noise[LEAN_X] == 0.0 and noise[LEAN_Y] == 0.0
     return even
+
+
+@compiled_as_is
+def is_plain(noise: Values) -> bool:
+    """Return whether shares are coverage and nothing else."""
+    return is_even(noise) and noise[FOAM] <= 0.0
 
 
 @compiled_as_is
@@ -182,7 +188,12 @@ def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> 
         far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
         weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
     turned = _blurred_down(shares, weights, box[0], rows)
-    return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+    found = _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+    for i in range(found.shape[0]):
+        for j in range(found.shape[1]):
+            if found[i, j] < FAINT:
+                found[i, j] = 0.0
+    return found
 
 
 @compiled_as_is
@@ -224,7 +235,7 @@ def shares_of(
     kind, corners, p, grid, box
         As in `covered.covered`.
     noise : ndarray, shape (9,)
-        As in `element_terms`; its foam, fall, lean and contrast.
+        As in `element_terms`; its foam, fall and lean.
     rows, columns : int
         Of the whole image.
     """
@@ -233,9 +244,4 @@ def shares_of(
         press(kind, corners, p, grid, noise, box, shares)
     if noise[FOAM] > 0.0:
         shares = blurred(shares, noise[FOAM], box, rows, columns)
-    if noise[CONTRAST] != 1.0:
-        for i in range(shares.shape[0]):
-            for j in range(shares.shape[1]):
-                if 0.0 < shares[i, j] != 1.0:
-                    shares[i, j] = math.exp(noise[CONTRAST] * math.log(shares[i, j]))
     return shares

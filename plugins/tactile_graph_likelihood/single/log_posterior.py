@@ -51,12 +51,9 @@ def log_likelihood(problem: Problem, p: Values) -> float:
     box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
-    expected = shares_of(kind, corners, p, grid, noise, box, rows, columns)
-    scale = math.exp(p[unknowns(kind, corners)])
-    for i in range(expected.shape[0]):
-        for j in range(expected.shape[1]):
-            expected[i, j] *= scale
-    return terms(expected, box[0], box[1], problem.logs, problem.states, noise)
+    shares = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+    load = p[unknowns(kind, corners)]
+    return terms(shares, load, box[0], box[1], problem.logs, problem.states, noise)
 
 
 @compiled_as_is

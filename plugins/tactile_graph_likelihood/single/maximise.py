@@ -10,7 +10,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
 from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, period, sizes
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
 from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.evaluate import information_at, log_likelihood_at
@@ -19,7 +19,11 @@ from tactile_graph_likelihood.single.log_posterior import log_rest
 from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
 
 ROUNDS, HALVINGS = 25, 6
-TIED = 0.01  # information, per squared pitch, that every length has: readings may leave one free
+TIED, SLIDING, HELD = 0.01, 2.0, 6.0
+"""Information, per squared pitch, that every length has. Readings may leave one free: an edge in a
+gap, or a disc within an element, slides freely. Where slopes are exact nothing else says how far,
+and on a large pad few of the points to be sampled would come near."""
+
 ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second search end
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the first search
 NO_STRAYS = 1e-12
@@ -72,18 +76,18 @@ def maximise(
         loose[TURN] = p[turn]
     keep_current(problem, whole, p)
     now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
-    damping = 0.0
+    tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
+    damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
         keep_current(problem, whole, p)
         information_at(problem, whole, p, out)
         add_prior(problem, p, out)
         widths = steps_of(kind, corners, p, problem.grid)
-        _damp(out.matrix, widths, damping)
-        if not cholesky(out.matrix, root):
+        if not _rooted(out.matrix, widths, tied, damping, root):
             return now
         solved(root, out.slope, step)
         if _promised(out.slope, step) < enough:
-            return now
+            break
         first = share = _share_of_step(step, widths, stride)
         for _ in range(HALVINGS):
             for k in range(n):
@@ -99,23 +103,34 @@ def maximise(
             share *= 0.4
         if not new > now:
             if damping > 50.0:
-                return now
+                break
             damping = max(1.0, 10.0 * damping)
             continue
         gained, now = new - now, new
         p[:] = trial
-        damping = 0.0 if share == first else 0.3
         if gained < 0.5 * enough:
-            return now
+            break
+        damping = 0.0 if share == first else 0.3
+    if damping > 0.0:
+        _rooted(out.matrix, widths, tied, 0.0, root)
     return now
 
 
 @compiled_as_is
-def _damp(matrix: Values, widths: Values, damping: float) -> None:
-    """Add to an information what keeps steps short, and invertible what readings leave free."""
+def _rooted(matrix: Values, widths: Values, tied: float, damping: float, root: Values) -> bool:
+    """Write an information's root, with what keeps steps short, and ties what readings leave free.
+
+    Returns
+    -------
+    bool
+        Whether there is any.
+    """
     for k in range(matrix.shape[0]):
-        scale = 1.0 if k >= widths.shape[0] else TIED / (widths[k] / STEP) ** 2
-        matrix[k, k] = matrix[k, k] * (1.0 + damping) + scale
+        scale = 1.0 if k >= widths.shape[0] else tied / (widths[k] / STEP) ** 2
+        root[k, k] = matrix[k, k] * (1.0 + damping) + scale
+        for m in range(k):
+            root[k, m] = matrix[k, m]
+    return cholesky(root, root)
 
 
 @compiled_as_is

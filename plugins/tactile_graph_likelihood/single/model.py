@@ -132,6 +132,8 @@ class Model:
         problem = self._problem(readings, belief)
         table = self._table(problem)
         mode = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)[0]
+        if mode.height == -math.inf:
+            raise self.impossible(readings)
         return self._sampled(readings, problem, table, mode)
 
     def likeliest(
@@ -157,10 +159,17 @@ class Model:
             evidence += _log_volume(problem.kind, mode)
         return Likeliest(mode, evidence, unsure, fit)
 
-    def posterior_around(self, readings: Readings, mode: Mode) -> Posterior:
-        """Return the posterior around a mode."""
+    def posterior_around(self, readings: Readings, mode: Mode, loose: float = 0.0) -> Posterior:
+        """Return the posterior around a mode, with ``loose`` as in `sample_around`."""
         problem = self._problem(readings, None)
-        return self._sampled(readings, problem, self._table(problem), mode)
+        return self._sampled(readings, problem, self._table(problem), mode, loose)
+
+    def posterior_near(self, readings: Readings, point: Values, loose: float) -> Posterior:
+        """Return the posterior around the top near a point, shape (K,)."""
+        problem = self._problem(readings, None)
+        begin = self._begin(point, problem)
+        mode = Mode(begin, np.zeros((len(begin), len(begin))), -math.inf)
+        return self._sampled(readings, problem, self._table(problem), mode, loose)
 
     def point_of(self, top: Likeliest) -> Values:
         """Return a most likely point in the outline's own numbers, shape (K,)."""
@@ -199,16 +208,20 @@ class Model:
         return Mode(p, root, height), unsure, GoodnessOfFit(*fit)
 
     def _sampled(
-        self, readings: Readings, problem: Problem, table: Values, mode: Mode
+        self, readings: Readings, problem: Problem, table: Values, mode: Mode, loose: float = 0.0
     ) -> Posterior:
-        if mode.height > -math.inf:
-            large = problem.states.size > LARGE_PAD
-            whole = covered_around.call(problem, mode.p) if large else None
-            worth = self.precision**-2
-            sample = sample_around.call(problem, whole, table, BLOCK, worth, *mode)
-            if len(sample.points):
-                return self._posterior_of(problem.kind, sample)
-        raise Degenerate(
+        large = problem.states.size > LARGE_PAD
+        whole = covered_around.call(problem, mode.p) if large else None
+        worth = self.precision**-2
+        sample = sample_around.call(problem, whole, table, BLOCK, worth, loose, *mode)
+        if len(sample.points):
+            return self._posterior_of(problem.kind, sample)
+        raise self.impossible(readings)
+
+    @staticmethod
+    def impossible(readings: Readings) -> Degenerate:
+        """Return the error that no outline is possible."""
+        return Degenerate(
             f"{readings.touched} touched elements: no such outline on the pad explains them"
         )
 

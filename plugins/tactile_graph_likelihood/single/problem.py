@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.outline_prior import WHOLE
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import States
 
@@ -71,6 +72,17 @@ def with_prior(problem: Problem, prior: Values) -> Problem:
         problem.kind, problem.corners, problem.grid, problem.logs, problem.states, problem.noise,
         problem.estimated, problem.guess, prior, problem.belief, problem.precision,
     )  # fmt: skip
+
+
+@compiled_as_is
+def over_the_edge(problem: Problem) -> Problem:
+    """Return the same problem for outlines that go over the pad's edge, unless they must not.
+
+    Where the edge makes a step in the prior, a search would be caught before it.
+    """
+    prior = problem.prior.copy()
+    prior[WHOLE] = 1.0 if prior[WHOLE] >= 1.0 else 0.0
+    return with_prior(problem, prior)
 
 
 @compiled_as_is

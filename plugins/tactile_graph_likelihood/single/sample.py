@@ -38,12 +38,10 @@ from tactile_graph_likelihood.single.importance import (
     weigh_by_density,
     weighted_moments,
 )
-from tactile_graph_likelihood.single.information import STEP, steps_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
-from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.problem import Problem, with_prior
+from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
+from tactile_graph_likelihood.single.problem import Problem, over_the_edge, with_prior
 
-HELD = 6.0  # information, per squared pitch, on each length of what is sampled first
 SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
 PROPOSALS = 8
@@ -125,25 +123,6 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
         d2 = p[3] * p[3] + p[4] * p[4] + 0.32 * (spread[3, 3] + spread[4, 4])
         volume -= 0.5 * math.log(d2)
     return volume
-
-
-@compiled_as_is
-def _held_in_gaps(problem: Problem, mode: Mode) -> Values:
-    """Return the covariance of an outline whose edges slide no farther than a gap is wide.
-
-    A straight edge that lies in a gap slides freely; where several do, hardly any of the first
-    points would come near what is likely.
-    """
-    root, n = mode.root, mode.root.shape[0]
-    widths = steps_of(problem.kind, problem.corners, mode.p, problem.grid)
-    matrix, held = np.zeros((n, n)), np.empty((n, n))
-    for i in range(n):
-        for j in range(n):
-            for k in range(min(i, j) + 1):
-                matrix[i, j] += root[i, k] * root[j, k]
-    for k in range(widths.shape[0]):
-        matrix[k, k] += HELD * (STEP / widths[k]) ** 2
-    return inverted(held if cholesky(matrix, held) else root)
 
 
 @compiled_as_is
@@ -313,7 +292,7 @@ def importance_sample(
 @compiled_as_is
 def sample_around(
     problem: Problem, whole: CoveredWhole | None, table: Values, block: int, worth: float,
-    p: Values, root: Values, height: float,
+    loose: float, p: Values, root: Values, height: float,
 ) -> Sample:  # fmt: skip
     """Return the posterior around a mode.
 
@@ -323,9 +302,14 @@ def sample_around(
         As in `evaluate.log_likelihood_at`.
     table, block, worth
         Of the `Plan`: handing over more than one record costs 15 us.
+    loose : float
+        Variance in cm^2 that is added to each length where it is first looked for.
     p, root, height
-        Of the `Mode`, a possible one.
+        Of the `Mode`. A height of -inf is that of a point near the top, which is looked for as if
+        there were no more pad beyond its edge than before it; ``p`` and ``root`` are written.
     """
+    if height == -math.inf:
+        height = maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
     plan, mode = Plan(table, block, worth), Mode(p, root, height)
     kind, n, count = problem.kind, mode.p.shape[0], plan.table.shape[0]
     prior = problem.prior.copy()
@@ -335,7 +319,9 @@ def sample_around(
     draws = Draws(
         np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
     )
-    covariance = inverted(mode.root) if whole is None else _held_in_gaps(problem, mode)
+    covariance = inverted(mode.root)
+    for k in range(2 + sizes(kind)):
+        covariance[k, k] += loose
     widen_to_other_ends(near, whole, mode, covariance)
     used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, draws)
     fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)

@@ -1,12 +1,9 @@
 """Zero and noise of a frame, whatever lies on part of it."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, told_noise
-from tactile_graph_pads.pad import load_pad
+from tactile_graph_likelihood.any_pad.frame_noise import frame_noise
 
 
 def readings(rng, touched, sigma=2e-3, zero=0.0):
@@ -43,13 +40,3 @@ def test_a_frame_without_noise_has_none():
 def test_of_a_large_pad_a_part_is_enough():
     rng = np.random.default_rng(2)
     assert frame_noise(2e-3 * rng.standard_normal(65536)).sigma == pytest.approx(2e-3, rel=0.1)
-
-
-def test_noise_that_recordings_taught_is_taken_for_images_like_them():
-    table = SimpleNamespace(noise=np.array([[3e-3, 4e-3]]))
-    learned = SimpleNamespace(reading="volt", rows=1, columns=2, drift=4e-3, table=table)
-    pad = SimpleNamespace(learned=learned)
-    np.testing.assert_allclose(told_noise(pad, "volt", (1, 2)), [[5e-3, 4e-3 * np.sqrt(2.0)]])
-    assert told_noise(pad, "counts", (1, 2)) is None
-    assert told_noise(pad, "volt", (2, 1)) is None
-    assert told_noise(load_pad("thesis"), "volt", (16, 16)) is None

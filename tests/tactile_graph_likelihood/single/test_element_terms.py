@@ -18,7 +18,7 @@ from tactile_graph_likelihood.single.element_terms import (
     terms,
 )
 
-NOISE = np.array([0.48, 0.16, 1e-3, math.log(5.0), 0.0])
+NOISE = np.array([0.48, 0.16, 1e-3, math.log(5.0), 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 @pytest.fixture(params=["reference", "compiled"])
@@ -28,7 +28,8 @@ def kernel(request):
 
 def one(kernel, expected, log, state, noise=NOISE):
     states = np.array([[state]], np.uint8)
-    found = kernel(np.array([[expected]]), 0, 0, np.array([[log]]), states, noise)
+    load = math.log(expected)
+    found = kernel(np.array([[1.0]]), load, 0, 0, np.array([[log]]), states, noise)
     return found + bare.loops(states, noise)
 
 
@@ -63,7 +64,8 @@ def test_an_element_reads_nothing_as_far_as_its_own_least_load_goes(kernel):
 @pytest.mark.parametrize(("expected", "chance"), [(1e4, 0.84 * 0.999), (50.0, 0.42 * 0.999)])
 def test_an_element_reads_the_most_as_likely_as_it_bears_that(kernel, expected, chance):
     found = kernel(
-        np.array([[expected]]),
+        np.array([[1.0]]),
+        math.log(expected),
         0,
         0,
         np.array([[math.log(50.0)]]),
@@ -78,9 +80,10 @@ def test_twins_agree_on_windows_of_an_image():
     for _ in range(20):
         logs = rng.normal(3.0, 1.5, (9, 8))
         states = rng.integers(0, 5, (9, 8)).astype(np.uint8)
-        expected = np.exp(rng.normal(3.0, 2.0, (4, 5))) * (rng.random((4, 5)) < 0.7)
-        noise = np.array([rng.uniform(0.05, 1), rng.uniform(0.01, 0.5), 1e-3, 1.6, 0.0])
-        args = (expected, 3, 2, logs, states, noise)
+        shares = np.exp(rng.normal(0.0, 2.0, (4, 5))) * (rng.random((4, 5)) < 0.7)
+        noise = NOISE.copy()
+        noise[[0, 1, 3, 8]] = rng.uniform(0.05, 1), rng.uniform(0.01, 0.5), 1.6, rng.uniform(0.5, 2)
+        args = (shares, 3.0, 3, 2, logs, states, noise)
         expected = pytest.approx(references.terms(*args), rel=1e-11)
         assert terms.loops(*args) == expected
         assert terms.compiled(*args) == expected

@@ -1,0 +1,125 @@
+"""How the share of an element that an outline covers grows with the outline's numbers, exactly.
+
+A side that moves outwards by a hair adds the hair times its length within the element.
+"""
+
+from __future__ import annotations
+
+import math
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.covered import Box, covered_by
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, unknowns
+
+Slopes = tuple[float, float, float, float, float]
+"""Along each of an outline's numbers, 0 where it has fewer."""
+
+LEAST_SLOPE = 1e-12
+"""Of a side along an axis: what is less is divided by as if it were this."""
+
+
+@compiled_as_is
+def has_slopes(kind: int) -> bool:
+    """Return whether `covered_with_slopes` knows an outline's kind."""
+    return kind in (DISC, RECTANGLE)
+
+
+@compiled_as_is
+def covered_with_slopes(kind: int, p: Values, grid: Values, box: Box, slopes: Values) -> Values:
+    """Return `covered.covered` of a disc or rectangle, and add its slope along each number.
+
+    Parameters
+    ----------
+    kind, p, grid, box
+        As in `covered.covered`.
+    slopes : ndarray, shape (K, rows, columns)
+        Added to.
+    """
+    share = covered_by(kind, 0, p, grid, grid[3], box)
+    soft = grid[4]
+    _add_slopes(kind, p, grid, grid[3], box, share, 1.0 - soft, slopes)
+    if soft > 0.0:
+        element = grid[3] + 2.0 * grid[5]
+        wide = covered_by(kind, 0, p, grid, element, box)
+        _add_slopes(kind, p, grid, element, box, wide, soft, slopes)
+        for i in range(box[2]):
+            for j in range(box[3]):
+                share[i, j] = (1.0 - soft) * share[i, j] + soft * wide[i, j]
+    return share
+
+
+@compiled_as_is
+def _add_slopes(
+    kind: int, p: Values, grid: Values, element: float, box: Box, share: Values, weight: float,
+    slopes: Values,
+) -> None:  # fmt: skip
+    """Add the slopes of the shares of elements of a side, times a weight."""
+    more = 0.5 * (element - grid[3])
+    left, top = grid[0] + box[1] * grid[2] - more, grid[1] + box[0] * grid[2] - more
+    scale, numbers = weight / (element * element), unknowns(kind, 0)
+    for i in range(box[2]):
+        for j in range(box[3]):
+            if not 0.0 < share[i, j] < 1.0:
+                continue
+            x, y = left + j * grid[2] - p[0], top + i * grid[2] - p[1]
+            if kind == DISC:
+                found = _of_disc(p[2], x, y, element, share[i, j])
+            else:
+                found = _of_rectangle(p, x, y, element)
+            for k in range(numbers):
+                slopes[k, i, j] += scale * found[k]
+
+
+@compiled_as_is
+def _of_disc(r: float, x: float, y: float, element: float, share: float) -> Slopes:
+    """Return the slopes of the disc's area on an element whose corner is at (x, y) from the centre.
+
+    By the lengths of the element's sides within the disc; the radius' by Euler's theorem, as the
+    area is homogeneous in all lengths.
+    """
+    right, bottom = x + element, y + element
+    at_left = _within(r, x, y, bottom)
+    at_right = _within(r, right, y, bottom)
+    at_top = _within(r, y, x, right)
+    at_bottom = _within(r, bottom, x, right)
+    rest = x * at_left - right * at_right + y * at_top - bottom * at_bottom
+    wider = (2.0 * share * element * element + rest) / r
+    return at_left - at_right, at_top - at_bottom, wider, 0.0, 0.0
+
+
+@compiled_as_is
+def _within(r: float, line: float, first: float, last: float) -> float:
+    """Return the length of a line, so far off the centre, within the disc, from first to last."""
+    half = math.sqrt(max(r * r - line * line, 0.0))
+    return max(min(last, half) - max(first, -half), 0.0)
+
+
+@compiled_as_is
+def _of_rectangle(p: Values, x: float, y: float, element: float) -> Slopes:
+    """Return the same of a rectangle: each side's length on the element, times how it moves."""
+    cos, sin, half = math.cos(p[4]), math.sin(p[4]), 0.5 * element
+    mid_x, mid_y = x + half, y + half
+    reach = half * (abs(cos) + abs(sin))
+    by_x = by_y = by_first = by_second = by_turn = 0.0
+    for side in range(4):
+        first_axis, way = side < 2, 1.0 - 2.0 * (side % 2)
+        nx, ny = (cos, -sin) if first_axis else (-sin, -cos)
+        far, along = (way * p[2], p[3]) if first_axis else (way * p[3], p[2])
+        if abs(nx * mid_x + ny * mid_y - far) >= reach:
+            continue
+        tx, ty = (-sin, -cos) if first_axis else (cos, -sin)
+        tx = math.copysign(max(abs(tx), LEAST_SLOPE), tx)
+        ty = math.copysign(max(abs(ty), LEAST_SLOPE), ty)
+        a, b = (mid_x - far * nx) / tx, (mid_y - far * ny) / ty
+        wide, high = half / abs(tx), half / abs(ty)
+        start, end = max(-along, a - wide, b - high), min(along, a + wide, b + high)
+        length = max(end - start, 0.0)
+        by_x += way * nx * length
+        by_y += way * ny * length
+        if first_axis:
+            by_first += length
+            by_turn -= 0.5 * way * (start + end) * length
+        else:
+            by_second += length
+            by_turn += 0.5 * way * (start + end) * length
+    return by_x, by_y, by_first, by_second, by_turn
