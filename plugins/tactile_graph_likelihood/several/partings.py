@@ -1,4 +1,7 @@
-"""Straight cuts through a set of touched elements: outlines that do not overlap lie either side."""
+"""Pairs of sketches for a set of touched elements, begun with straight cuts through it.
+
+Outlines that are convex and do not overlap lie on either side of a straight line.
+"""
 
 from __future__ import annotations
 
@@ -77,13 +80,66 @@ def across(mask: NDArray[np.bool_]) -> Across:
 
 
 @compiled_as_is
+def summed(piece: Across, t: int, logs: Values, place: Places) -> Values:
+    """Return the sums over the first elements at an angle, shape (N + 1, 7), as `spread` has them.
+
+    Each element's place in the order is written.
+    """
+    n = piece.row.shape[0]
+    sums = np.zeros((n + 1, 7))
+    for i in range(n):
+        at = piece.order[t, i]
+        place[at] = i
+        r, c = piece.row[at], piece.column[at]
+        x, y = float(c), float(r)
+        sums[i + 1, 0] = i + 1.0
+        sums[i + 1, 1] = sums[i, 1] + x
+        sums[i + 1, 2] = sums[i, 2] + y
+        sums[i + 1, 3] = sums[i, 3] + x * x
+        sums[i + 1, 4] = sums[i, 4] + x * y
+        sums[i + 1, 5] = sums[i, 5] + y * y
+        sums[i + 1, 6] = sums[i, 6] + logs[r, c]
+    return sums
+
+
+@compiled_as_is
+def cut_at(
+    piece: Across, t: int, sums: Values, place: Places, index: Places, least: int
+) -> tuple[int, int]:
+    """Return after how many elements at an angle halves are fullest, and the neck narrowest.
+
+    0 where there is no such cut, or the same. ``index`` numbers the elements on a grid with a rim.
+    """
+    along, order = piece.along[t], piece.order[t]
+    n = order.shape[0]
+    neck, full, thin = 0.0, math.inf, math.inf
+    full_at = thin_at = 0
+    for k in range(1, n):
+        at = order[k - 1]
+        for dy in range(3):
+            for dx in range(3):
+                other = index[piece.row[at] + dy, piece.column[at] + dx]
+                if other >= 0 and other != at:
+                    neck += 1.0 if place[other] >= k else -1.0
+        if k < least or k > n - least or along[order[k]] - along[at] < 1e-9:
+            continue
+        area = spread(sums[k]) + spread(sums[n] - sums[k])
+        if area < full:
+            full, full_at = area, k
+        narrow = neck * (1.0 / k + 1.0 / (n - k))
+        if narrow < thin:
+            thin, thin_at = narrow, k
+    return full_at, thin_at if thin_at != full_at else 0
+
+
+@compiled_as_is
 def partings(
     problem: JointProblem, piece: Across, least: int, found: Values, evidence: Values
 ) -> None:
     """Write the best pairs of sketches for a piece beside others, and the evidence of each.
 
     At each of 12 angles the piece is cut where the halves fill their moments' ellipses best, and
-    where the neck is narrowest.
+    where the neck is narrowest; the halves' moments are where a pair begins.
 
     Parameters
     ----------
@@ -94,69 +150,35 @@ def partings(
         Elements on either side.
     found : ndarray, shape (M, 2, 6)
     evidence : ndarray, shape (M,)
-        Written, the best first; -inf where there are fewer.
+        Written, the likeliest at first sight first; -inf where there are fewer.
     """
-    grid, logs = problem.grid, problem.logs
     rows, cols = problem.states.shape
-    r, c = piece.row, piece.column
-    n, most = r.shape[0], evidence.shape[0]
-    index = np.full((rows + 2, cols + 2), -1, np.int64)
+    n = piece.row.shape[0]
+    index, place = np.full((rows + 2, cols + 2), -1, np.int64), np.empty(n, np.int64)
     for i in range(n):
-        index[r[i] + 1, c[i] + 1] = i
-    sums, place = np.zeros((n + 1, 7)), np.empty(n, np.int64)
+        index[piece.row[i] + 1, piece.column[i] + 1] = i
     starts, worth = np.zeros((2 * ANGLES, 2, WIDTH)), np.full(2 * ANGLES, -math.inf)
-    for m in range(most):
-        evidence[m] = -math.inf
     for t in range(ANGLES):
-        along, order = piece.along[t], piece.order[t]
-        for i in range(n):
-            at = order[i]
-            place[at] = i
-            x, y = float(c[at]), float(r[at])
-            sums[i + 1, 0] = i + 1.0
-            sums[i + 1, 1] = sums[i, 1] + x
-            sums[i + 1, 2] = sums[i, 2] + y
-            sums[i + 1, 3] = sums[i, 3] + x * x
-            sums[i + 1, 4] = sums[i, 4] + x * y
-            sums[i + 1, 5] = sums[i, 5] + y * y
-            sums[i + 1, 6] = sums[i, 6] + logs[r[at], c[at]]
-        neck, full, thin = 0.0, math.inf, math.inf
-        full_at = thin_at = 0
-        for k in range(1, n):
-            at = order[k - 1]
-            for dy in range(3):
-                for dx in range(3):
-                    other = index[r[at] + dy, c[at] + dx]
-                    if other >= 0 and other != at:
-                        neck += 1.0 if place[other] >= k else -1.0
-            if k < least or k > n - least or along[order[k]] - along[at] < 1e-9:
-                continue
-            area = spread(sums[k]) + spread(sums[n] - sums[k])
-            if area < full:
-                full, full_at = area, k
-            narrow = neck * (1.0 / k + 1.0 / (n - k))
-            if narrow < thin:
-                thin, thin_at = narrow, k
+        sums = summed(piece, t, problem.logs, place)
+        ways = cut_at(piece, t, sums, place, index, least)
         for way in range(2):
-            k = full_at if way == 0 else thin_at
-            if k == 0 or (way == 1 and k == full_at):
-                continue
-            s = 2 * t + way
-            sketch_of(sums[k], grid, starts[s, 0])
-            sketch_of(sums[n] - sums[k], grid, starts[s, 1])
-            worth[s] = settle_sketches(problem, starts[s], 0, 1)
-    for m in range(most):
-        best = -1
+            s, k = 2 * t + way, ways[way]
+            if k > 0:
+                sketch_of(sums[k], problem.grid, starts[s, 0])
+                sketch_of(sums[n] - sums[k], problem.grid, starts[s, 1])
+                worth[s] = settle_sketches(problem, starts[s], 0, 1)
+    for m in range(evidence.shape[0]):
+        evidence[m], best = -math.inf, 0
         for s in range(2 * ANGLES):
-            if worth[s] > -math.inf and (best < 0 or worth[s] > worth[best]):
+            if worth[s] > worth[best]:
                 best = s
-        if best < 0:
-            break
+        if worth[best] == -math.inf:
+            continue
         for k in range(2):
             for x in range(WIDTH):
                 found[m, k, x] = starts[best, k, x]
         for s in range(2 * ANGLES):
-            if _same(starts[best], starts[s], SAME * grid[2]):
+            if _same(found[m], starts[s], SAME * problem.grid[2]):
                 worth[s] = -math.inf
         evidence[m] = settle_sketches(problem, found[m], 1, 2)
 

@@ -177,7 +177,7 @@ class Scene:
 
 
 def like(kind: tuple[int, int], other: Configuration) -> list[Values]:
-    """Return points of a kind of outline of about another's moments; regular ones turned to suit."""
+    """Return points of a kind of outline of about another's moments; of a regular one, turned."""
     p, was, corners = other.points[0], int(other.kinds[0]), int(other.corners[0])
     n = unknowns.call(was, corners)
     if was == REGULAR:

@@ -26,6 +26,9 @@ from tactile_graph_likelihood.single.problem import Places
 
 Mask = NDArray[np.bool_]
 
+Place = tuple[tuple[int, ...], Mask, float]
+"""Numbers of outlines, which elements are theirs, and what is unexplained there, in nats."""
+
 LEAST_PIECE = 4
 """Elements of a piece."""
 
@@ -36,7 +39,7 @@ PAIRS, SOFT = 3, 4
 """Pairs of sketches of a piece that are looked at, and rounds of the soft search for the first kind
 that is drawn of each."""
 
-HOPE, WORSE = 30.0, 12.0
+HOPE, WORSE = 20.0, 6.0
 """How much less log probability than one sketch of all, and than the best pair, a pair may have to
 be drawn."""
 
@@ -53,6 +56,9 @@ ODD = 2.0
 NEARLY, GAIN = 4.0, 0.1
 """How much less evidence a move may bring at first, for all outlines to settle beside it; what it
 must bring."""
+
+CLOSE = 15.0
+"""How much less evidence outlines may have than what they replace, for other kinds to be tried."""
 
 ROUND_FROM = 0.75
 """Ratio of a sketch's axes from which on it is taken to be a disc."""
@@ -129,7 +135,7 @@ class Search(Scene):
             beside, rest = self.beside(found, *out), found.without(*out)
             now = joined([found.only(k) for k in out])
             before = self.worth(self.settled(now, beside, 0)[0])
-            for new in self.instead(out, mask, beside, (left, room - rest.count)):
+            for new in self.instead(out, mask, beside, (before, left, room - rest.count)):
                 worth = self.worth(found) + self.worth(new) - before
                 n = rest.count + new.count
                 self.weighed(n, worth)
@@ -140,9 +146,7 @@ class Search(Scene):
                     return made
         return None
 
-    def places(
-        self, found: Configuration, room: int
-    ) -> Iterator[tuple[tuple[int, ...], Mask, float]]:
+    def places(self, found: Configuration, room: int) -> Iterator[Place]:
         """Yield one or two outlines that may be others, what is theirs, and what is unexplained.
 
         Those that explain least come first.
@@ -150,7 +154,9 @@ class Search(Scene):
         own, unexplained = self.owners(found)
         masks = [own == k for k in range(found.count)]
         wide = [dilated(mask) for mask in masks]
-        some = [((a,), masks[a], float(unexplained[wide[a]].sum())) for a in range(found.count)]
+        some: list[Place] = [
+            ((a,), masks[a], float(unexplained[wide[a]].sum())) for a in range(found.count)
+        ]
         some = [it for it in some if it[2] > SPLIT and found.count < room]
         for a in range(found.count):
             for b in range(a):
@@ -164,25 +170,26 @@ class Search(Scene):
                 yield out, mask, left
 
     def instead(
-        self, out: tuple[int, ...], mask: Mask, beside: JointProblem, left: tuple[float, int]
+        self, out: tuple[int, ...], mask: Mask, beside: JointProblem, left: tuple[float, float, int]
     ) -> Iterator[Configuration]:
         """Yield what may explain a mask beside others: one outline, two, or three."""
-        unexplained, room = left
+        before, unexplained, room = left
         one = self.sketch_of(mask)
         least = self.sketched(one, beside) - HOPE
         if len(out) > 1:
-            yield self.drawn(one, beside)
+            if least > before - 2.0 * HOPE:
+                yield self.drawn(one, beside, before)
             if unexplained < RECUT:
                 return
         pairs = self.parted(mask, beside)
         for worth, pair in pairs:
             if worth > max(least, pairs[0][0] - WORSE):
-                yield self.drawn(pair, beside)
+                yield self.drawn(pair, beside, before)
         if room > 2 and unexplained > THIRD and pairs:
             threes = [three for _, pair in pairs[:2] for three in self.thirds(mask, pair, beside)]
             worth, best = max(threes, key=lambda it: it[0], default=(-math.inf, one))
             if worth > max(least, pairs[0][0] - WORSE):
-                yield self.drawn(best, beside)
+                yield self.drawn(best, beside, before)
 
     def thirds(
         self, mask: Mask, pair: Values, beside: JointProblem
@@ -229,15 +236,22 @@ class Search(Scene):
         sketch_of.call(np.array(sums, dtype=np.float64), self.problem.grid, point[0])
         return point
 
-    def drawn(self, points: Values, beside: JointProblem) -> Configuration:
-        """Return outlines like sketches beside others, each of the kind that explains most."""
+    def drawn(
+        self, points: Values, beside: JointProblem, worth: float = -math.inf
+    ) -> Configuration:
+        """Return outlines like sketches beside others.
+
+        Each is of the kind that explains most, where they come near a worth.
+        """
         points = points.copy()
         settle_sketches.call(beside, points, SKETCHED, len(STAGES))
         made = joined([self.guessed(point) for point in points])
+        made = self.settled(made, beside, ROUNDS, SOFT)[0]
+        if self.worth(made) < worth - CLOSE:
+            return made
         for k in range(made.count):
-            rest = self.beside(made, k, before=beside)
-            first = int(made.kinds[k]), int(made.corners[k])
-            own = self.as_kind(first, made.only(k), rest, SOFT)
+            rest, first = self.beside(made, k, before=beside), (made.kinds[k], made.corners[k])
+            own = self.settled(made.only(k), rest, 0)[0]
             others = [self.as_kind(kind, own, rest) for kind in self.kinds if kind != first]
             made = made.with_one(k, max(own, *others, key=lambda it: it.log_evidence))
         return self.settled(made, beside, ROUNDS)[0]
@@ -250,7 +264,9 @@ class Search(Scene):
         its = Configuration(np.array([ELLIPSE]), np.array([0]), oval, 0.0)
         likely = (DISC, 0) if min(a, b) > ROUND_FROM * max(a, b) else (RECTANGLE, 0)
         kind = likely if likely in self.kinds else self.kinds[0]
-        return Configuration(np.array([kind[0]]), np.array([kind[1]]), like(kind, its)[0][None], 0.0)
+        return Configuration(
+            np.array([kind[0]]), np.array([kind[1]]), like(kind, its)[0][None], 0.0
+        )
 
     def owners(self, found: Configuration) -> tuple[Places, Values]:
         """Return which outline, from 0, each touched element belongs to, and what is unexplained.

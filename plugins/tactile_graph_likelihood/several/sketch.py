@@ -10,6 +10,7 @@ ln a, ln b, the angle of the first axis and the logarithm of its load.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,6 +37,7 @@ from tactile_graph_likelihood.single.element_terms import (
     on_level,
 )
 from tactile_graph_likelihood.single.information import DENSITY, SLIVER, Information
+from tactile_graph_likelihood.single.problem import Places
 
 STAGES = (
     (4.0, 1.5, 2.0, 0.0),
@@ -67,6 +69,31 @@ LONGEST = 1.0, 1.0, 0.4, 0.4, 0.5, 0.7
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
+Said = tuple[float, float, float, float, float]
+"""Load on an element, slope and information of its reading, coverage beyond 1, and how strongly
+that is held against sketches."""
+
+
+class Brought(NamedTuple):
+    """What each sketch brings to an element.
+
+    Coverage, shape (K,); its slopes where it is between 0 and 1, shape (K, 5); the load of a
+    covered element, shape (K,).
+    """
+
+    own: Values
+    rise: Values
+    scale: Values
+
+
+class Slopes(NamedTuple):
+    """Slopes at an element: of ln load, of coverage, and of which number; all shape (6 K,)."""
+
+    along: Values
+    tight: Values
+    used: Places
+
+
 @compiled_as_is
 def frame_of(p: Values, out: Values) -> None:
     """Write what `cover` takes of a sketch: centre, axes over their lengths, both lengths."""
@@ -80,15 +107,14 @@ def frame_of(p: Values, out: Values) -> None:
 def cover(frame: Values, x_cm: float, y_cm: float, half: float, rise: Values) -> float:
     """Return a sketch's coverage of a place; write its slope along centre, sizes and angle.
 
-    ``half`` is half the edge's width, in cm. Slopes are written only on the edge; -1 is returned
-    within it.
+    ``half`` is half the edge's width, in cm. Slopes are written only on the edge.
     """
     dx, dy = x_cm - frame[0], y_cm - frame[1]
     s, t = dx * frame[2] - dy * frame[3], -dx * frame[5] - dy * frame[4]
     s3, t3 = s * s * s, t * t * t
     r4 = s3 * s + t3 * t
     if r4 < 0.02:
-        return -1.0
+        return 1.0
     r = math.sqrt(math.sqrt(r4))
     cube = r4 / r
     s3, t3 = s3 / cube, t3 / cube
@@ -98,7 +124,7 @@ def cover(frame: Values, x_cm: float, y_cm: float, half: float, rise: Values) ->
     if at <= 0.0:
         return 0.0
     if at >= 1.0:
-        return -1.0
+        return 1.0
     fall = -3.0 * at * (1.0 - at) / steep
     rise[0] = -fall * right
     rise[1] = fall * up
@@ -109,114 +135,133 @@ def cover(frame: Values, x_cm: float, y_cm: float, half: float, rise: Values) ->
 
 
 @compiled_as_is
-def log_posterior(problem: JointProblem, points: Values, half: float, out: Information) -> float:
-    """Return what sketches add to the log posterior of a problem; write slope and information."""
-    grid, noise, prior, states = problem.grid, problem.noise, problem.prior, problem.states
-    slope, matrix = out
-    count, (rows, cols) = points.shape[0], states.shape
-    size = count * WIDTH
-    for x in range(size):
+def log_prior(problem: JointProblem, points: Values, out: Information) -> float:
+    """Return the log prior density of sketches; write its slope and information, alone so far."""
+    prior, (slope, matrix) = problem.prior, out
+    flat = math.log(prior[ACROSS] * prior[HEIGHT]) + math.log(0.5 * math.pi) + HALF_LN_TWO_PI
+    flat += 2.0 * math.log(math.log(prior[LARGEST] / prior[SMALLEST])) + math.log(prior[SPREAD])
+    for x in range(slope.shape[0]):
         slope[x] = 0.0
-        for y in range(size):
+        for y in range(slope.shape[0]):
             matrix[x, y] = 0.0
     total = 0.0
-    flat = math.log(prior[ACROSS] * prior[HEIGHT]) + math.log(0.5 * math.pi)
-    flat += 2.0 * math.log(math.log(prior[LARGEST] / prior[SMALLEST]))
-    for k in range(count):
-        off = (points[k, 5] - prior[MIDDLE]) / prior[SPREAD]
-        total -= 0.5 * off * off + HALF_LN_TWO_PI + math.log(prior[SPREAD]) + flat
-        slope[k * WIDTH + 5] = -off / prior[SPREAD]
-        matrix[k * WIDTH + 5, k * WIDTH + 5] = 1.0 / prior[SPREAD] ** 2
-    sigma, present, level = noise[SIGMA], 1.0 - noise[VOIDS], on_level(noise)
-    along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
-    rise, own, rises = np.empty(5), np.empty(count), np.zeros((count, 5))
-    frame, box, scale = np.empty((count, 7)), np.empty((count, 4)), np.empty(count)
-    first_x, first_y = grid[0] + 0.5 * grid[3], grid[1] + 0.5 * grid[3]
-    r0, r1, c0, c1 = rows, 0, cols, 0
+    for k in range(points.shape[0]):
+        off, at = (points[k, 5] - prior[MIDDLE]) / prior[SPREAD], k * WIDTH + 5
+        total -= 0.5 * off * off + flat
+        slope[at] = -off / prior[SPREAD]
+        matrix[at, at] = 1.0 / (prior[SPREAD] * prior[SPREAD])
+    return total
+
+
+@compiled_as_is
+def reading(
+    state: int, log: float, mu: float, noise: Values, level: float
+) -> tuple[float, float, float]:
+    """Return the log likelihood of an element's reading, its slope in mu, and its information.
+
+    ``log`` is that of the load read, of the least that shows where nothing is read.
+    """
+    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
+    z = (mu - log) / sigma
+    if state == ON:
+        a = level - 0.5 * z * z
+        if a < -30.0:
+            return 0.0, 0.0, 0.0
+        chance = 1.0 / (1.0 + math.exp(-a))
+        return a - math.log(chance), -chance * z / sigma, chance / (sigma * sigma)
+    none = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
+    score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * none)
+    return math.log(none), score, score * score
+
+
+@compiled_as_is
+def windows(grid: Values, points: Values, half: float, shape: tuple[int, int]) -> Values:
+    """Return first and last row and column, and one more, of each sketch's elements, (K, 4)."""
+    found = np.empty((points.shape[0], 4))
+    for k in range(points.shape[0]):
+        reach = 1.2 * math.exp(max(points[k, 2], points[k, 3])) + half
+        for m in range(2):
+            middle = (points[k, 1 - m] - grid[1 - m] - 0.5 * grid[3]) / grid[2]
+            found[k, 2 * m] = max(math.ceil(middle - reach / grid[2]), 0.0)
+            found[k, 2 * m + 1] = min(math.floor(middle + reach / grid[2]) + 1.0, shape[m])
+    return found
+
+
+@compiled_as_is
+def log_posterior(problem: JointProblem, points: Values, half: float, out: Information) -> float:
+    """Return what sketches add to the log posterior of a problem; write slope and information."""
+    grid, noise, states, count = problem.grid, problem.noise, problem.states, points.shape[0]
+    total, level = log_prior(problem, points, out), on_level(noise)
+    box = windows(grid, points, half, states.shape)
+    frame, scale = np.empty((count, 7)), np.empty(count)
+    own, rise, size = np.empty(count), np.zeros((count, 5)), count * WIDTH
+    brought = Brought(own, rise, scale)
+    work = Slopes(np.empty(size), np.empty(size), np.empty(size, np.int64))
     for k in range(count):
         frame_of(points[k], frame[k])
-        reach = 1.2 * math.exp(max(points[k, 2], points[k, 3])) + half
-        box[k, 0] = (points[k, 1] - reach - first_y) / grid[2]
-        box[k, 1] = (points[k, 1] + reach - first_y) / grid[2]
-        box[k, 2] = (points[k, 0] - reach - first_x) / grid[2]
-        box[k, 3] = (points[k, 0] + reach - first_x) / grid[2]
-        r0, r1 = min(r0, max(math.ceil(box[k, 0]), 0)), max(r1, min(int(box[k, 1]) + 1, rows))
-        c0, c1 = min(c0, max(math.ceil(box[k, 2]), 0)), max(c1, min(int(box[k, 3]) + 1, cols))
         scale[k] = math.exp(points[k, 5])
-    for i in range(r0, r1):
-        y_cm = first_y + grid[2] * i
-        for j in range(c0, c1):
-            x_cm = first_x + grid[2] * j
-            more = load = 0.0
+    rows, cols = states.shape
+    first, last, left, right = rows, 0, cols, 0
+    for k in range(count):
+        first, last = min(first, int(box[k, 0])), max(last, int(box[k, 1]))
+        left, right = min(left, int(box[k, 2])), max(right, int(box[k, 3]))
+    for i in range(first, last):
+        y_cm = grid[1] + 0.5 * grid[3] + grid[2] * i
+        for j in range(left, right):
+            x_cm = grid[0] + 0.5 * grid[3] + grid[2] * j
+            more, load, before = 0.0, problem.load[i, j], problem.share[i, j] - 1.0
             for k in range(count):
                 own[k] = 0.0
-                if box[k, 0] < i < box[k, 1] and box[k, 2] < j < box[k, 3]:
-                    own[k] = cover(frame[k], x_cm, y_cm, half, rise)
-                    if own[k] < 0.0:
-                        own[k] = 1.0
-                        for m in range(5):
-                            rises[k, m] = 0.0
-                    elif own[k] > 0.0:
-                        for m in range(5):
-                            rises[k, m] = rise[m]
-                    more += own[k]
-                    load += scale[k] * own[k]
+                if box[k, 0] <= i < box[k, 1] and box[k, 2] <= j < box[k, 3]:
+                    own[k] = cover(frame[k], x_cm, y_cm, half, rise[k])
+                more += own[k]
+                load += scale[k] * own[k]
             if more <= 0.0:
                 continue
-            n = 0
-            expected = problem.load[i, j] + load
-            for k in range(count):
-                if own[k] <= 0.0:
-                    continue
-                if own[k] < 1.0:
-                    floor = max(expected, SLIVER * scale[k])
-                    for m in range(5):
-                        along[n], tight[n] = scale[k] * rises[k, m] / floor, rises[k, m]
-                        used[n] = k * WIDTH + m
-                        n += 1
-                along[n], tight[n] = scale[k] * own[k] / expected, 0.0
-                used[n] = k * WIDTH + 5
-                n += 1
-            score = weight = 0.0
-            state = states[i, j]
-            for part in range(2 if problem.load[i, j] > 0.0 else 1):
-                if state == UNKNOWN:
-                    break
-                expected = problem.load[i, j] + (load if part == 0 else 0.0)
-                mu = math.log(expected)
-                if state == ON:
-                    w = (problem.logs[i, j] - mu) / sigma
-                    e = level - 0.5 * w * w
-                    chance = 1.0 / (1.0 + math.exp(-e)) if e > -30.0 else 0.0
-                    here = e if e > 30.0 else math.log1p(math.exp(e))
-                    if part == 0:
-                        score, weight = chance * w / sigma, chance / (sigma * sigma)
-                else:
-                    least = problem.logs[i, j] if state == UNDER else noise[LEAST]
-                    z = (mu - least) / sigma
-                    none = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-                    here = math.log(none)
-                    if part == 0:
-                        score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * none)
-                        weight = score * score
-                total += here if part == 0 else -here
-            over = problem.share[i, j] + more - 1.0
-            push = 0.0
+            here = 0.0, 0.0, 0.0
+            if states[i, j] != UNKNOWN:
+                shows = states[i, j] == ON or states[i, j] == UNDER
+                log = problem.logs[i, j] if shows else noise[LEAST]
+                here = reading(states[i, j], log, math.log(load), noise, level)
+                total += here[0]
+                if problem.load[i, j] > 0.0:
+                    bare = math.log(problem.load[i, j])
+                    total -= reading(states[i, j], log, bare, noise, level)[0]
+            over, push = before + more, 0.0
             if over > 0.0:
                 push = 1.0 / (OVERLAP * OVERLAP)
-                total -= 0.5 * push * over * over
-                before = max(problem.share[i, j] - 1.0, 0.0)
-                total += 0.5 * push * before * before
-            for a in range(n):
-                x = used[a]
-                slope[x] += score * along[a] - push * over * tight[a]
-                for b in range(a + 1):
-                    both = weight * along[a] * along[b] + push * tight[a] * tight[b]
-                    matrix[x, used[b]] += both
-    for x in range(size):
+                total -= 0.5 * push * (over * over - max(before, 0.0) ** 2)
+            add_element(brought, (load, here[1], here[2], over, push), work, out)
+    for x in range(out.slope.shape[0]):
         for y in range(x):
-            matrix[y, x] = matrix[x, y]
+            out.matrix[y, x] = out.matrix[x, y]
     return total
+
+
+@compiled_as_is
+def add_element(brought: Brought, said: Said, work: Slopes, out: Information) -> None:
+    """Add an element's part to slope and to the information's lower half."""
+    own, rise, scale = brought
+    load, score, weight, over, push = said
+    along, tight, used = work
+    n = 0
+    for k in range(own.shape[0]):
+        if own[k] <= 0.0:
+            continue
+        if own[k] < 1.0:
+            floor = max(load, SLIVER * scale[k])
+            for m in range(5):
+                along[n], tight[n] = scale[k] * rise[k, m] / floor, rise[k, m]
+                used[n] = k * WIDTH + m
+                n += 1
+        along[n], tight[n], used[n] = scale[k] * own[k] / load, 0.0, k * WIDTH + 5
+        n += 1
+    for a in range(n):
+        x = used[a]
+        out.slope[x] += score * along[a] - push * over * tight[a]
+        for b in range(a + 1):
+            both = weight * along[a] * along[b] + push * tight[a] * tight[b]
+            out.matrix[x, used[b]] += both
 
 
 @compiled_as_is
@@ -233,13 +278,29 @@ def add_loose(points: Values, pitch: float, loose: float, matrix: Values) -> Non
 
 
 @compiled_as_is
-def _climb(problem: JointProblem, points: Values, rounds: int, half: float, out: Information,
+def step_from(problem: JointProblem, points: Values, step: Values, trial: Values) -> None:
+    """Write sketches a step further, no longer than sensible, to where the prior is not zero."""
+    prior, pitch = problem.prior, problem.grid[2]
+    low, high = math.log(prior[SMALLEST]), math.log(prior[LARGEST])
+    for k in range(points.shape[0]):
+        for m in range(WIDTH):
+            most = LONGEST[m] * (pitch if m < 2 else 1.0)
+            trial[k, m] = points[k, m] + min(max(step[k * WIDTH + m], -most), most)
+        trial[k, 0] = min(max(trial[k, 0], prior[LEFT]), prior[LEFT] + prior[ACROSS])
+        trial[k, 1] = min(max(trial[k, 1], prior[TOP]), prior[TOP] + prior[HEIGHT])
+        for m in range(2, 4):
+            trial[k, m] = min(max(trial[k, m], low), high)
+        trial[k, 5] = max(trial[k, 5], lightest(problem.noise))
+
+
+@compiled_as_is
+def maximise_sketches(
+    problem: JointProblem, points: Values, rounds: int, half: float, out: Information,
     new: Information,
 ) -> float:  # fmt: skip
-    """Bring sketches, in place, near their joint mode; write the information there to ``out``."""
-    prior, pitch, size = problem.prior, problem.grid[2], points.shape[0] * WIDTH
+    """Bring sketches, in place, near their joint mode; return the log evidence around it."""
+    pitch, size = problem.grid[2], points.shape[0] * WIDTH
     tight, root, step = np.empty((size, size)), np.empty((size, size)), np.empty(size)
-    low, high = math.log(prior[SMALLEST]), math.log(prior[LARGEST])
     trial = points.copy()
     now, damping = log_posterior(problem, points, half, out), 0.0
     for _ in range(rounds):
@@ -252,15 +313,7 @@ def _climb(problem: JointProblem, points: Values, rounds: int, half: float, out:
         if not cholesky(tight, root):
             break
         solved(root, out.slope, step)
-        for k in range(points.shape[0]):
-            for m in range(WIDTH):
-                most = LONGEST[m] * (pitch if m < 2 else 1.0)
-                trial[k, m] = points[k, m] + min(max(step[k * WIDTH + m], -most), most)
-            trial[k, 0] = min(max(trial[k, 0], prior[LEFT]), prior[LEFT] + prior[ACROSS])
-            trial[k, 1] = min(max(trial[k, 1], prior[TOP]), prior[TOP] + prior[HEIGHT])
-            for m in range(2, 4):
-                trial[k, m] = min(max(trial[k, m], low), high)
-            trial[k, 5] = max(trial[k, 5], lightest(problem.noise))
+        step_from(problem, points, step, trial)
         then = log_posterior(problem, trial, half, new)
         if not then > now:
             if damping > 50.0:
@@ -270,12 +323,15 @@ def _climb(problem: JointProblem, points: Values, rounds: int, half: float, out:
         gained, now = then - now, then
         for x in range(size):
             points[x // WIDTH, x % WIDTH] = trial[x // WIDTH, x % WIDTH]
-            out.slope[x] = new.slope[x]
-            for y in range(size):
-                out.matrix[x, y] = new.matrix[x, y]
+        out, new = new, out
         damping *= 0.1
         if gained < ENOUGH:
             break
+    add_loose(points, pitch, GAP, out.matrix)
+    if not cholesky(out.matrix, root):
+        return -math.inf
+    for x in range(size):
+        now += HALF_LN_TWO_PI - math.log(root[x, x])
     return now
 
 
@@ -291,7 +347,7 @@ def settle_sketches(problem: JointProblem, points: Values, first: int, last: int
     size = points.shape[0] * WIDTH
     out = Information(np.empty(size), np.empty((size, size)))
     new = Information(np.empty(size), np.empty((size, size)))
-    root, noise, now = np.empty((size, size)), problem.noise.copy(), 0.0
+    noise, now = problem.noise.copy(), -math.inf
     for stage in range(first, last):
         rounds, edge, uneven, grow = STAGES[stage]
         noise[SIGMA] = uneven * problem.noise[SIGMA]
@@ -303,13 +359,7 @@ def settle_sketches(problem: JointProblem, points: Values, first: int, last: int
             points[k, 2] += grow
             points[k, 3] += grow
             points[k, 5] -= LIGHTER * grow
-        now = _climb(here, points, int(rounds), edge * problem.grid[3], out, new)
-    add_loose(points, problem.grid[2], GAP, out.matrix)
-    if not cholesky(out.matrix, root):
-        return -math.inf
-    now += size * HALF_LN_TWO_PI
-    for x in range(size):
-        now -= math.log(root[x, x])
+        now = maximise_sketches(here, points, int(rounds), edge * problem.grid[3], out, new)
     return now
 
 
@@ -323,6 +373,6 @@ def lay_sketches(problem: JointProblem, points: Values) -> None:
         for i in range(problem.load.shape[0]):
             for j in range(problem.load.shape[1]):
                 x_cm = grid[0] + 0.5 * grid[3] + grid[2] * j
-                own = abs(cover(frame, x_cm, grid[1] + 0.5 * grid[3] + grid[2] * i, half, rise))
+                own = cover(frame, x_cm, grid[1] + 0.5 * grid[3] + grid[2] * i, half, rise)
                 problem.load[i, j] += math.exp(points[k, 5]) * own
                 problem.share[i, j] += own
