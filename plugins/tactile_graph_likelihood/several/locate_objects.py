@@ -52,8 +52,8 @@ ANEW = np.array([0.4, 1.0, 0.3])
 anew."""
 
 LIKELY, VAGUE, STRANGE = 0.5, 0.62, -6.0
-"""Where an answer is flagged: the number's probability is no larger, the outlines' mean deviation of
-the centre is larger, in pitches, or the surprise no larger."""
+"""Where an answer is flagged: the number's probability is no larger, the mean deviation of all
+centres is larger, in pitches, or the surprise is no larger."""
 
 FEW_ELEMENTS = 1.7
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's

@@ -245,7 +245,7 @@ class Search(Scene):
         """
         points = points.copy()
         settle_sketches.call(beside, points, SKETCHED, len(STAGES))
-        made = joined([self.guessed(point) for point in points])
+        begun = made = joined([self.guessed(point) for point in points])
         made = self.settled(made, beside, ROUNDS, SOFT)[0]
         if self.worth(made) < worth - CLOSE:
             return made
@@ -253,7 +253,9 @@ class Search(Scene):
             rest, first = self.beside(made, k, before=beside), (made.kinds[k], made.corners[k])
             own = self.settled(made.only(k), rest, 0)[0]
             others = [self.as_kind(kind, own, rest) for kind in self.kinds if kind != first]
-            made = made.with_one(k, max(own, *others, key=lambda it: it.log_evidence))
+            if made.count == 1:
+                others += [self.as_kind(kind, begun, rest) for kind in self.kinds]
+            made = made.with_one(k, max([own, *others], key=lambda it: it.log_evidence))
         return self.settled(made, beside, ROUNDS)[0]
 
     def guessed(self, point: Values) -> Configuration:

@@ -107,7 +107,8 @@ def frame_of(p: Values, out: Values) -> None:
 def cover(frame: Values, x_cm: float, y_cm: float, half: float, rise: Values) -> float:
     """Return a sketch's coverage of a place; write its slope along centre, sizes and angle.
 
-    ``half`` is half the edge's width, in cm. Slopes are written only on the edge.
+    ``half`` is half the edge's width, in cm. Slopes are written only within the edge, as if its
+    width over the sketch's own stayed what it is there.
     """
     dx, dy = x_cm - frame[0], y_cm - frame[1]
     s, t = dx * frame[2] - dy * frame[3], -dx * frame[5] - dy * frame[4]
