@@ -92,7 +92,7 @@ class LocateObjects:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 3.0,
+        more: float = 2.0,
         settings: Annotated[
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,
