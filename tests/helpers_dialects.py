@@ -360,6 +360,46 @@ def _arrays() -> Iterator[Dialect]:
                   told=SHAPE)  # fmt: skip
 
 
+def matlab(packed: bool = False, **variables: Any) -> bytes:
+    """Return a MATLAB file of version 5; packed it is what MATLAB 7 writes."""
+    from scipy.io import savemat
+
+    buffer = io.BytesIO()
+    savemat(buffer, variables, do_compression=packed)
+    return buffer.getvalue()
+
+
+def cell_array(values: Iterable[Any]) -> NDArray[Any]:
+    """Return a cell array."""
+    items = list(values)
+    found = np.empty((1, len(items)), dtype=object)
+    found[0] = items
+    return found
+
+
+def _matlab() -> Iterator[Dialect]:
+    last = np.moveaxis(OBLONG, 0, -1)
+    yield Dialect("MATLAB, square frames on the last axis",
+                  matlab(mat=np.moveaxis(SQUARE, 0, -1), n=3.0), SQUARE)  # fmt: skip
+    yield Dialect("MATLAB 7, square frames on the first axis", matlab(True, mat=SQUARE), SQUARE)
+    yield Dialect("MATLAB, times beside", matlab(p=last, time_ms=1000.0 * TIMES[:12]), OBLONG,
+                  times_s=TIMES[:12])  # fmt: skip
+    yield Dialect("MATLAB, nothing tells the frames' axis", matlab(p=last), OBLONG,
+                  refused="give rows and columns", told=SHAPE)  # fmt: skip
+    yield Dialect("MATLAB 7, a long film", matlab(True, p=np.moveaxis(film(60, 6, 10), 0, -1)),
+                  film(60, 6, 10))  # fmt: skip
+    rec = {"pressure": last, "t": TIMES[:12], "unit": "kPa", "pitch": "8 mm"}
+    yield Dialect("MATLAB, a struct with its unit and pitch", matlab(rec=rec), OBLONG,
+                  times_s=TIMES[:12], quantity="kilopascal", pitch_cm=(0.8, 0.8))  # fmt: skip
+    yield Dialect("MATLAB, a cell array", matlab(True, frames=cell_array(OBLONG)), OBLONG)
+    structs = np.array([[(f, t) for f, t in zip(OBLONG, TIMES, strict=False)]],
+                       dtype=[("data", object), ("time", float)])  # fmt: skip
+    yield Dialect("MATLAB, a struct a frame", matlab(frames=structs), OBLONG, times_s=TIMES[:12])
+    yield Dialect("MATLAB, two films", matlab(left=OBLONG[0], right=OBLONG[1]), OBLONG[1:2],
+                  refused="name one with sensor", told={"sensor": "right"})  # fmt: skip
+    yield Dialect("MATLAB, one matrix", matlab(p=OBLONG[0]), OBLONG[:1])
+
+
 def _pictures() -> Iterator[Dialect]:
     grey = np.clip(OBLONG, 0, 255).astype(np.uint8)
     deep = OBLONG.astype(np.uint16)
@@ -379,7 +419,7 @@ def _pictures() -> Iterator[Dialect]:
 
 def dialects(pictures: bool = True) -> list[Dialect]:
     """Return all files; those of pictures take imageio."""
-    plain = [_serial, _named, _longs, _spreadsheets, _matrices, _arrays]
+    plain = [_serial, _named, _longs, _spreadsheets, _matrices, _arrays, _matlab]
     return [d for part in [*plain, *([_pictures] if pictures else [])] for d in part()]
 
 

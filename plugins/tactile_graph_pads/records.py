@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+from collections.abc import Hashable, Mapping, Sequence
+from functools import cache
+from typing import Any, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -45,7 +46,7 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
     if document.problems:
         raise RecordError(document.problems)
     try:
-        record = TypeAdapter(kind).validate_python(document.data)
+        record: T = _adapter(cast(Hashable, kind)).validate_python(document.data)
     except ValidationError as error:
         for e in _one_a_place(document.data, error.errors(include_url=False)):
             _note(document, e, kind)
@@ -54,6 +55,12 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
     if document.problems:
         raise RecordError(document.problems)
     return record
+
+
+@cache
+def _adapter(kind: Hashable) -> TypeAdapter[Any]:
+    """Return pydantic's validator of a record, which takes longer to make than to use."""
+    return TypeAdapter(cast(Any, kind))
 
 
 def _refuse_yes_for_numbers(document: Document, data: Any, value: Any, path: Path) -> None:

@@ -20,18 +20,19 @@ from tactile_graph.cli.arguments import (
     source_options,
 )
 from tactile_graph.cli.endings import INTERRUPTED, SOME_FAILED, exited
+from tactile_graph.cli.outputs import FORMATS, Output
+from tactile_graph.cli.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
-from tactile_graph.files import check_target, is_plain
+from tactile_graph.files import is_plain
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph.cli.outputs import Writer
     from tactile_graph.engine.table import Table
 
-IN_A_PICTURE = 12
 LONG_RUN = 200
 STALLED_S = 1.0
-PICTURES = (".png", ".svg", ".pdf", ".jpg")
 
 
 @click.command(epilog=EXIT_CODES)
@@ -49,14 +50,15 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
     "-o",
     "--output",
     metavar="FILE",
-    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout. How it was made "
-    "is written beside it, as FILE.meta.json.",
+    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; or stacks of the "
+    "images and masks asked for (--only): out.h5, out.zarr. How it was made is written beside it, "
+    "as FILE.meta.json.",
 )
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["jsonl", "csv", "parquet"]),
-    help="Format of the lines, where the file's name does not say; alone it means '-o -'.",
+    type=click.Choice(FORMATS),
+    help="Format of what is written, where the file's name does not say; alone it means '-o -'.",
 )
 @click.option(
     "--full",
@@ -71,7 +73,8 @@ PICTURES = (".png", ".svg", ".pdf", ".jpg")
 @click.option(
     "--plot",
     metavar="FILE",
-    help=f"Draw the first {IN_A_PICTURE} frames: a row a frame, a column a node (.png, .svg, …).",
+    help=f"Draw the first {IN_A_STRIP} frames, a row a frame, a column a node (.png, .svg, .pdf); "
+    "or a film, what was found drawn over every frame (.gif, .mp4).",
 )
 def run(
     pipeline: str | None,
@@ -93,41 +96,21 @@ def run(
     Without recordings and --source the pipeline's own source is used. People get a table on
     stdout, with errors where the truth is known; programs ask for lines with -o.
     """
-    output = output or ("-" if form else None)
-    _check_files(recordings, output, plot)
-    _check_form(full, long, output, form)
+    lines = Output.of(output, form, full, long)
+    _check_files(recordings, lines, plot)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, output, form, full, long, plot).go()
+    _Run(opened, tuple(only), span, seed, lines, plot).go()
 
 
-def _check_files(recordings: Sequence[str], output: str | None, plot: str | None) -> None:
+def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
     """Refuse what could not be written in the end, before the work."""
-    for option, name in (("-o", output), ("--plot", plot)):
-        if name is None or name == "-":
-            continue
-        check_target(option, name)
-        if any(Path(r).resolve() == Path(name).resolve() for r in recordings):
+    if output is not None:
+        output.check()
+    if plot is not None:
+        check_plot(plot)
+    for option, name in (("-o", output.name if output else None), ("--plot", plot)):
+        if name is not None and any(Path(r).resolve() == Path(name).resolve() for r in recordings):
             raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
-    if plot is not None and Path(plot).suffix.lower() not in PICTURES:
-        raise UsageError(f"--plot {plot}: its name must end in {', '.join(PICTURES)}")
-
-
-def _check_form(full: bool, long: bool, output: str | None, form: str | None) -> None:
-    """Refuse to give in full, or an object a row, what has no place for it."""
-    from tactile_graph.cli.writers import format_of
-
-    written = None if output is None else format_of(output, form)
-    if long and written not in ("csv", "parquet"):
-        got = "a table on the screen" if written is None else "JSON lines"
-        text = "they hold every list already" if written else "has a row a frame"
-        raise UsageError(f"--long: {got}: {text}; give -o FILE.csv or -o FILE.parquet")
-    if written == "parquet":
-        from tactile_graph.cli.parquet import pyarrow
-
-        pyarrow()
-    if full and (output is None or format_of(output, form) != "jsonl"):
-        got = "a table" if output is None else "CSV"
-        raise UsageError(f"--full: {got} holds single numbers only; give -o FILE.jsonl or -o -")
 
 
 @dataclass
@@ -138,12 +121,8 @@ class _Run:
     only: tuple[str, ...]
     span: Span
     seed: int
-    output: str | None
-    form: str | None
-    full: bool
-    long: bool
+    output: Output | None
     plot: str | None
-    kept: list[Result] = field(default_factory=list)
     interrupted: bool = False
     form_of_table: Table | None = None
     quantity: str = "raw"
@@ -166,31 +145,20 @@ class _Run:
         # Lines own stdout; what is said to people then goes to stderr.
         self.people = console(stderr=self.output is not None)
         self.table: Any = None
-        self.lines = self._lines()
+        self.drawing: Plot | None = None
+        if self.plot is not None:
+            self.drawing = plot_of(self.plot, self.pipeline.name, self.asked)
+        self.lines: Writer | None = None
+        if self.output is not None:
+            self.lines, self.form_of_table = self.output.writer(self.pipeline, self.asked)
         on_screen = self.lines is None and sys.stdout.isatty()
         self.stderr = console(stderr=True)
         self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
         with Interrupts() as interrupts:
-            with stdout_for_programs(self.output == "-"):
+            with stdout_for_programs(self.output is not None and self.output.name == "-"):
                 self._frames(interrupts.held)
             code = self._close()
         click.get_current_context().exit(code)
-
-    def _lines(self) -> Any:
-        from tactile_graph.cli.writers import Csv, JsonLines, LineFile, format_of
-        from tactile_graph.engine.table import make_table
-
-        if self.output is None:
-            return None
-        form = format_of(self.output, self.form)
-        if form == "jsonl":
-            return LineFile(self.output, JsonLines(self.full))
-        self.form_of_table = make_table(self.pipeline, self.asked, self.long)
-        if form == "csv":
-            return LineFile(self.output, Csv(self.form_of_table))
-        from tactile_graph.cli.parquet import ParquetFile
-
-        return ParquetFile(self.output, self.form_of_table)
 
     # -- the frames --------------------------------------------------------------------------
 
@@ -243,8 +211,8 @@ class _Run:
             self.lines.write(result)
             if self.tally.n == 1:
                 self._provenance(complete=False)  # should the run be killed
-        if self.plot is not None and len(self.kept) < IN_A_PICTURE:
-            self.kept.append(result)
+        if self.drawing is not None:
+            self.drawing.add(result)
         self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
 
     def _row(self, result: Result) -> None:
@@ -272,8 +240,7 @@ class _Run:
         if self.tally.n or self.error is None:
             self._finish_lines()
             self.tally.close(self.people, self.report, self.interrupted)
-            self._picture()
-            self._hints()
+            self._hints(self.drawing is not None and self.drawing.save(self.stderr))
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted:
@@ -293,16 +260,11 @@ class _Run:
             self.lines.close()
             self._provenance(complete=self.error is None and not self.interrupted)
 
-    def _picture(self) -> None:
-        if self.plot is not None and self.kept:
-            from tactile_graph.draw.strip import save_strip
-
-            save_strip(self.kept, Path(self.plot))
-
     def _provenance(self, complete: bool) -> None:
         from tactile_graph.provenance import provenance, write_provenance
 
-        if self.output in (None, "-") or not is_plain(str(self.output)):
+        name = None if self.output is None else self.output.name
+        if name in (None, "-") or not (is_plain(str(name)) or Path(str(name)).is_dir()):
             return  # nothing stands beside a pipe or a device
         data = provenance(
             self.pipeline, self.seed, self.report,
@@ -310,7 +272,7 @@ class _Run:
             asked=list(self.asked), columns=self._units(),
             frames={"from": self.span.start, "to": self.span.stop}, result=self.tally.data(),
         )  # fmt: skip
-        write_provenance(str(self.output), data)
+        write_provenance(str(name), data)
 
     def _units(self) -> dict[str, str] | None:
         from tactile_graph.engine.table import units_of
@@ -318,17 +280,20 @@ class _Run:
         table = self.form_of_table
         return None if table is None else units_of(table, self.quantity)
 
-    def _hints(self) -> None:
+    def _hints(self, drawn: bool) -> None:
         say = self.people
         hidden = self.table.hidden if self.table is not None else []
         if hidden:
             names = ", ".join(c.key for c in hidden)
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
-        written = None if self.lines is not None and self.lines.broken else self.output
-        for name in (written, self.plot if self.kept else None):
+        whole = self.output is not None and self.lines is not None and not self.lines.broken
+        written = self.output.name if whole and self.output is not None else None
+        for name in (written, self.plot if drawn else None):
             if name not in (None, "-"):
                 say.print(f"wrote {name}", style="dim", soft_wrap=True)
+        for note in self.drawing.notes() if self.drawing is not None and drawn else ():
+            say.print(note, style="dim", soft_wrap=True)
         most = self.span.most if self.error is None else None
         if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
             say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")

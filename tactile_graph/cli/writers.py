@@ -10,8 +10,6 @@ import sys
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
-import click
-
 from tactile_graph.api.result import Result
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.rows import as_data, without_nan
@@ -19,8 +17,6 @@ from tactile_graph.engine.table import Table
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain, said
-
-FORMATS = {".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv", ".parquet": "parquet"}
 
 
 class Lines(Protocol):
@@ -109,24 +105,6 @@ def _csv_line(cells: list[Any]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerow(cells)
     return text.getvalue()
-
-
-def format_of(output: str, given: str | None) -> str:
-    """Return ``jsonl``, ``csv`` or ``parquet``, as asked for or by the file's name.
-
-    Raises
-    ------
-    click.UsageError
-        If neither says.
-    """
-    if given is not None:
-        return given
-    suffix = Path(output).suffix.lower()
-    if output != "-" and suffix not in FORMATS:
-        raise click.UsageError(
-            f"-o {output}: its name must end in {', '.join(FORMATS)}, or give --format"
-        )
-    return FORMATS.get(suffix, "jsonl")
 
 
 class LineFile:

@@ -117,7 +117,7 @@ class Kernel(Generic[P, R]):
     def _enough_to_do(self, args: tuple[Any, ...]) -> bool:
         """Count a call; return whether it is time for machine code."""
         self._calls_left -= 1
-        self._elements_left -= sum(getattr(a, "size", 1) for a in args)
+        self._elements_left -= _n_elements(args)
         return self._calls_left < 0 or self._elements_left < 0
 
     def _noted(self, *args: Any) -> R:
@@ -162,6 +162,13 @@ class Kernel(Generic[P, R]):
 
             self._callee = Callee(self.loops)
         return self._callee.numba_type()
+
+
+def _n_elements(value: object) -> int:
+    """Return how many numbers an argument holds: of an array, of records of them, or one."""
+    if isinstance(value, tuple):
+        return sum(map(_n_elements, value))
+    return int(getattr(value, "size", 1))
 
 
 def _unboxed(answer: object) -> object:

@@ -65,7 +65,7 @@ class Pen:
             self._say(value)
             return
         records = display_list(value)
-        self._paint(records)
+        self.paint(records)
         notes = [self._told(r) for r in records if isinstance(r, Note)]
         if self._lies_outside():
             notes.append("outside the picture")
@@ -74,11 +74,12 @@ class Pen:
 
     def truth(self, objects: Sequence[TrueObject]) -> None:
         """Paint the outlines of what truly lay there, dashed."""
-        self._paint(r for r in truth_list(objects) if isinstance(r, Outline))
+        self.paint(r for r in truth_list(objects) if isinstance(r, Outline))
 
     # -- the records of a display list ---------------------------------------------------------
 
-    def _paint(self, records: Iterable[Record]) -> None:
+    def paint(self, records: Iterable[Record]) -> None:
+        """Paint records over one another, in their order."""
         for record in records:
             if isinstance(record, Heat):
                 self._heat(record.image)

@@ -108,7 +108,7 @@ def figure_png(figure: Figure) -> bytes:
     return figure_bytes(figure, "png")
 
 
-def figure_bytes(figure: Figure, kind: str) -> bytes:
+def figure_bytes(figure: Figure, kind: str, dpi: float = DPI) -> bytes:
     """Return the figure in one of `FORMATS`; the same figure gives the same bytes."""
     import matplotlib as mpl
 
@@ -117,7 +117,7 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
     with warnings.catch_warnings(), mpl.rc_context({"svg.hashsalt": "tactile-graph"}):
         # A name in a script that the font lacks is drawn as boxes; that harms nobody's run.
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        figure.savefig(buffer, format=kind, dpi=DPI, metadata={dated: None} if dated else None)
+        figure.savefig(buffer, format=kind, dpi=dpi, metadata={dated: None} if dated else None)
     return buffer.getvalue()
 
 

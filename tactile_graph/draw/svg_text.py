@@ -1,9 +1,8 @@
-"""Lines of text in an SVG: how wide they are at most, and their elements."""
+"""Lines of text in a drawing: how wide they are at most, and how SVG spells them."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
@@ -43,19 +42,6 @@ def _em(char: str) -> float:
     if ord(char) > 0x2E7F:
         return 1.05
     return 0.72 if char.isupper() or ord(char) > 0x7F else 0.62
-
-
-def texts(lines: Iterable[Line], x: float, y: float, anchor: str) -> list[str]:
-    """Return the elements of lines below one another, the first with its foot at y."""
-    made = []
-    for number, line in enumerate(lines):
-        style = ' font-weight="bold"' if line.bold else ""
-        style += ' font-style="italic"' if line.italic else ""
-        made.append(
-            f'<text x="{px(x)}" y="{px(y + number * LINE_PX)}" text-anchor="{anchor}" '
-            f'font-size="{px(line.size)}" fill="{line.ink}"{style}>{escaped(line.text)}</text>'
-        )
-    return made
 
 
 def px(value: float) -> str:

@@ -185,11 +185,22 @@ class _Compiler:
         for part in _compared_parts(node):
             if not self.is_comparable(part):
                 raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
+        if isinstance(node, ast.BinOp):
+            self.refuse_arithmetic(node)
         if isinstance(node, ast.Compare):
             self.refuse_mixed(node)
             self.refuse_settled(node)
             self.refuse_impossible(node)
         return node
+
+    def refuse_arithmetic(self, node: ast.BinOp) -> None:
+        """Refuse texts and lists: a few signs of these can ask for all memory there is."""
+        for side in (node.left, node.right):
+            if isinstance(side, ast.Tuple | ast.List):
+                raise ConditionError("arithmetic takes numbers, not a list", side.col_offset)
+            if self.sort(side) == "text":
+                text = f"arithmetic takes numbers, and {self.spell(side)} is a text"
+                raise ConditionError(text, getattr(node, "col_offset", 0))
 
     def refuse_settled(self, node: ast.Compare) -> None:
         """Refuse a comparison that reads no node: it comes out the same in every frame."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -15,6 +16,7 @@ Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
 DEEPEST = 40
 MOST_CHARACTERS = 1_000_000
+OFTEN_READ = 20_000  # characters; nodes of longer texts are not kept
 
 _SCALARS = {
     "tag:yaml.org,2002:" + kind for kind in ("null", "bool", "int", "float", "str", "timestamp")
@@ -96,25 +98,34 @@ def read_document(text: str, file: str) -> Document:
         document.problem_at(Mark(file, 1, 1), f"the file is too long: {len(text)} characters, "
                             f"allowed are {MOST_CHARACTERS}")  # fmt: skip
         return document
-    loader = _Loader(text) if _clean(document) else None
-    if loader is None:
+    if not _clean(document):
         return document
     try:
-        node = loader.get_single_node()
+        node = (_composed if len(text) <= OFTEN_READ else _composed.__wrapped__)(text)
         if node is None:
             document.problem_at(Mark(file, 1, 1), "the file is empty")
             return document
-        _measure(node, document)
-        document.data = _Reader(document, loader).read(node, ())
+        document.data = _Reader(document).read(node, ())
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
         document.problem_at(place, f"this is not YAML: {_yaml_words(error)}")
     except (yaml.YAMLError, _TooMuch) as error:
         document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
+    return document
+
+
+@lru_cache(maxsize=128)
+def _composed(text: str) -> yaml.Node | None:
+    """Return YAML's nodes, which nobody changes; the same pads and pipelines are read often."""
+    loader = _Loader(text)
+    try:
+        node: yaml.Node | None = loader.get_single_node()
     finally:
         loader.dispose()
-    return document
+    if node is not None:
+        _measure(node)
+    return node
 
 
 def _yaml_words(error: yaml.MarkedYAMLError) -> str:
@@ -158,7 +169,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
 
-def _measure(node: yaml.Node, document: Document) -> None:
+def _measure(node: yaml.Node) -> None:
     """Refuse documents that aliases make endless or huge, before anything is built."""
     count = 0
 
@@ -187,9 +198,9 @@ def _children(node: yaml.CollectionNode) -> Iterable[yaml.Node]:
 
 
 class _Reader:
-    def __init__(self, document: Document, loader: yaml.SafeLoader) -> None:
+    def __init__(self, document: Document) -> None:
         self.document = document
-        self.loader = loader
+        self.constructor = yaml.constructor.SafeConstructor()
 
     def _mark(self, node: yaml.Node) -> Mark:
         return Mark(self.document.file, node.start_mark.line + 1, node.start_mark.column + 1)
@@ -212,7 +223,7 @@ class _Reader:
         if node.tag == "tag:yaml.org,2002:timestamp":
             return node.value
         try:
-            return self.loader.construct_object(node, deep=True)
+            return self.constructor.construct_object(node, deep=True)
         except (ValueError, LookupError, yaml.YAMLError):
             # A tag can call any word a number: PyYAML then stumbles in several ways.
             kind = node.tag.rpartition(":")[2]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,6 +13,11 @@ from numpy.typing import NDArray
 from tactile_graph.errors import did_you_mean
 from tactile_graph.wires.image import QUANTITIES, Image
 from tactile_graph.wires.shapes import Shape
+
+LARGEST = 1e100
+"""Beyond this, what a sensor gave is no reading."""
+PITCHES_CM = (1e-6, 1e6)
+"""The least and the greatest pitch of a frame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,18 +73,37 @@ class Frame:
     ) -> Frame:
         """Return a frame around a copy of ``values``, shape (rows, columns).
 
-        Cells that are NaN or infinite become invalid and hold 0.
+        Cells that are NaN, infinite or beyond 1e100 become invalid and hold 0; squares of larger
+        ones are no numbers any more. Those nearer to 0 than 1e-100 hold 0 for the same reason.
+
+        Raises
+        ------
+        ValueError
+            If values are no real numbers or have no rows and columns, the pitch is not within
+            1e-6 to 1e6 cm, the origin or a time is not finite, or nobody knows the quantity.
         """
-        copy = np.array(values, dtype=np.float64)
+        copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
             raise ValueError(f"a frame takes values of shape (rows, columns), got {copy.shape}")
-        finite = np.isfinite(copy)
+        size = np.abs(copy)
+        finite = size <= LARGEST
         valid = None if finite.all() else finite
         if valid is not None:
             copy[~valid] = 0.0  # a NaN left in place would spread through the first sum
-        x, y = (float(p) for p in np.broadcast_to(pitch_cm, 2))
-        if not (0.0 < x < np.inf and 0.0 < y < np.inf):
+        copy[size < 1.0 / LARGEST] = 0.0
+        both = pitch_cm if isinstance(pitch_cm, tuple) else np.broadcast_to(pitch_cm, 2)
+        x, y = (float(p) for p in both)
+        if not (x > 0.0 and y > 0.0):
             raise ValueError(f"a pitch must be > 0 cm, got {pitch_cm}")
+        low, high = PITCHES_CM
+        if not (low <= x <= high and low <= y <= high):
+            raise ValueError(f"a pitch must be within {low:g} to {high:g} cm, got {pitch_cm}")
+        if not (isfinite(origin_cm[0]) and isfinite(origin_cm[1])):
+            raise ValueError(f"an origin must be finite, got {origin_cm} cm")
+        for name in ("time_s", "device_time_s"):
+            time_s = rest.get(name)
+            if time_s is not None and not isfinite(time_s):
+                raise ValueError(f"{name} must be finite, got {time_s}")
         if quantity not in QUANTITIES:
             hint = did_you_mean(quantity, QUANTITIES) or f"; allowed: {', '.join(QUANTITIES)}"
             raise ValueError(f"unknown quantity {quantity!r}{hint}")
@@ -87,3 +112,19 @@ class Frame:
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""
         return replace(self, index=index)
+
+    def _repr_html_(self) -> str:
+        from tactile_graph.wires.notebook import frame_html
+
+        return frame_html(self)
+
+
+def _real(values: NDArray[Any]) -> NDArray[np.float64]:
+    """Return a copy as float64; errors as of `Frame.of`."""
+    given = np.asarray(values)
+    if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
+        raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")
+    try:
+        return np.array(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"a frame takes real numbers: {error}") from None

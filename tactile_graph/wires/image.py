@@ -135,6 +135,11 @@ class Image(_Gridded):
         return self.values if self.valid is None else np.where(self.valid, self.values, fill)
 
     @property
+    def unit(self) -> str:
+        """Unit of the values; the quantity itself where that is its own unit."""
+        return UNITS.get(self.quantity, self.quantity)
+
+    @property
     def total(self) -> float:
         """Sum over the valid cells, in units of the quantity."""
         return float(self.values.sum() if self.valid is None else self.values[self.valid].sum())
@@ -144,6 +149,11 @@ class Image(_Gridded):
         """Largest valid value, in units of the quantity; 0 where no cell is valid."""
         values = self.values if self.valid is None else self.values[self.valid]
         return float(values.max()) if values.size else 0.0
+
+    def _repr_html_(self) -> str:
+        from tactile_graph.wires.notebook import image_html
+
+        return image_html(self)
 
     def __repr__(self) -> str:
         return (
@@ -208,6 +218,11 @@ class Mask(_Gridded):
     def area_cm2(self) -> float:
         """Area of the cells that are on, gaps between the elements included."""
         return self.count * self.cell_area_cm2
+
+    def _repr_html_(self) -> str:
+        from tactile_graph.wires.notebook import mask_html
+
+        return mask_html(self)
 
     def __repr__(self) -> str:
         return f"<Mask {self.rows}x{self.columns}, {self.count} on, pitch {self.pitch_cm} cm>"

@@ -27,7 +27,9 @@ from tactile_graph_mrf.energy.total import energy
 pytest.importorskip("maxflow", reason="graph_cuts needs PyMaxflow")
 
 TRUNCATED = Model(smoothness="truncated_quadratic", lines="none")
-ALL = [gnc, restore, mean_field, graph_cuts, trw]
+# Shipped pipelines use none of the last two, and much of them is compiled.
+RARE = [pytest.param(step, marks=pytest.mark.slow) for step in (mean_field, trw)]
+ALL = [gnc, restore, graph_cuts, *RARE]
 
 
 def coarse(**changes):
@@ -51,7 +53,7 @@ def test_the_same_image_gives_the_same_bits(step):
     assert one.trace == pytest.approx(two.trace, rel=1e-12)  # sums, compiled or not
 
 
-@pytest.mark.parametrize("step", [gnc, restore, mean_field, graph_cuts])
+@pytest.mark.parametrize("step", [gnc, restore, graph_cuts, RARE[0]])
 def test_explicit_lines_are_found_around_the_square(step):
     model = Model(n_levels=40, lambda_l=100.0)
     image = square(5.0)
@@ -123,7 +125,7 @@ def test_small_grids_are_restored(step, shape):
     assert np.isfinite(restored.image.values).all()
 
 
-@pytest.mark.parametrize("step", [gnc, restore, mean_field])
+@pytest.mark.parametrize("step", [gnc, restore, RARE[0]])
 @pytest.mark.parametrize("noise", ["laplace", "student_t", "poisson", "outliers"])
 def test_every_noise_is_restored_to_less_than_the_observation_costs(step, noise):
     image = square(5.0, size=8)
@@ -143,7 +145,7 @@ def test_restore_never_raises_the_energy_whatever_the_order(order):
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", ["quadratic", "truncated_quadratic", "absolute"])
-@pytest.mark.parametrize("step", [restore, trw, graph_cuts, mean_field])
+@pytest.mark.parametrize("step", [restore, graph_cuts, *RARE])
 def test_nine_cells_come_near_the_minimum_of_all_labellings(step, kind, seed):
     """None may be below it; convex cuts reach it, and the others on these images within 3 %."""
     image, model = tiny(seed), tiny_model(smoothness=kind)

@@ -108,6 +108,7 @@ outputs: [hulls, circles, tracks]
 """
 
 
+@pytest.mark.slow
 def test_shapes_fitted_to_each_contact_are_followed_drawn_and_reported(tmp_path: Path) -> None:
     Path(tmp_path / "followed.yaml").write_text(FOLLOWED)
     pipeline = load(tmp_path / "followed.yaml")

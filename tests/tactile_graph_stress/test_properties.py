@@ -44,7 +44,10 @@ BOUNDS = {
 }
 """Errors of equivariance that are allowed, in units of eps times conditioning."""
 
-RESTORERS = ("gibbs", "gnc", "graph_cuts", "icm", "mean_field", "posterior", "restore", "trw")
+RESTORERS = [
+    *("gibbs", "gnc", "graph_cuts", "icm", "restore"),
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("mean_field", "posterior", "trw")),
+]
 MASKS = ("boundary_scan", "mask_points", "orientation", "orientation_robust", "fit_rectangle_load")
 QUICK_MODEL = {"n_levels": 8, "lines": "marginal"}
 JUDGES: dict[str, Judge] = {}

@@ -55,6 +55,10 @@ Exit codes:
 @click.option("--product", is_flag=True, help="Cross every value of a sweep with every other's.")
 @click.option("--lineage", is_flag=True,
               help="Compare the pipelines that those named evolved from, too.")  # fmt: skip
+@click.option("--reference", default="", metavar="VARIANT",
+              help="Hold every other variant against this one: how far they agree in every frame, "
+              "and, where the truth is known, whose errors are smaller. Without it agreement is "
+              "told where nobody knows the truth.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed of everything random.")  # fmt: skip
 @click.option("--only", metavar="NODE", multiple=True,
@@ -93,6 +97,7 @@ class _Options:
     sweeps: tuple[str, ...]
     product: bool
     lineage: bool
+    reference: str
     seed: int
     only: tuple[str, ...]
     csv_path: str | None
@@ -195,12 +200,14 @@ class _Run:
         from tactile_graph.cli.terminal import console
         from tactile_graph.steps.injected import Report
         from tactile_graph_compare.run.session import Session
+        from tactile_graph_compare.variants.prepare import referred
 
         self.options = options
         self.span = span
         self.notes = notes
         self.report: Report = Report()
-        self.session: Session = Session(prepared, options.seed)
+        reference = options.reference and referred(prepared, options.reference)
+        self.session: Session = Session(prepared, options.seed, reference=reference)
         # What is written to stdout for programs owns it; people are then told on stderr.
         self.people = console(stderr="-" in options.files.values())
         self.stderr = console(stderr=True)

@@ -27,9 +27,13 @@ DIFFERENCES = ("variant", "reference", "quantity", "unit", "mean", "low", "high"
                "method", "n_both", "n_only_variant", "n_only_reference", "n_neither",
                "verdict")  # fmt: skip
 
+AGREEMENTS = ("variant", "reference", "quantity", "unit", "mean", "median", "p95", "largest",
+              "bias", "n_both", "n_only_variant", "n_only_reference", "n_neither")  # fmt: skip
+APART = ("frame", "time_s", "label", "variant", "reference", "quantity", "unit", "difference")
+
 
 def write_csv(comparison: Comparison, path: str | Path) -> list[str]:
-    """Write the errors to a ``.csv`` file, or four files to a folder; return what was written.
+    """Write the errors to a ``.csv`` file, or all to a folder; return what was written.
 
     Parameters
     ----------
@@ -37,7 +41,9 @@ def write_csv(comparison: Comparison, path: str | Path) -> list[str]:
     path : str or Path
         A name that ends in ``.csv`` is a file: a row for each frame, variant, quantity and true
         object. Any other is a folder, made where there is none, that gets ``errors.csv`` (the
-        same), ``times.csv`` (a row a frame and variant), ``scores.csv`` and ``differences.csv``.
+        same), ``times.csv`` (a row a frame and variant), ``scores.csv`` and ``differences.csv``;
+        where variants were held against one another, ``apart.csv`` (a row for each pair of
+        answers) and ``agreement.csv``.
     """
     path = Path(path)
     if path.suffix.lower() == ".csv":
@@ -53,6 +59,10 @@ def write_csv(comparison: Comparison, path: str | Path) -> list[str]:
             DIFFERENCES, (_fields(d, DIFFERENCES) for d in comparison.differences)
         ),
     }
+    if comparison.agreements:
+        rows = (_fields(a, AGREEMENTS) for a in comparison.agreements)
+        files["agreement.csv"] = csv_text(AGREEMENTS, rows)
+        files["apart.csv"] = csv_text(APART, apart_rows(comparison))
     for name, text in files.items():
         write_whole(path / name, text)
     return [str(path / name) for name in files]
@@ -68,6 +78,13 @@ def error_rows(comparison: Comparison) -> Iterator[Row]:
             of_object = number if number >= 0 else ""
             yield (*_frame(comparison, position), score.variant, score.quantity, score.unit,
                    of_object, error if known else "", int(known))  # fmt: skip
+
+
+def apart_rows(comparison: Comparison) -> Iterator[Row]:
+    """Yield a row for each pair of answers."""
+    for a in comparison.agreements:
+        for position, off in zip(a.positions.tolist(), a.differences.tolist(), strict=True):
+            yield (*_frame(comparison, position), a.variant, a.reference, a.quantity, a.unit, off)
 
 
 def time_rows(comparison: Comparison) -> Iterator[Row]:
@@ -122,6 +139,8 @@ def as_json(comparison: Comparison) -> str:
         "variants": [_variant(v) for v in c.variants],
         "scores": [_named(s, SCORES) for s in c.scores],
         "differences": [_named(d, DIFFERENCES) for d in c.differences],
+        "reference": c.reference or None,
+        "agreements": [_named(a, AGREEMENTS) for a in c.agreements],
         "time_differences": [asdict(t) for t in c.time_differences],
         "lineage": [_evolution(e) for e in c.lineage],
         "nodes": [_node(n) for n in c.graph.nodes],

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from tactile_graph_compare.records.comparison import Comparison, Evolution
-from tactile_graph_compare.records.scores import Difference, Score
-from tactile_graph_compare.score.quantities import DECIMALS
+from tactile_graph_compare.records.scores import Agreement, Difference, Score
+from tactile_graph_compare.score.quantities import DECIMALS, QUANTITIES
 
 LEFT = ("variant", "against", "quantity", "verdict", "guard")
 """Columns of words; all others hold numbers."""
@@ -32,8 +32,8 @@ class Table:
 
 
 def tables(comparison: Comparison) -> list[Table]:
-    """Return errors, paired differences and times, those that hold anything."""
-    found = [errors(comparison), differences(comparison), times(comparison)]
+    """Return errors, paired differences, agreement and times, those that hold anything."""
+    found = [errors(comparison), differences(comparison), agreement(comparison), times(comparison)]
     return [t for t in found if t.rows]
 
 
@@ -85,6 +85,31 @@ def _difference_row(d: Difference) -> tuple[str, ...]:
     counts = (d.n_both, d.n_only_variant, d.n_only_reference, d.n_neither)
     return (named(d.quantity, d.unit), d.variant, d.reference, *bounds, *map(str, counts),
             d.verdict)  # fmt: skip
+
+
+def agreement(comparison: Comparison) -> Table:
+    """Return how far the variants lie from one another, quantity by quantity."""
+    columns = ("quantity", "variant", "against", "mean", "median", "95 %", "largest", "bias",
+               "both", "only it", "only other", "neither")  # fmt: skip
+    rows = tuple(
+        _agreement_row(a) for q in QUANTITIES for a in comparison.agreements if a.quantity == q
+    )
+    where = "in every frame" if comparison.reference else "where nobody knows what truly lay there"
+    note = f"absolute differences of what both found, {where}; neither: frames"
+    can_go = ("neither", "bias", "95 %", "median", "only other", "only it", "against")
+    return Table("Agreement", columns, rows, note if rows else "", can_go)
+
+
+def _agreement_row(a: Agreement) -> tuple[str, ...]:
+    parts = (a.mean, a.median, a.p95, a.largest, a.bias)
+    counts = (a.n_both, a.n_only_variant, a.n_only_reference, a.n_neither)
+    return (
+        named(a.quantity, a.unit),
+        a.variant,
+        a.reference,
+        *(number(p, a.unit) for p in parts),
+        *("" if n is None else str(n) for n in counts),
+    )
 
 
 def times(comparison: Comparison) -> Table:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph import Pipeline
 from tactile_graph_compare.records.frames import ChosenFrame, DifferenceImage
 from tactile_graph_compare.records.graph import MergedGraph, Saving, Timeline
-from tactile_graph_compare.records.scores import Difference, Score, TimeDifference, Times
+from tactile_graph_compare.records.scores import Agreement, Difference, Score, TimeDifference, Times
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,12 +95,17 @@ class Comparison:
         One for each variant and quantity that it gives and the truth knows.
     differences : tuple of Difference
         Of every variant but the first, against its parent or else the first, or the first that
-        has the quantity at all.
+        has the quantity at all; against ``reference`` where there is one.
     time_differences : tuple of TimeDifference
         The same for times.
     lineage : tuple of Evolution
     chosen : tuple of ChosenFrame
         In the order of the frames.
+    agreements : tuple of Agreement
+        How far variants lie from one another where nobody knows what is true, or, with a
+        ``reference``, from that one everywhere.
+    reference : str
+        Label of the variant that was named to hold all others against; empty if none was.
     provenance : mapping
         How to make it again, as plain data.
     seconds : float
@@ -122,6 +127,8 @@ class Comparison:
     time_differences: tuple[TimeDifference, ...]
     lineage: tuple[Evolution, ...]
     chosen: tuple[ChosenFrame, ...]
+    agreements: tuple[Agreement, ...]
+    reference: str
     provenance: Mapping[str, Any]
     seconds: float
     interrupted: bool = False
@@ -147,6 +154,12 @@ class Comparison:
     def score(self, variant: str, quantity: str) -> Score | None:
         """Return a variant's score of a quantity; None if it was not scored on it."""
         found = (s for s in self.scores if s.variant == variant and s.quantity == quantity)
+        return next(found, None)
+
+    def agreement(self, variant: str, reference: str, quantity: str) -> Agreement | None:
+        """Return how far a variant lies from another in a quantity; None if that is not known."""
+        wanted = (variant, reference, quantity)
+        found = (a for a in self.agreements if (a.variant, a.reference, a.quantity) == wanted)
         return next(found, None)
 
     def difference(self, variant: str, quantity: str) -> Difference | None:

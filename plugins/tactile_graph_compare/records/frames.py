@@ -45,18 +45,23 @@ class NodeStory:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """Why a frame was kept: ``regular``, ``worst`` of a variant's quantity, or ``no answer``."""
+    """Why a frame was kept: ``regular``, ``worst`` of a variant's quantity, ``no answer``, or
+    ``apart``, where it lies farthest from a ``reference``.
+    """
 
     why: str
     variant: str = ""
     quantity: str = ""
     error: float | None = None
+    reference: str = ""
 
     def __str__(self) -> str:
         if self.why == "regular":
             return "one of every so many"
         if self.why == "no answer":
             return f"{self.variant} gave no {self.quantity}"
+        if self.why == "apart":
+            return f"{self.quantity} of {self.variant} farthest from {self.reference}"
         return f"worst {self.quantity} of {self.variant}"
 
 

@@ -126,3 +126,47 @@ class TimeDifference:
     high_us: float | None
     ratio: float
     """Median over frames of the variant's time by the reference's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Agreement:
+    """How far a variant's answers lie from another's, whatever is true.
+
+    Parameters
+    ----------
+    variant, reference, quantity, unit : str
+    positions : ndarray of int64, shape (n,)
+        Row of the frame of each pair of answers.
+    differences : ndarray of float64, shape (n,)
+        The variant's less the reference's; of centres their distance, of identities 1 where the
+        names differ and 0 where not.
+    mean, median, p95, largest : float or None
+        Of the absolute differences; None without a pair.
+    bias : float or None
+        Mean of the signed differences; of centres the length of the mean offset.
+    n_only_variant, n_only_reference : int or None
+        Things (of counts and identities: frames) that one alone has an answer for; None for
+        sizes and angles, which stand or fall with the centre.
+    n_neither : int or None
+        Frames in which neither has an answer.
+    """
+
+    variant: str
+    reference: str
+    quantity: str
+    unit: str
+    positions: NDArray[np.int64]
+    differences: NDArray[np.float64]
+    mean: float | None
+    median: float | None
+    p95: float | None
+    largest: float | None
+    bias: float | None
+    n_only_variant: int | None
+    n_only_reference: int | None
+    n_neither: int | None
+
+    @property
+    def n_both(self) -> int:
+        """Pairs of answers."""
+        return len(self.differences)

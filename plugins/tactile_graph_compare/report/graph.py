@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
+from tactile_graph.draw.graph_boxes import Mark
 from tactile_graph.draw.svg import graph_svg
-from tactile_graph.draw.svg_boxes import Mark
 from tactile_graph_compare.output.tables import saving, us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.graph import MergedNode

@@ -130,7 +130,8 @@ def warnings(comparison: Comparison) -> Iterator[Html]:
         yield tag(
             "p",
             "Nobody knows what truly lay there, or no output can be compared with it: there are "
-            "no errors to show.",
+            "no errors to show"
+            + (", but how far the variants agree." if comparison.agreements else "."),
             class_="warning",
         )
     for variant in comparison.variants:

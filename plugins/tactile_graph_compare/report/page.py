@@ -14,8 +14,14 @@ from tactile_graph_compare.report.lineage import lineage
 from tactile_graph_compare.report.markup import Html, figure, join, plots, scroll, section, tag
 from tactile_graph_compare.report.provenance import provenance
 from tactile_graph_compare.report.scatter import scatter
-from tactile_graph_compare.report.spread import error_spread, intervals, time_spread
+from tactile_graph_compare.report.spread import (
+    agreement_spread,
+    error_spread,
+    intervals,
+    time_spread,
+)
 from tactile_graph_compare.report.style import STYLE
+from tactile_graph_compare.score.quantities import QUANTITIES
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 """What the page may load: nothing. A browser holds it to that."""
@@ -30,6 +36,7 @@ def page(comparison: Comparison) -> str:
         ("pareto", "Error against time", _pareto(comparison)),
         ("errors", "Errors", _errors(comparison)),
         ("differences", "Paired differences", _differences(comparison)),
+        ("agreement", "Agreement", _agreement(comparison)),
         ("times", "Times", _times(comparison)),
         ("lineage", "Lineage", _lineage(comparison, album)),
         ("frames", "Chosen frames", _frames(comparison, album)),
@@ -91,6 +98,18 @@ def _differences(comparison: Comparison) -> Html | None:
     return join(drawn, table(comparison, rows))
 
 
+def _agreement(comparison: Comparison) -> Html | None:
+    rows = tables.agreement(comparison)
+    if not rows.rows:
+        return None
+    drawn = figure(
+        plots(*(agreement_spread(comparison, q) for q in QUANTITIES)),
+        "Histograms of all differences. Dot: median; thick: the middle half; thin: the middle "
+        "90 %.",
+    )
+    return join(table(comparison, rows), drawn)
+
+
 def _times(comparison: Comparison) -> Html:
     drawn = figure(
         plots(time_spread(comparison)),
@@ -120,8 +139,9 @@ def _frames(comparison: Comparison, album: Album) -> Html | None:
         return None
     left, right, bottom, top = comparison.chosen[0].frame.image.extent_cm
     told = (
-        "Some at even distances, those in which each variant is worst, and those it gave no "
-        "answer in. Errors are signed; within a frame, colours mean the same for all variants. "
+        "Some at even distances, those in which each variant is worst or farthest from another, "
+        "and those it gave no answer in. Errors are signed; within a frame, colours mean the same "
+        "for all variants. "
         f"A picture shows the pad from above, {right - left:.3g} cm wide and {bottom - top:.3g} cm "
         "high."
     )

@@ -49,6 +49,24 @@ def error_spread(comparison: Comparison, quantity: str) -> Html | None:
     return spread(f"Spread of the errors of {quantity}", title, rows, log=False)
 
 
+def agreement_spread(comparison: Comparison, quantity: str) -> Html | None:
+    """Return how the signed differences of a quantity are spread, a row a pair; None without."""
+    found = [a for a in comparison.agreements if a.quantity == quantity]
+    numbers = {v.label: v.number for v in comparison.variants}
+    rows = [
+        Row(numbers[a.variant], f"{a.variant} against {numbers[a.reference]}", a.differences)
+        for a in found
+    ]
+    if quantity == "identity":
+        title = "identities differ (1) or agree (0)"
+    elif quantity == "centre":
+        title = error_title(quantity, "cm", "distance of ")
+    else:
+        unit = found[0].unit if found else ""
+        title = error_title(quantity, unit, "difference of ") + ", it less the other"
+    return spread(f"Spread of the differences of {quantity}", title, rows, log=False)
+
+
 def time_spread(comparison: Comparison) -> Html | None:
     """Return how the times per frame are spread; None where nothing ran."""
     rows = []

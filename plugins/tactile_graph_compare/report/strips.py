@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactile_graph.draw.grid_png import heat_stops
+from tactile_graph.wires.cells_png import heat_stops
 from tactile_graph_compare.output.tables import signed
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import Choice, ChosenFrame, NodeStory
@@ -16,7 +16,7 @@ from tactile_graph_compare.score.quantities import QUANTITIES
 MOST_BYTES = 1_600_000
 """Of pictures; frames beyond it are left out, and it is said."""
 OPEN_FRAMES = 3
-_RANK = {"worst": 0, "no answer": 1, "regular": 2}
+_RANK = {"worst": 0, "apart": 1, "no answer": 2, "regular": 3}
 
 
 def strips(comparison: Comparison, album: Album) -> Html:
@@ -55,6 +55,9 @@ def told_choices(choices: Sequence[Choice]) -> str:
             found.setdefault(str(c), [])
         elif c.why == "worst":
             found.setdefault(f"worst {c.quantity} of ", []).append(c.variant)
+        elif c.why == "apart":
+            pair = f"{c.variant} from {c.reference}"
+            found.setdefault(f"{c.quantity} farthest apart: ", []).append(pair)
         else:
             found.setdefault(f"no {c.quantity} from ", []).append(c.variant)
     return "; ".join(k + ", ".join(labels) for k, labels in found.items())
@@ -124,16 +127,17 @@ def _row(
     comparison: Comparison, album: Album, frame: ChosenFrame, label: str, columns: Sequence[str]
 ) -> Html:
     mine = [c for c in frame.choices if c.variant == label]
-    badges = [
-        tag("span", f"★ worst {c.quantity}" if c.why == "worst" else f"no {c.quantity}",
-            class_="badge")
-        for c in mine
-    ]  # fmt: skip
+    badges = [tag("span", _badge(c), class_="badge") for c in mine]
     errors = [tag("small", told_error(q, e)) for q, e in frame.errors.get(label, {}).items()]
     head = tag("th", named(comparison, label), badges, errors, scope="row")
     cells = [tag("td", album.frame(frame))]
     cells += [cell(album, frame, frame.stories[label].get(n), label) for n in columns]
     return tag("tr", head, cells, class_="worst" if mine else None)
+
+
+def _badge(choice: Choice) -> str:
+    words = {"worst": "★ worst", "apart": "↔ farthest", "no answer": "no"}
+    return f"{words[choice.why]} {choice.quantity}"
 
 
 def told_error(quantity: str, error: float) -> str:

@@ -23,7 +23,7 @@ from tactile_graph_compare.variants.one_source import (
     on_source,
     without_source,
 )
-from tactile_graph_compare.variants.prepare import PreparedVariant, prepare
+from tactile_graph_compare.variants.prepare import PreparedVariant, prepare, referred
 from tactile_graph_compare.variants.request import VariantRequest, parse_request
 from tactile_graph_compare.variants.sweeps import Sweep
 
@@ -39,6 +39,7 @@ def compare(
     sweeps: Mapping[str, Sequence[Any]] | None = None,
     crossed: bool = False,
     lineage: bool = False,
+    reference: str = "",
     seed: int = 0,
     chooser: FrameChooser | None = None,
     registry: Registry | None = None,
@@ -63,6 +64,9 @@ def compare(
         Whether several sweeps are crossed instead of going side by side.
     lineage : bool
         Whether the pipelines that those named evolved from are compared too.
+    reference : str
+        The variant to hold all others against, by its label; without it each is held against
+        what it evolved from, or the first.
     seed : int
         Of everything random: the source's frames, the steps, the resampling.
     chooser : FrameChooser, optional
@@ -89,7 +93,7 @@ def compare(
         raise UsageError("give frames or a source, not both")
     else:
         prepared = without_source(prepared)
-    session = Session(prepared, seed, chooser)
+    session = Session(prepared, seed, chooser, reference and referred(prepared, reference))
     for frame in session.warmed(islice(iter(frames), n_frames)):
         session.add(frame)
     return summarise(session, report, notes=notes)

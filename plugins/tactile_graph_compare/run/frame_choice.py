@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from tactile_graph import Result
 from tactile_graph_compare.records.frames import Choice
@@ -36,9 +37,27 @@ class FrameChooser:
     _stride: int = field(default=1, init=False)
     _worst: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
     _silent: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
+    _apart: dict[tuple[tuple[str, str], str], _Worst] = field(default_factory=dict, init=False)
 
-    def add(self, position: int, result: Result, worst: Mapping[str, Mapping[str, float]]) -> None:
-        """Look at a frame: ``worst`` holds, by variant and quantity, its worst error or NaN."""
+    def add(
+        self,
+        position: int,
+        result: Result,
+        worst: Mapping[str, Mapping[str, float]],
+        apart: Mapping[tuple[str, str], Mapping[str, float]] = MappingProxyType({}),
+    ) -> None:
+        """Look at a frame.
+
+        Parameters
+        ----------
+        position : int
+            Its row.
+        result : Result
+        worst : mapping
+            Variant -> quantity -> its worst error, or NaN.
+        apart : mapping
+            (variant, reference) -> quantity -> how far they lie apart.
+        """
         if self.n_regular and position % self._stride == 0:
             self._regular[position] = result
             if len(self._regular) > 2 * self.n_regular:
@@ -47,6 +66,11 @@ class FrameChooser:
         for variant, errors in worst.items():
             for quantity, error in errors.items():
                 self._look(position, result, (variant, quantity), error)
+        for pair, differences in apart.items():
+            for quantity, off in differences.items():
+                known = self._apart.get((pair, quantity))
+                if off and (known is None or off > known.error):
+                    self._apart[pair, quantity] = _Worst(position, result, off)
 
     def _look(self, position: int, result: Result, key: tuple[str, str], error: float) -> None:
         if math.isnan(error):
@@ -73,6 +97,9 @@ class FrameChooser:
             choose(at.position, at.result, Choice("worst", variant, quantity, at.error))
         for (variant, quantity), at in self._silent.items():
             choose(at.position, at.result, Choice("no answer", variant, quantity))
+        for ((variant, reference), quantity), at in self._apart.items():
+            choice = Choice("apart", variant, quantity, at.error, reference)
+            choose(at.position, at.result, choice)
         return [(p, results[p], tuple(choices[p])) for p in sorted(choices)]
 
 

@@ -12,6 +12,7 @@ from tactile_graph import Result
 from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.plugins.registry import selected
 from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.run.agreement_log import AgreementLog
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.logs import MergedLog, VariantLog
 from tactile_graph_compare.variants.merge import merge
@@ -33,6 +34,8 @@ class Session:
         Seed of the steps that take randomness.
     chooser : FrameChooser, optional
         Chooses the frames that are kept whole.
+    reference : str
+        Label of the variant that all others are held against; see `AgreementLog`.
     """
 
     def __init__(
@@ -40,6 +43,7 @@ class Session:
         prepared: Sequence[PreparedVariant],
         seed: int = 0,
         chooser: FrameChooser | None = None,
+        reference: str = "",
     ) -> None:
         self.prepared = tuple(prepared)
         self.seed = seed
@@ -54,6 +58,8 @@ class Session:
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
+        self.reference = reference
+        self.agreement = AgreementLog(self.logs, reference)
         self.chooser = chooser or FrameChooser()
         self.merged_log = MergedLog(first.plan)
         self.started = time.perf_counter()
@@ -126,7 +132,7 @@ class Session:
             self.promises.check(result)
         position = self.n
         worst = {log.prepared.label: log.add(position, result) for log in self.logs}
-        self.chooser.add(position, result, worst)
+        self.chooser.add(position, result, worst, self.agreement.add(position, frame))
         self.merged_log.add(frame, result, whole_us)
         self.last = time.perf_counter()
         return result

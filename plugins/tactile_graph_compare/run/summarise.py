@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.steps.injected import Report
+from tactile_graph_compare.output.notebook import ShownComparison
 from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
 from tactile_graph_compare.records.graph import Saving, Timeline
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
@@ -57,12 +58,14 @@ def summarise(
         {v.label: v.times.median_us for v in variants},
     )  # fmt: skip
     rng = np.random.default_rng(session.seed)
-    references = {v.label: v.parent or variants[0].label for v in variants[1:]}
-    references = {k: r for k, r in references.items() if r != k}
+    references = _references(variants, session.reference)
     differences = tuple(_differences(references, scores, rng))
     times = tuple(_time_differences(references, variants))
     chosen = chosen_frames(session)
-    return Comparison(
+    of_parents = differences
+    if session.reference:
+        of_parents = tuple(_differences(_references(variants, ""), scores, rng))
+    return ShownComparison(
         variants=variants,
         frames=session.merged_log.frames(),
         source=_source(session),
@@ -72,8 +75,10 @@ def summarise(
         scores=scores,
         differences=differences,
         time_differences=times,
-        lineage=tuple(_evolutions(variants, differences, times, chosen)),
+        lineage=tuple(_evolutions(variants, of_parents, times, chosen)),
         chosen=chosen,
+        agreements=session.agreement.agreements(),
+        reference=session.reference,
         provenance=_provenance(session, report or Report(), interrupted, start),
         seconds=session.last - session.started,
         interrupted=interrupted,
@@ -135,6 +140,15 @@ def _saving(session: Session, variants: Sequence[Variant]) -> Saving:
 # -- one against the other -------------------------------------------------------------------
 
 
+def _references(variants: Sequence[Variant], reference: str) -> dict[str, str]:
+    """Return what each variant is held against: the one named, or its parent, or the first."""
+    if reference:
+        found = {v.label: reference for v in variants}
+    else:
+        found = {v.label: v.parent or variants[0].label for v in variants[1:]}
+    return {label: other for label, other in found.items() if other != label}
+
+
 def _differences(
     references: Mapping[str, str], scores: Sequence[Score], rng: np.random.Generator
 ) -> list[Difference]:
@@ -145,7 +159,9 @@ def _differences(
     found = []
     for score in scores:
         others = by_quantity[score.quantity]
-        reference = references.get(score.variant, "")
+        if score.variant not in references:
+            continue
+        reference = references[score.variant]
         if reference not in others:
             reference = next(iter(others))  # in the order the variants were named
         if reference != score.variant:
@@ -177,8 +193,9 @@ def _evolutions(
         parent = by_label[child.parent]
         added, removed, changed, kept = nodes_between(parent.pipeline, child.pipeline)
         both = [n for n in child.pipeline.nodes if n in parent.pipeline.nodes]
-        time = next((t for t in times if t.variant == child.label), None)
-        if time is None:  # the first variant named evolved from a later one
+        pair = (child.label, parent.label)
+        time = next((t for t in times if (t.variant, t.reference) == pair), None)
+        if time is None:  # another reference was named, or the first evolved from a later one
             time = time_difference_of(child.label, parent.label, child.times, parent.times)
         found.append(
             Evolution(

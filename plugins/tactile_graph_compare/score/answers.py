@@ -8,9 +8,21 @@ from operator import attrgetter
 from typing import Any
 
 from tactile_graph import Pipeline
-from tactile_graph.inspect import Ref, arms, field_type, public_fields, shape_kind, with_value
+from tactile_graph.inspect import (
+    NO_VALUE,
+    Ref,
+    Skipped,
+    arms,
+    field_type,
+    public_fields,
+    shape_kind,
+    with_value,
+)
 from tactile_graph.steps.signature import list_item
 from tactile_graph_compare.score.quantities import quantities_of
+
+Outcomes = Callable[[Ref], Any]
+"""Gives the outcome at a reference of a variant."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +69,28 @@ class Answers:
         found |= {"count": None} if self.counts else {}
         found |= {"identity": None} if self.identities else {}
         return tuple(found)
+
+    def placed(self, outcomes: Outcomes) -> tuple[Places, Any]:
+        """Return the first output that was not skipped; a failed one has no other stand in."""
+        for place in self.places:
+            value = outcomes(place.ref)
+            if value.__class__ is not Skipped:
+                return place, value
+        return self.places[0], outcomes(self.places[0].ref)
+
+    def counted(self, outcomes: Outcomes) -> int | None:
+        """Return how many things the first output that has a value counts; None without any."""
+        for ref, count in self.counts:
+            value = outcomes(ref)
+            if value.__class__ not in NO_VALUE:
+                return count(value)
+        return None
+
+    def named(self, outcomes: Outcomes) -> str:
+        """Return the name the first output that was not skipped gives; empty for a stranger."""
+        values = [outcomes(ref) for ref in self.identities]
+        value = next((v for v in values if v.__class__ is not Skipped), values[0])
+        return "" if value.__class__ in NO_VALUE or not value.known else str(value.name)
 
 
 def answers_of(pipeline: Pipeline, asked: Sequence[str]) -> Answers:

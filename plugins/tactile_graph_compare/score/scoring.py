@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.inspect import NO_VALUE, Ref, Skipped, shape_kind, with_value
+from tactile_graph.inspect import NO_VALUE, shape_kind, with_value
 from tactile_graph.wires.frame import Frame, TrueObject
-from tactile_graph_compare.score.answers import Answers, Places
+from tactile_graph_compare.score.answers import Answers, Outcomes
 from tactile_graph_compare.score.pairing import paired
 from tactile_graph_compare.score.quantities import distance_cm, errors_against, quantities_of
 
@@ -20,8 +19,6 @@ GATE_CM = 2.0
 """What lies farther from any true object is no answer for one, where several are looked for."""
 NOBODY = -1
 """The object of a target that is the whole frame, or of which nobody can say which was meant."""
-
-Outcomes = Callable[[Ref], Any]
 
 
 @dataclass
@@ -87,7 +84,7 @@ class Scorer:
     def _places(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
         if not self.answers.places:
             return
-        place, value = self._answering(outcomes)
+        place, value = self.answers.placed(outcomes)
         if value.__class__ in NO_VALUE:
             meant = range(len(truth)) if place.many or len(truth) == 1 else [NOBODY] * bool(truth)
             for number in meant:
@@ -102,15 +99,6 @@ class Scorer:
             for number in sorted(set(range(len(truth))) - {n for n, _ in pairs}):
                 self._missing(position, number, set(self._of(truth[number])))
         self.errors["centre"].n_extra += len(things) - len(pairs)
-
-    def _answering(self, outcomes: Outcomes) -> tuple[Places, Any]:
-        """Return the first output that was not skipped; a failed one has no other stand in."""
-        for place in self.answers.places:
-            value = outcomes(place.ref)
-            if value.__class__ is not Skipped:
-                return place, value
-        place = self.answers.places[0]
-        return place, outcomes(place.ref)
 
     def _single(self, truth: tuple[TrueObject, ...], things: list[Any]) -> list[tuple[int, Any]]:
         """Return the true object an only answer is nearest to, one of its kind before others."""
@@ -151,22 +139,17 @@ class Scorer:
     def _count(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
         if not self.answers.counts:
             return
-        for ref, count in self.answers.counts:
-            value = outcomes(ref)
-            if value.__class__ not in NO_VALUE:
-                off = float(count(value) - len(truth))
-                self.errors["count"].add(position, NOBODY, off)
-                return
-        if truth:
+        count = self.answers.counted(outcomes)
+        if count is not None:
+            self.errors["count"].add(position, NOBODY, float(count - len(truth)))
+        elif truth:
             self.errors["count"].add(position, NOBODY)
 
     def _identity(self, position: int, truth: tuple[TrueObject, ...], outcomes: Outcomes) -> None:
         names = {t.name for t in truth} - {""}
         if not self.answers.identities:
             return
-        values = [outcomes(ref) for ref in self.answers.identities]
-        value = next((v for v in values if v.__class__ is not Skipped), values[0])
-        said = "" if value.__class__ in NO_VALUE or not value.known else value.name
+        said = self.answers.named(outcomes)
         if names:
             error = float(said not in names) if said else math.nan
             self.errors["identity"].add(position, NOBODY, error)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph import Pipeline, load
-from tactile_graph.errors import PipelineError, UsageError, did_you_mean
+from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
 from tactile_graph.inspect import Graph, plain
 from tactile_graph.plugins.registry import Registry
 from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
@@ -118,6 +118,22 @@ def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[
         return
     for settings in combinations(own, crossed):
         yield _set(loaded, settings)
+
+
+def referred(prepared: Sequence[PreparedVariant], name: str) -> str:
+    """Return the label of the variant that is meant, by its label or as it was given.
+
+    Raises
+    ------
+    UsageError
+        If it is none of them.
+    """
+    for one in prepared:
+        if name in (one.label, one.given, one.given.strip("'")):
+            return one.label
+    labels = [p.label for p in prepared]
+    hint = did_you_mean(name, labels)
+    raise UsageError(f"--reference {name}: must be one of the variants: {one_of(labels)}{hint}")
 
 
 # -- settings by name ------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from annotated_types import Gt
 
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Rectangle
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse
 from tactile_graph_fitters.rectangle.fitted_rectangle import alike
@@ -91,6 +92,11 @@ def rectangle_from_ellipse(
     EllipseRectangle
         ``length_cm`` and ``breadth_cm`` are the full axes 2 a and 2 b (thesis 4.3.5 and 4.3.6).
 
+    Raises
+    ------
+    Degenerate
+        If ``inside_cm`` leaves no side.
+
     Notes
     -----
     An ellipse nearest to the outline of a rectangle cuts its sides and passes inside its
@@ -103,6 +109,11 @@ def rectangle_from_ellipse(
     ratio = b / a
     length = 2.0 * a * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 1])) + 2.0 * inside_cm
     breadth = 2.0 * b * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 2])) + 2.0 * inside_cm
+    if not min(length, breadth) > 0.0:
+        raise Degenerate(
+            f"sides of {length - 2.0 * inside_cm:.3g} by {breadth - 2.0 * inside_cm:.3g} cm leave "
+            f"nothing {-2.0 * inside_cm:.3g} cm further in (inside_cm: {inside_cm:g})"
+        )
     quality = (ellipse.rms_cm, ellipse.n_points) if isinstance(ellipse, FittedEllipse) else (0.0, 0)
     return EllipseRectangle(
         ellipse.x_cm,

@@ -60,6 +60,8 @@ class Likeness:
 
     def remember(self, units: NDArray[np.uint8], n: int) -> None:
         """Take note of ``n`` good units; of the last of these, shape (k, size), in their order."""
+        if len(units) == 0:
+            return
         self._recent.append(units)  # views: joined only when they are asked for
         self._n_recent += len(units)
         while self._n_recent - len(self._recent[0]) >= KEPT:

@@ -18,6 +18,8 @@ Pieces of a frame must come in order besides, and take but two."""
 STANDS_FOR = 12
 """Units in most of which a header among the values must be to count as standing there."""
 MOST_CONTENDERS = 8
+LOOKS_AHEAD = 4096
+"""Bytes in which the next beginning is looked for at once."""
 
 
 class Found(NamedTuple):
@@ -118,19 +120,21 @@ class Phases:
         """Decide on the units from ``at`` on, or ask for more of them."""
         size, n = self.layout.size, self._n_units
         places = self.layout.beginnings(array, at, at + n * size) - at
+        if len(places) == 0:
+            return self._on(self._next_beginning(array, at + n * size))
         table = np.zeros((n, size), np.bool_)
         table.reshape(-1)[places] = True
         first = self._first(array, at, table)
         lockable = np.flatnonzero(first >= 0)
-        if len(lockable) == 0:
-            return self._on(at)
+        if len(lockable) == 0:  # none of the runs that are whole within these units
+            return self._on(at + (n - self.n_lock + 1) * size)
         earliest = lockable[np.argmin(first[lockable] * size + lockable)]
         # Only phases of the same time contend: after a loss the same units come in another one.
         together = table[table[:, earliest]]
         shared = together.sum(axis=0)
         phases = np.flatnonzero(shared >= max(2, len(together) // 2))
         if len(phases) > MOST_CONTENDERS:
-            return self._wait(at) if n < MOST_UNITS else self._on(at)
+            return self._wait(at) if n < MOST_UNITS else self._on(at + size)
         return self._weigh(array, at, table, first, phases)
 
     def _first(
@@ -210,6 +214,12 @@ class Phases:
         self._n_units += 1
         return Found(at)
 
-    def _on(self, at: int) -> Found:
+    def _on(self, to: int) -> Found:
         self.forget()
-        return Found(at + self.layout.size)
+        return Found(to)
+
+    def _next_beginning(self, array: NDArray[np.uint8], at: int) -> int:
+        """Return the next place that looks like a beginning, or how far there is none."""
+        stop = max(at, min(at + LOOKS_AHEAD, len(array) - self.layout.ahead))
+        places = self.layout.beginnings(array, at, stop)
+        return int(places[0]) if len(places) else stop

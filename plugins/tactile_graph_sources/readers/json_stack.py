@@ -23,7 +23,7 @@ NAME = "JSON of frames"
 Cells = NDArray[np.float64]
 
 
-class _Entries(NamedTuple):
+class Entries(NamedTuple):
     """Frames as the file holds them, what it says of them, and the name of their times."""
 
     values: list[Any]
@@ -54,12 +54,16 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the file is no JSON, holds no frames, or does not say their shape.
     """
+    yield from frames_of(reading, entries_of(str(reading.path), _content(reading)))
+
+
+def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
+    """Yield the frames of what was found; raises what `read` raises."""
     where = str(reading.path)
-    entries = _entries(where, _content(reading))
     arrays = [_array(v) for v in entries.values]
     shapes = Counter(a.shape for a in arrays if a is not None and a.ndim in (1, 2) and a.size)
     if not shapes:
-        raise DataError(where, f"its JSON holds no frames of numbers ({entries.why})")
+        raise DataError(where, f"it holds no frames of numbers ({entries.why})")
     usual = shapes.most_common(1)[0][0]
     good = [a for a in arrays if a is not None and a.shape == usual]
     shape = usual if len(usual) == 2 else _shape(reading, np.stack(good), entries.said)
@@ -118,7 +122,14 @@ def _array(entry: object) -> Cells | None:
         return None
 
 
-def _entries(where: str, content: Any) -> _Entries:
+def entries_of(where: str, content: Any) -> Entries:
+    """Return the frames in what was parsed, wherever they lie in it.
+
+    Raises
+    ------
+    DataError
+        If there are none, or several lists could be them.
+    """
     if isinstance(content, dict):
         return _of_object(where, content)
     if not isinstance(content, list) or not content:
@@ -126,26 +137,26 @@ def _entries(where: str, content: Any) -> _Entries:
     if not isinstance(content[0], dict):
         nested = isinstance(content[0], list) and content[0] and isinstance(content[0][0], list)
         if not isinstance(content[0], list):
-            return _Entries([content], None, "", Described(), "a list of numbers")
+            return Entries([content], None, "", Described(), "a list of numbers")
         what = "a list of matrices" if nested else "a list of lists of numbers"
         if not nested and _is_matrix(content):
             content = [content]
-        return _Entries(content, None, "", Described(), what)
+        return Entries(content, None, "", Described(), what)
     key = _only(where, [k for k, v in content[0].items() if isinstance(v, list)])
     time = next((k for k in content[0] if _is_time(k)), "")
     objects = [e if isinstance(e, dict) else {} for e in content]
     times = [e.get(time) for e in objects] if time else None
     said = _said(content[0])
-    return _Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
+    return Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
 
 
-def _of_object(where: str, content: dict[str, Any]) -> _Entries:
+def _of_object(where: str, content: dict[str, Any]) -> Entries:
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)
     deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
     key = _only(where, deep or lists)
-    inner = _entries(where, lists[key])
+    inner = entries_of(where, lists[key])
     said = _said(content)
     if inner.times is None and times is not None and len(times) == len(inner.values):
         return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
@@ -182,7 +193,7 @@ def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
     return found.shape
 
 
-def _time_factor(reading: Reading, entries: _Entries) -> float:
+def _time_factor(reading: Reading, entries: Entries) -> float:
     if not entries.times:
         return 1.0
     factor = named((entries.time_name, "")).time_factor
@@ -194,7 +205,7 @@ def _time_factor(reading: Reading, entries: _Entries) -> float:
     return factor
 
 
-def _time(entries: _Entries, k: int, factor: float) -> float | None:
+def _time(entries: Entries, k: int, factor: float) -> float | None:
     if not entries.times:
         return None if entries.said.frame_s is None else k * entries.said.frame_s
     time = entries.times[k]

@@ -18,6 +18,10 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.truth import Truth, truth_from_json
 
+MOST_MEMBERS = 1000
+MOST_TIMES = 200
+LARGE = 256_000_000
+"""Bytes; a smaller array may be packed as small as it likes."""
 NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
 
 
@@ -53,10 +57,28 @@ class Archive:
         self.where = str(reading.path)
         try:
             with zipfile.ZipFile(reading.path) as archive:
-                members = archive.namelist()
+                members = archive.infolist()
         except Exception as error:  # a damaged archive makes zipfile raise a dozen kinds
             raise DataError(self.where, f"the archive is damaged: {error}") from error
-        self.names = {m.removesuffix(".npy"): m for m in members if m.endswith(".npy")}
+        if len(members) > MOST_MEMBERS:
+            raise DataError(self.where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
+        arrays = [m for m in members if m.filename.endswith(".npy")]
+        self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
+
+    def outline(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
+        """Return shape and type of an array by its head alone; errors as of `load`."""
+        try:
+            with zipfile.ZipFile(self.where) as archive, archive.open(self.names[name]) as member:
+                version = np.lib.format.read_magic(member)
+                read = (
+                    np.lib.format.read_array_header_1_0
+                    if version == (1, 0)
+                    else np.lib.format.read_array_header_2_0
+                )
+                shape, _, dtype = read(member)
+                return shape, dtype
+        except Exception as error:
+            raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
 
     def load(self, name: str) -> NDArray[Any]:
         """Return an array.
@@ -64,8 +86,15 @@ class Archive:
         Raises
         ------
         DataError
-            If it is damaged or holds objects.
+            If it is damaged, holds objects, or is nearly nothing but zeros, packed away.
         """
+        packed, unpacked = self.names[name].compress_size, self.names[name].file_size
+        if unpacked > LARGE and unpacked > MOST_TIMES * packed:
+            raise DataError(
+                self.where,
+                f"array {name!r} unpacks to {unpacked / 1e6:,.0f} MB, {unpacked // packed} times "
+                f"what it is packed; allowed are {MOST_TIMES} beyond {LARGE / 1e6:,.0f} MB",
+            )
         try:
             with zipfile.ZipFile(self.where) as archive:
                 data = archive.read(self.names[name])  # checks the CRC, unlike a partial read
@@ -101,11 +130,11 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
             raise DataError(where, f"no array {asked!r}, there are {one_of(arrays.names)}{near}")
         reading.sensors[asked] = None
         return arrays.load(asked), f"array {asked!r}"
-    loaded = {name: arrays.load(name) for name in arrays.names}
-    stacks = [n for n, a in loaded.items() if a.ndim in (2, 3) and a.dtype.kind in "buif"]
+    outlines = {name: arrays.outline(name) for name in arrays.names}
+    stacks = [n for n, (s, t) in outlines.items() if len(s) in (2, 3) and t.kind in "buif"]
     if len(stacks) == 1:
-        return loaded[stacks[0]], f"array {stacks[0]!r}"
-    shapes = one_of(f"{n} {a.shape}" for n, a in loaded.items())
+        return arrays.load(stacks[0]), f"array {stacks[0]!r}"
+    shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
         raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
-from tactile_graph.wires import Frame, Image, TrueObject
+from tactile_graph.wires import LARGEST, PITCHES_CM, Frame, Image, TrueObject
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.told import Told
 
@@ -137,12 +137,14 @@ class Reading:
         device_time_s: float | None = None,
         gap: bool = False,
     ) -> Frame:
-        """Return the next frame; cells that are NaN, infinite or not ``valid`` become invalid."""
+        """Return the next frame; cells without a reading or not ``valid`` become invalid."""
         with np.errstate(over="ignore"):
             values = np.array(values, dtype=np.float64)  # the one copy: frames own their values
             if factor != 1.0:
                 values *= factor
-        good = np.isfinite(values) if valid is None else np.isfinite(values) & valid
+        good = np.abs(values) <= LARGEST
+        if valid is not None:
+            good &= valid
         if good.all():
             mask = None
         else:
@@ -181,6 +183,10 @@ class Reading:
         if pitch is None:
             self._once("recordings whose pitch is assumed to be 1 cm")
             return 1.0, 1.0
+        low, high = PITCHES_CM
+        if not (low <= min(pitch) and max(pitch) <= high):
+            text = f"a pitch of {pitch[0]:g} x {pitch[1]:g} cm; allowed are {low:g} to {high:g}"
+            raise DataError(str(self.path), text)
         turned = self.told.transpose and self.told.pitch_cm is None
         return (pitch[1], pitch[0]) if turned else pitch
 

@@ -244,11 +244,28 @@ def test_the_files_name_decides_the_graphs_format(hand_made, name, start):
     assert f"wrote {name}" in got.stderr
 
 
+@pytest.mark.parametrize(("name", "start"), [("g.png", b"\x89PNG"), ("g.pdf", b"%PDF")])
+def test_a_graph_is_a_picture_too(hand_made, name, start):
+    got = call("graph", "discs", "-o", name)
+    assert got.exit_code == 0
+    assert (hand_made / name).read_bytes().startswith(start)
+    piped = call("graph", "discs", "--format", name[2:])
+    assert piped.stdout_bytes == (hand_made / name).read_bytes()
+
+
+def test_a_picture_of_a_graph_is_not_poured_over_a_screen(hand_made, monkeypatch):
+    monkeypatch.setattr("tactile_graph.cli.graph.on_screen", lambda: True)
+    got = call("graph", "discs", "--format", "png")
+    assert got.exit_code == 2
+    assert "--format png: is nothing to read on a screen; give -o FILE.png" in got.stderr
+
+
 @pytest.mark.usefixtures("hand_made")
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        (["discs", "-o", "g.bmp"], "-o g.bmp: its name must end in .svg, .mmd"),
+        (["discs", "-o", "g.bmp"], "-o g.bmp: its name must end in .svg, .png, .pdf, .mmd"),
+        (["discs", "-o", "g.pgn"], "or give --format; did you mean '.png'?"),
         (["dics"], "no pipeline named 'dics'; did you mean 'discs'?"),
         ([], "name a pipeline, or a file of one"),
         (["discs", "-o", "no/g.svg"], "-o no/g.svg: there is no folder 'no'"),

@@ -59,6 +59,10 @@ def test_elements_are_counted_over_the_calls() -> None:
     assert [light(part) for _ in range(5)] == ["plain"] * 4 + ["compiled"]
 
 
+def test_arrays_of_records_are_counted() -> None:
+    assert Light()((np.empty(SWITCH_AFTER_ELEMENTS), np.empty(1))) == "compiled"
+
+
 def test_kernels_that_are_never_plain_are_compiled_before_their_first_answer() -> None:
     class Heavy(Light):
         def __init__(self) -> None:

@@ -12,17 +12,9 @@ import pytest
 from tactile_graph import Circle, Image, Mask, Points
 from tactile_graph.draw.colours import MASK_OFF, MASK_ON
 from tactile_graph.draw.display import Outline, display_list
-from tactile_graph.draw.grid_png import (
-    BROKEN,
-    HEAT,
-    LEVELS,
-    TWO_WAYS,
-    change_uri,
-    heat_uri,
-    levels,
-    mask_uri,
-)  # fmt: skip
+from tactile_graph.draw.grid_png import change_uri, heat_uri, mask_uri
 from tactile_graph.draw.paint_svg import SvgPicture, View
+from tactile_graph.wires.cells_png import BROKEN, HEAT, LEVELS, TWO_WAYS, levels
 
 # -- grids -------------------------------------------------------------------------------------
 

@@ -9,7 +9,8 @@ import pytest
 
 from helpers_draw import CIRCLE, branched, circle_demo, registry
 from tactile_graph import Image, Mask, loads
-from tactile_graph.draw.svg import description, graph_svg
+from tactile_graph.draw.graph_drawing import description
+from tactile_graph.draw.svg import graph_svg
 from tactile_graph.draw.svg_text import text_width
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from helpers_graphs import registry
-from tactile_graph import load
+from tactile_graph import load, loads
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline import load as module
 
@@ -83,3 +83,26 @@ def test_what_is_no_pipeline_file_is_not_shown(tmp_path: Path) -> None:
     with pytest.raises(PipelineError, match=r"a pipeline file ends in \.yaml") as told:
         load(outer, registry())
     assert "root:x" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("condition", "words"),
+    [
+        ("len([a] * 500000000) > 3", "arithmetic takes numbers, not a list"),
+        ("'%1000000000d' % a == 'b'", "'%1000000000d' is a text"),
+        ("len((1, 2) * a) > 3", "arithmetic takes numbers, not a list"),
+    ],
+)
+def test_a_condition_cannot_ask_for_all_memory(condition: str, words: str) -> None:
+    text = LEAF.replace("{a:", f'{{b: {{step: read, in: frame, when: "{condition}"}}, a:')
+    with pytest.raises(PipelineError) as told:
+        loads(text, registry=registry())
+    assert words in str(told.value)
+
+
+def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
+    nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(3000))
+    with pytest.raises(PipelineError) as told:
+        loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
+    assert 100 < len(told.value.problems) < 110
+    assert "more than 100 mistakes" in str(told.value.problems[-1])

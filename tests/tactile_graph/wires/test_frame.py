@@ -58,10 +58,44 @@ def test_a_pitch_may_be_one_number_or_two(pitch: Any) -> None:
     assert type(x) is float
 
 
-@pytest.mark.parametrize("pitch", [0, -1.0, np.nan, np.inf, (1.0, 0.0)])
+@pytest.mark.parametrize("pitch", [0, -1.0, np.nan, (1.0, 0.0)])
 def test_a_pitch_that_is_no_length_is_refused(pitch: Any) -> None:
     with pytest.raises(ValueError, match="a pitch must be > 0 cm, got "):
-        Frame.of(np.ones((2, 2)), pitch)
+        Frame.of(np.zeros((2, 2)), pitch)
+
+
+@pytest.mark.parametrize("pitch", [np.inf, 1e300, 1e-300, (1.0, 1e7)])
+def test_a_pitch_that_no_pad_has_is_refused(pitch: Any) -> None:
+    with pytest.raises(ValueError, match=r"a pitch must be within 1e-06 to 1e\+06 cm, got "):
+        Frame.of(np.zeros((2, 2)), pitch)
+
+
+@pytest.mark.parametrize(
+    ("values", "got"),
+    [
+        (np.ones((2, 2)) + 1j, "complex128"),
+        (np.array([["1", "2"]]), "str"),
+        (np.array([[1.0, 2j]], dtype=object), "object|complex"),
+        (np.array([["pad", 1.0]], dtype=object), "could not convert"),
+    ],
+)
+def test_what_is_no_real_number_is_refused(values: Any, got: str) -> None:
+    with pytest.raises(ValueError, match=f"a frame takes real numbers.*({got})"):
+        Frame.of(values)
+
+
+def test_places_and_times_that_are_not_finite_are_refused() -> None:
+    with pytest.raises(ValueError, match="an origin must be finite"):
+        Frame.of(np.zeros((2, 2)), origin_cm=(np.nan, 0.0))
+    with pytest.raises(ValueError, match="device_time_s must be finite, got nan"):
+        Frame.of(np.zeros((2, 2)), device_time_s=np.nan)
+
+
+def test_readings_whose_squares_are_no_numbers_are_none() -> None:
+    image = Frame.of(np.array([[1e300, 1e-300, 1.0, -1e101]])).image
+    assert image.values.tolist() == [[0.0, 0.0, 1.0, 0.0]]
+    assert image.valid is not None
+    assert image.valid.tolist() == [[False, True, True, False]]
 
 
 def test_a_quantity_that_is_none_is_refused() -> None:

@@ -87,6 +87,7 @@ def test_an_object_over_the_edge_is_found():
     assert held >= 0.7
 
 
+@pytest.mark.slow
 @plain
 def test_where_next_to_nothing_shows_it_says_so():
     few = replace(KINDS["turn-on 40 g"], discs=((1860.0, 6.8),))

@@ -70,12 +70,14 @@ def test_a_missing_library_is_named_with_its_remedy(monkeypatch):
         graph_cuts(square(), model=model("absolute"))
 
 
+@pytest.mark.slow
 def test_swaps_need_no_library(monkeypatch):
     monkeypatch.setitem(sys.modules, "maxflow", None)
     restored = graph_cuts(square(20.0, 8), model=model("truncated_quadratic", lambda_d=3.0))
     assert restored.trace[-1] < restored.trace[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("seed", range(4))
 def test_after_swaps_no_trade_of_two_labels_lowers_the_energy(order, seed):
@@ -92,6 +94,7 @@ def test_after_swaps_no_trade_of_two_labels_lowers_the_energy(order, seed):
             assert energy(problem, traded) >= restored.energy - 1e-9
 
 
+@pytest.mark.slow
 def test_a_cycle_of_swaps_is_the_same_compiled():
     pytest.importorskip("numba")
     problem = prepare(model("truncated_quadratic", lambda_d=3.0), square(20.0, 8))

@@ -10,6 +10,8 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
 
+pytestmark = pytest.mark.slow  # much is compiled, which no shipped pipeline uses
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize("temperature", [0.05, 1.0, 100.0])

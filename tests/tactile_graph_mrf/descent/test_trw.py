@@ -10,6 +10,8 @@ from tactile_graph_mrf.descent.trw import trw
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 
+pytestmark = pytest.mark.slow  # much is compiled, which no shipped pipeline uses
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))

@@ -14,6 +14,8 @@ from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
 from tactile_graph_mrf.samplers.posterior import posterior
 
+pytestmark = pytest.mark.slow  # much is compiled, which no shipped pipeline uses
+
 
 def sampled(problem, n_samples=4000, **settings):
     return posterior(

@@ -7,10 +7,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
-from helpers_dialects import Dialect, became, dialects, flat, long, mutated, picture
+from helpers_dialects import (
+    Dialect,
+    became,
+    cell_array,
+    dialects,
+    flat,
+    long,
+    matlab,
+    mutated,
+    picture,
+)
 from helpers_recordings import frames_of, write
+from tactile_graph import load
+from tactile_graph.cli import cli
 from tactile_graph.errors import DataError
+from tactile_graph.steps import Report
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.matlab import frames_first
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.told import Told
 
 FILES = dialects()
 
@@ -234,7 +252,7 @@ def test_axes_that_can_be_read_one_way_are(shape: tuple[int, ...], tmp_path: Pat
     [
         ('{"a": [[1, 2], [3, 4]], "b": [[1, 2], [3, 4]]}', "several lists could be the frames"),
         ('{"a": 1}', "its JSON holds no list"),
-        ('{"a": [["x", "y"]]}', "its JSON holds no frames of numbers"),
+        ('{"a": [["x", "y"]]}', "it holds no frames of numbers"),
         ('{"a" [1', "it begins as JSON does, and is none"),
         ("[]", "neither a list of frames nor an object around one"),
     ],
@@ -293,6 +311,28 @@ def test_hdf5_gives_its_stack_with_times_and_attributes(tmp_path: Path) -> None:
     assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(12)])
     assert (frames[0].image.quantity, frames[0].image.pitch_cm) == ("kilopascal", (0.5, 0.5))
     assert report.counts == {"recordings read as HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)": 1}
+
+
+def test_a_stack_that_a_run_wrote_lies_where_its_node_lay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(
+        cli, ["run", "circle-3", "--only", "frame", "--only", "eroded", "-o", "kept.h5"]
+    )
+    assert done.exit_code == 0, done.output
+    truth = list(load("circle-3").stream(only=["eroded"]))
+    for sensor, node in (("frame/values", "frame"), ("eroded/values", "eroded")):
+        frames, _ = frames_of(Path("kept.h5"), sensor=sensor)
+        for frame, result in zip(frames, truth, strict=True):
+            image = result.frame.image if node == "frame" else result["eroded"]
+            np.testing.assert_array_equal(frame.image.values, image.values)
+            assert frame.image.pitch_cm == image.pitch_cm
+            assert frame.image.origin_cm == image.origin_cm
+            assert frame.image.quantity == ("volt" if node == "frame" else "binary")
+    with pytest.raises(DataError, match="matrix or matrices along the first axis are read"):
+        frames_of(Path("kept.h5"), sensor="eroded/outcome")
 
 
 def test_several_stacks_of_hdf5_are_asked_about(tmp_path: Path) -> None:
@@ -356,3 +396,48 @@ def test_one_digit_too_many_in_a_row_does_not_blow_up_the_frames(tmp_path: Path)
     assert {f.image.shape for f in frames} == {(6, 10)}
     what = "no cell: its row or column is far beyond all others"
     assert report.troubles == [(f"{path}:101", what)]
+
+
+# -- MATLAB ------------------------------------------------------------------------------------
+
+
+def test_matlabs_frames_lie_where_times_say_whatever_is_square() -> None:
+    reading = Reading(Head(Path("a.mat"), b"", Told()), Told(), Report())
+    times = np.arange(16.0)
+    values = np.zeros((16, 9, 9))
+    assert frames_first(reading, np.zeros((9, 9, 16)), "p", times).shape == (16, 9, 9)
+    assert frames_first(reading, values, "p", times).shape == (16, 9, 9)
+    assert frames_first(reading, np.zeros((5, 6, 16)), "p", times).shape == (16, 5, 6)
+    assert frames_first(reading, np.zeros((16, 6, 5)), "p", times).shape == (16, 6, 5)
+
+
+def test_matlab_7_3_counts_the_other_way_round_and_its_axes_are_told_alike(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+
+    def saved(values: np.ndarray, name: str, **more: np.ndarray) -> Path:
+        path = tmp_path / name
+        with h5py.File(path, "w", userblock_size=512) as file:
+            for key, array in {"p": values, **more}.items():
+                file[key] = array.T  # as MATLAB writes what it indexes the other way round
+        with path.open("r+b") as file:
+            file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
+        return path
+
+    last = np.moveaxis(OBLONG, 0, -1)
+    frames, _ = frames_of(saved(last, "a.mat", time_s=np.arange(12.0)[None]))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert frames[3].time_s == 3.0
+    with pytest.raises(DataError, match="12 frames of 6 x 10 along the last axis, or 6 frames of"):
+        frames_of(saved(last, "b.mat"))
+    again, _ = frames_of(tmp_path / "b.mat", rows=6, columns=10)
+    np.testing.assert_array_equal([f.image.values for f in again], OBLONG)
+
+
+def test_a_matlab_file_that_is_damaged_or_holds_no_numbers_says_so(tmp_path: Path) -> None:
+    whole = matlab(True, p=OBLONG)
+    with pytest.raises(DataError, match="the MATLAB file cannot be read"):
+        frames_of(write(tmp_path, whole[:400]))
+    with pytest.raises(DataError, match="no matrix or stack of matrices in it; its variables: n"):
+        frames_of(write(tmp_path, matlab(n=3.0, words=cell_array(["a", "b"]), name="mat")))
+    with pytest.raises(DataError, match="no variable 'q', there are p"):
+        frames_of(write(tmp_path, whole), sensor="q")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -48,3 +49,32 @@ def test_a_pipe_is_told_to_be_saved_first(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     assert refused(tmp_path / "pipe") == "is no plain file; save what it gives as a file first"
     assert refused(tmp_path / "pipes") == "there is no such file; did you mean 'pipe'?"
+
+
+def test_an_archive_of_nearly_nothing_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.npz"
+    shape = {"descr": "<f8", "fortran_order": False, "shape": (300, 400, 400)}
+    with (
+        zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("frames.npy", "w", force_zip64=True) as member,
+    ):
+        np.lib.format.write_array_header_1_0(member, shape)
+        for _ in range(300):
+            member.write(bytes(8 * 400 * 400))
+    with pytest.raises(DataError, match=r"unpacks to 384 MB, \d+ times what it is packed"):
+        next(recording(path=path, report=Report()))
+
+
+def test_an_archive_of_thousands_of_arrays_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "many.npz"
+    with zipfile.ZipFile(path, "w") as archive:
+        for k in range(1001):
+            archive.writestr(f"a{k}.npy", b"")
+    with pytest.raises(DataError, match="holds 1001 members; allowed are 1000"):
+        next(recording(path=path, report=Report()))
+
+
+def test_a_pitch_that_no_pad_has_is_refused(tmp_path: Path) -> None:
+    np.savez(tmp_path / "a.npz", values=np.ones((2, 3, 3)), pitch_cm=np.array([1e300, 1e300]))
+    with pytest.raises(DataError, match=r"a pitch of 1e\+300 x 1e\+300 cm; allowed are 1e-06 to"):
+        next(recording(path=tmp_path / "a.npz", report=Report()))

@@ -1,25 +1,15 @@
-"""The boxes of a graph in SVG: what stands in them, how large they are, and their elements."""
+"""The boxes of a graph: what stands in them, how large they are, and what they are drawn of."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from textwrap import shorten, wrap
 from typing import NamedTuple
 
 from tactile_graph.draw.blocks import Block, Wire
-from tactile_graph.draw.layout import Place
-from tactile_graph.draw.svg_text import (
-    INK,
-    LINE_PX,
-    SMALL_PX,
-    TITLE_PX,
-    Line,
-    escaped,
-    px,
-    quoted,
-    text_width,
-    texts,
-)
+from tactile_graph.draw.graph_records import Boxed, Part, Plate, Words, stacked
+from tactile_graph.draw.layout import Place, Point
+from tactile_graph.draw.svg_text import INK, LINE_PX, SMALL_PX, TITLE_PX, Line, text_width
 
 PADDING = 10.0
 PAINTS = {
@@ -84,41 +74,33 @@ def _marks_width(marks: Sequence[Mark]) -> float:
 
 def box(
     block: Block, place: Place, lines: list[Line], new: bool, marks: Sequence[Mark] = ()
-) -> list[str]:
-    """Return the elements of a box at its place; one that is new has a thicker border."""
+) -> Boxed:
+    """Return a box at its place; one that is new has a thicker border."""
     fill, stroke = PAINTS["output" if block.outputs and block.role != "frame" else block.role]
     width = 4.0 if new else 1.3
-    dash = ' stroke-dasharray="2 3"' if block.unused else ""
-    round_px = 14 if block.role == "choice" else 5
+    dashes = (2.0, 3.0) if block.unused else ()
+    round_px = 14.0 if block.role == "choice" else 5.0
 
-    def rect(shift: float) -> str:
-        return (
-            f'<rect x="{px(place.x + shift)}" y="{px(place.y - shift)}" width="{px(place.width)}" '
-            f'height="{px(place.height)}" rx="{round_px}" fill="{fill}" stroke="{stroke}" '
-            f'stroke-width="{px(width)}"{dash}/>'
-        )
+    def plate(shift: float) -> Plate:
+        x, y = place.x + shift, place.y - shift
+        return Plate(x, y, place.width, place.height, round_px, fill, stroke, width, dashes)
 
     middle = place.x + place.width / 2
     first = place.middle - len(lines) * LINE_PX / 2 + LINE_PX * 0.75
     first -= (_MARK_PX + _MARK_GAP) / 2 if marks else 0.0
-    return [
-        f"<g><title>{escaped(block.detail)}</title>",
-        *([rect(4.0)] if block.each else []),  # a stack: one box for each item of a list
-        rect(0.0),
-        *texts(lines, middle, first, "middle"),
+    parts: tuple[Part, ...] = (
+        *([plate(4.0)] if block.each else []),  # a stack: one box for each item of a list
+        plate(0.0),
+        *stacked(lines, Point(middle, first), "middle"),
         *_plates(marks, middle, first + (len(lines) - 0.75) * LINE_PX + _MARK_GAP),
-        "</g>",
-    ]
+    )
+    return Boxed(parts, block.detail)
 
 
-def _plates(marks: Sequence[Mark], middle: float, top: float) -> list[str]:
-    made, x = [], middle - _marks_width(marks) / 2
+def _plates(marks: Sequence[Mark], middle: float, top: float) -> Iterator[Part]:
+    x = middle - _marks_width(marks) / 2
     for mark in marks:
-        made.append(
-            f'<rect x="{px(x)}" y="{px(top)}" width="{px(mark.width)}" height="{px(_MARK_PX)}" '
-            f'rx="{px(_MARK_PX / 2)}" fill={quoted(mark.paint)}/>'
-        )
+        yield Plate(x, top, mark.width, _MARK_PX, _MARK_PX / 2, mark.paint)
         line = Line(mark.text, SMALL_PX, bold=True, ink="#ffffff")
-        made += texts([line], x + mark.width / 2, top + _MARK_PX - 4.2, "middle")
+        yield Words(line, Point(x + mark.width / 2, top + _MARK_PX - 4.2), "middle")
         x += mark.width + _MARK_GAP
-    return made

@@ -1,0 +1,119 @@
+"""Files of named arrays (HDF5, MATLAB): which of them is the stack, and what stands beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.stack import stack_of
+from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.names import named
+from tactile_graph_sources.readers.tables.preamble import Described
+
+MOST_VALUES = 500_000_000
+
+
+class Held(NamedTuple):
+    """What is taken from a file.
+
+    Parameters
+    ----------
+    values : ndarray
+        The stack.
+    what : str
+        What messages call it.
+    said : Described
+        What the file says of it.
+    times : ndarray, shape (n,), optional
+        None where there are none.
+    times_name : str
+    origin_cm : (float, float), optional
+    """
+
+    values: NDArray[Any]
+    what: str
+    said: Described
+    times: NDArray[Any] | None = None
+    times_name: str = ""
+    origin_cm: tuple[float, float] | None = None
+
+
+def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
+    """Yield the matrices of a stack; times that are not as many as the frames are left out."""
+    frames = stack_of(reading, held.values, held.what)
+    times, factor = held.times, 1.0
+    if times is not None and len(times) != len(frames):
+        times = None
+    if times is not None:
+        factor = _factor(reading, held.times_name, times)
+    reading.report.expect(len(frames))
+    said = held.said
+    for k, matrix in enumerate(frames):
+        timed = times is not None and np.isfinite(times[k])
+        yield reading.frame(
+            matrix,
+            pitch_cm=said.pitch_cm,
+            origin_cm=held.origin_cm,
+            quantity=said.quantity,
+            factor=said.factor,
+            time_s=float(times[k]) * factor if times is not None and timed else None,
+        )
+
+
+def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -> str:
+    """Return the name of the only stack, or of what ``sensor`` names.
+
+    Parameters
+    ----------
+    reading : Reading
+    shapes : mapping
+        Name -> shape of each array of numbers.
+    word : str
+        What messages call an array: ``dataset``, ``variable``.
+
+    Raises
+    ------
+    DataError
+        If there is none, or several could be meant, or the one is too large.
+    """
+    where, asked = str(reading.path), reading.told.sensor
+    stacks = [n for n, s in shapes.items() if len(s) in (2, 3) and min(s) > 1]
+    listed = one_of(f"{n} {s}" for n, s in shapes.items())
+    if asked:
+        if asked not in shapes:
+            near = did_you_mean(asked, shapes)
+            raise DataError(where, f"no {word} {asked!r}, there are {one_of(shapes)}{near}")
+        reading.sensors[asked] = None
+    elif not stacks:
+        raise DataError(where, f"no matrix or stack of matrices in it; its {word}s: {listed}")
+    elif len(stacks) > 1:
+        raise DataError(where, f"several {word}s could be it ({listed}); name one with sensor")
+    name = asked or stacks[0]
+    if int(np.prod(shapes[name])) > MOST_VALUES:
+        raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")
+    return name
+
+
+def time_among(names: Iterable[str]) -> str:
+    """Return the first of the names that says time; empty if none does."""
+    return next((n for n in sorted(names) if "time" in named((_bare(n), "")).roles), "")
+
+
+def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
+    factor = named((_bare(name), "")).time_factor
+    if factor is not None:
+        return factor
+    known = times[np.isfinite(times)].astype(np.float64)
+    factor, unit = unit_of(known)
+    reading.assume(f"times assumed to be in {unit}")
+    return factor
+
+
+def _bare(name: str) -> str:
+    return name.replace(".", "/").rpartition("/")[2]

@@ -1,0 +1,134 @@
+"""Arrays that grow by a row a frame, in an HDF5 file or a Zarr store."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from tactile_graph.errors import UsageError
+
+
+class Cells(NamedTuple):
+    """How an array is kept: the type of its cells, what stands where none was written, and how
+    many rows go into a chunk.
+    """
+
+    dtype: str
+    fill: float
+    chunk: int
+
+
+class Growing:
+    """An array that grows by a row a frame, written a chunk at a time.
+
+    Parameters
+    ----------
+    array : object
+        Of h5py or Zarr, without rows.
+    chunk : int
+    n_before : int
+        How many rows that hold the fill value come first.
+    """
+
+    def __init__(self, array: Any, chunk: int, n_before: int = 0) -> None:
+        self._array = array
+        self._chunk = chunk
+        self._held: list[Any] = []
+        self._n_written = n_before
+
+    def add(self, row: Any) -> None:
+        """Take a row."""
+        self._held.append(row)
+        if (self._n_written + len(self._held)) % self._chunk == 0:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that are held."""
+        end = self._n_written + len(self._held)
+        self._array.resize((end, *self._array.shape[1:]))
+        if self._held:
+            self._array[self._n_written :] = np.array(self._held)
+        self._held, self._n_written = [], end
+
+
+class Container(Protocol):
+    """A file of named arrays, each with attributes."""
+
+    def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
+        """Return a new array without rows, in groups by the slashes of its name."""
+
+    def close(self) -> None:
+        """Let go of the file."""
+
+
+class Hdf5:
+    """An HDF5 file.
+
+    Raises
+    ------
+    UsageError
+        If h5py is not installed.
+    """
+
+    def __init__(self, path: Path, about: dict[str, Any]) -> None:
+        try:
+            import h5py
+        except ImportError:
+            raise UsageError("HDF5 files need h5py: pip install 'tactile-graph[hdf5]'") from None
+        self._file = h5py.File(path, "w")
+        self._file.attrs.update(about)
+
+    def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
+        """Return a new array without rows."""
+        made = self._file.create_dataset(
+            name, (0, *row), cells.dtype, chunks=(cells.chunk, *row), maxshape=(None, *row),
+            fillvalue=cells.fill, compression="gzip", compression_opts=1, shuffle=True,
+        )  # fmt: skip
+        made.attrs.update(about)
+        return made
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._file.close()
+
+
+class Zarr:
+    """A Zarr store, version 3.
+
+    Raises
+    ------
+    UsageError
+        If Zarr is not installed.
+    """
+
+    def __init__(self, path: Path, about: dict[str, Any]) -> None:
+        try:
+            import zarr
+        except ImportError:
+            raise UsageError("Zarr stores need zarr: pip install 'tactile-graph[zarr]'") from None
+        self._group: Any = zarr.create_group(str(path), attributes=about)
+
+    def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
+        """Return a new array without rows."""
+        return self._group.create_array(
+            name, shape=(0, *row), chunks=(cells.chunk, *row), dtype=cells.dtype,
+            fill_value=cells.fill, attributes=about,
+        )  # fmt: skip
+
+    def close(self) -> None:
+        """Do nothing: every chunk is a file of its own."""
+
+
+def put_in_place(part: Path, target: Path) -> None:
+    """Give a file, or a folder, its name, in place of what is there."""
+    if not target.is_dir():
+        os.replace(part, target)
+        return
+    old = target.with_name(f"{part.name}.old")  # a folder that is not empty is not replaced
+    target.rename(old)
+    part.rename(target)
+    shutil.rmtree(old)
