@@ -38,6 +38,9 @@ FEWEST_POINTS = 3.0
 ROUNDS = 8
 """Rounds in which an outline of another kind is brought to its mode."""
 
+AROUND = np.array([0.25, 0.25, 0.2, 0.2, 0.15, 0.0])
+"""How far other starts lie off: lengths in cm, an angle in radians."""
+
 TURNS = 4
 """Angles at which a regular polygon is begun with."""
 
@@ -138,16 +141,30 @@ class Scene:
         return Configuration(found.kinds, found.corners, points, log), matrix
 
     def as_kind(
-        self, kind: tuple[int, int], own: Configuration, beside: JointProblem, soft: int = 0
+        self,
+        kind: tuple[int, int],
+        own: Configuration,
+        beside: JointProblem,
+        soft: int = 0,
+        tries: int = 0,
     ) -> Configuration:
-        """Return the outline of a kind near another one, beside others, with its own evidence."""
-        starts = [
-            Configuration(np.array([kind[0]]), np.array([kind[1]]), points[None], 0.0)
-            for points in like(kind, own)
+        """Return the outline of a kind near another one, beside others, with its own evidence.
+
+        It begins with the likeliest of some ``tries`` around it.
+        """
+        n = unknowns.call(*kind) + 1
+        starts = like(kind, own)
+        if tries:
+            around = np.zeros((tries, WIDTH))
+            around[:, :n] = AROUND[:n] * _table(n)[:tries]
+            starts += [start + off for start in starts[:1] for off in around]
+        begun = [
+            Configuration(np.array([kind[0]]), np.array([kind[1]]), start[None], 0.0)
+            for start in starts
         ]
-        if len(starts) > 1:
-            starts.sort(key=lambda start: -self.settled(start, beside, 0)[0].log_evidence)
-        return self.settled(starts[0], beside, ROUNDS, soft)[0]
+        if len(begun) > 1:
+            begun.sort(key=lambda it: -self.settled(it, beside, 0)[0].log_evidence)
+        return self.settled(begun[0], beside, ROUNDS, soft)[0]
 
     def worth(self, found: Configuration) -> float:
         """Return what outlines add to the log probability of a scene."""

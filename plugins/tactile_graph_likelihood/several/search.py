@@ -39,6 +39,9 @@ PAIRS, SOFT = 3, 4
 """Pairs of sketches of a piece that are looked at, and rounds of the soft search for the first kind
 that is drawn of each."""
 
+TRIES = 24
+"""Other starts of an outline that is drawn by itself."""
+
 HOPE, WORSE = 20.0, 6.0
 """How much less log probability than one sketch of all, and than the best pair, a pair may have to
 be drawn."""
@@ -254,7 +257,7 @@ class Search(Scene):
             own = self.settled(made.only(k), rest, 0)[0]
             others = [self.as_kind(kind, own, rest) for kind in self.kinds if kind != first]
             if made.count == 1:
-                others += [self.as_kind(kind, begun, rest) for kind in self.kinds]
+                others += [self.as_kind(kind, begun, rest, 0, TRIES) for kind in self.kinds]
             made = made.with_one(k, max([own, *others], key=lambda it: it.log_evidence))
         return self.settled(made, beside, ROUNDS)[0]
 
