@@ -59,6 +59,13 @@ class RuleError(TactileGraphError):
     """A frame that breaks a rule (quantity, shape, pitch) some step of the pipeline declares."""
 
 
+_BETWEEN = {
+    ":": "a space is missing behind the colon",
+    "=": "a key and its value have a colon and a space between them",
+    " ": "a colon is missing",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Mark:
     """A place in a file; lines and columns count from 1."""
@@ -97,8 +104,20 @@ class PipelineError(TactileGraphError):
 
 def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the nearest allowed name, or an empty text."""
-    near = get_close_matches(str(got), [str(a) for a in allowed], n=1, cutoff=0.6)
+    names = [str(a) for a in allowed]
+    near = [name for name in names if name.casefold() == str(got).casefold()]
+    near = near or get_close_matches(str(got), names, n=1, cutoff=0.6)
     return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def key_typo(got: str, allowed: Iterable[str]) -> str:
+    """Return what is wrong between a key and its value, which YAML then takes for one key."""
+    names = set(allowed)
+    for sign, words in _BETWEEN.items():
+        head, found, value = got.partition(sign)
+        if found and head.strip() in names:
+            return f"; {words}: {head.strip()}: {value.strip()}"
+    return ""
 
 
 def shown(value: object) -> str:

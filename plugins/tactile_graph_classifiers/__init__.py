@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from tactile_graph import hookimpl
 
 _STEPS = {
+    "describe": "measuring.describe:Describe",
+    "discriminant": "distances.discriminant:CanonicalDiscriminant",
     "features": "measuring.features:FeaturesOf",
     "fitted_area": "measuring.fitted_area:fitted_area",
     "mahalanobis": "distances.mahalanobis:Mahalanobis",

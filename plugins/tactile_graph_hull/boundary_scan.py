@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, Points
+from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
 
@@ -35,6 +36,9 @@ def boundary_scan(mask: Mask) -> Points:
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)
     return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
+
+
+boundary_scan.notice = several_parts  # type: ignore[attr-defined]
 
 
 def seen_cells(mask: NDArray[np.bool_], scans: tuple[str, ...]) -> NDArray[np.bool_]:

@@ -20,9 +20,16 @@ def tactile_graph_pads() -> Mapping[str, Path]:
 
 
 @hookimpl
+def tactile_graph_file_kinds() -> Mapping[str, str]:
+    """Offer what a pad file is."""
+    return {"pad": "tactile_graph_pads.pad_kind:PAD"}
+
+
+@hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the commands that calibrate a pad, and that learn one from recordings."""
+    """Offer the commands that list pads, calibrate one, and learn one from recordings."""
     return {
+        "pads": "tactile_graph_pads.commands.pads:pads",
         "calibrate": "tactile_graph_pads.commands.calibrate:calibrate",
         "learn-pad": "tactile_graph_pads.commands.learn_pad:learn_pad",
     }

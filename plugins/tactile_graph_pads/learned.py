@@ -73,8 +73,10 @@ class Learned:
     reading : str
         Quantity of the recordings; offset, noise and levels are in its unit.
     rows, columns : int
+        Number of elements down and across, as the recordings say.
     pitch_cm, origin_cm : (float, float)
-        The grid as the recordings say it.
+        Distance of neighbouring centres and the top left corner of the first cell, x and y, as the
+        recordings say.
     elements : str
         The table of offset, noise, gain and state of each element: a CSV file beside the pad's.
     noise : float

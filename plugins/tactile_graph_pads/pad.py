@@ -52,6 +52,7 @@ class Pad:
     geometry : Geometry
     law : ForceLaw
     circuit : Divider, Floating or Feedback
+        How the elements are read: what drives the rows, and what the columns end in.
     converter : Converter
     scan : Scan
     contact : Contact

@@ -31,11 +31,28 @@ def tactile_graph_presets() -> Mapping[str, Path]:
 
 
 @hookimpl
+def tactile_graph_scenes() -> Mapping[str, Path]:
+    """Offer the scenes to simulate."""
+    return {p.stem: p for p in sorted(Path(__file__).with_name("scenes").glob("*.yaml"))}
+
+
+@hookimpl
+def tactile_graph_file_kinds() -> Mapping[str, str]:
+    """Offer what preset and scene files are."""
+    return {
+        "preset": "tactile_graph_sources.file_kinds:PRESET",
+        "scene": "tactile_graph_sources.file_kinds:SCENE",
+    }
+
+
+@hookimpl
 def tactile_graph_commands() -> Mapping[str, str]:
-    """Offer the commands about devices and recordings."""
+    """Offer the commands about devices, recordings and scenes."""
     return {
         "convert": "tactile_graph_sources.commands.convert:convert",
         "inspect": "tactile_graph_sources.commands.inspect:inspect",
         "ports": "tactile_graph_sources.commands.ports:ports",
+        "presets": "tactile_graph_sources.commands.presets:presets",
         "record": "tactile_graph_sources.commands.record:record",
+        "scenes": "tactile_graph_sources.commands.scenes:scenes",
     }

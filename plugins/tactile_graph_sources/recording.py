@@ -68,8 +68,9 @@ def recording(
     quantity : str, optional
         What the values mean, where the file cannot tell.
     sensor : str
-        Only frames of sensors whose name contains this; in an ``.npz`` the name of the array.
-        Several sensors give a frame each, with the sensor's name as label.
+        Only frames of sensors whose name contains this; in an ``.npz`` the name of the array, in a
+        table whose columns or lines are those of several sensors the one that is read. Several
+        sensors in any other file give a frame each, with the sensor's name as label.
     order : str
         Whether cells that come in a row come row by row or column by column.
     transpose : bool

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Annotated
 
 from tactile_graph.errors import UsageError, did_you_mean, one_of
-from tactile_graph.steps import Report
+from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.recording import recording
 
 FOLDER = Path(__file__).parent / "samples"
 
 
-def sample(*, name: str = "discs", report: Report) -> Iterator[Frame]:
+def sample(*, name: str = "discs", report: Report) -> Iterator[Annotated[Frame, Quantity("volt")]]:
     """Frames of a small recording that comes with the project, their truth beside them.
 
     Parameters

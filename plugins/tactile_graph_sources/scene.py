@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -14,13 +13,12 @@ from annotated_types import Ge, Gt, Len
 from numpy.typing import NDArray
 from pydantic import Field
 
-from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.plugins.registry import installed
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
 from tactile_graph_pads.contact import Grain
 from tactile_graph_pads.pad import read_file
 from tactile_graph_pads.records import inline, read_record
 
-SCENES = Path(__file__).parent / "scenes"
 Place = Literal["random"] | tuple[float, float]
 Angle = Literal["random"] | float
 Length = Annotated[float, Gt(0)]
@@ -64,7 +62,14 @@ class Thing:
 
 @dataclass(frozen=True, kw_only=True)
 class Disc(Thing):
-    """A disc."""
+    """A disc.
+
+    Parameters
+    ----------
+    shape : "disc"
+    radius_cm : float
+        Its radius.
+    """
 
     shape: Literal["disc"] = "disc"
     radius_cm: Length
@@ -77,7 +82,16 @@ class Disc(Thing):
 
 @dataclass(frozen=True, kw_only=True)
 class Slab(Thing):
-    """A rectangle; ``angle_deg`` is that of its length."""
+    """A rectangle.
+
+    Parameters
+    ----------
+    shape : "rectangle"
+    length_cm, breadth_cm : float
+        Its sides; the length is the longer one.
+    angle_deg : "random" or float
+        Of its length, counter-clockwise from x as seen; drawn anew at each placement by default.
+    """
 
     shape: Literal["rectangle"] = "rectangle"
     length_cm: Length
@@ -97,7 +111,17 @@ class Slab(Thing):
 
 @dataclass(frozen=True, kw_only=True)
 class Oval(Thing):
-    """An ellipse; ``angle_deg`` is that of its major axis."""
+    """An ellipse.
+
+    Parameters
+    ----------
+    shape : "ellipse"
+    semi_major_cm, semi_minor_cm : float
+        Its half axes; the major one is the longer.
+    angle_deg : "random" or float
+        Of its major axis, counter-clockwise from x as seen; drawn anew at each placement by
+        default.
+    """
 
     shape: Literal["ellipse"] = "ellipse"
     semi_major_cm: Length
@@ -120,7 +144,17 @@ class Oval(Thing):
 class Plate(Thing):
     """A polygon: regular, by ``sides`` and ``radius_cm`` to its corners, or by ``corners_cm``.
 
-    Corners are (x right, y down) in order; their centroid comes to lie at the place.
+    Parameters
+    ----------
+    shape : "polygon"
+    corners_cm : tuple of (float, float), optional
+        Its corners, (x right, y down) in order; their centroid comes to lie at the place.
+    sides : int, optional
+        Number of sides of a regular polygon.
+    radius_cm : float, optional
+        From the centre of a regular polygon to its corners.
+    angle_deg : "random" or float
+        How far it is turned, counter-clockwise as seen; drawn anew at each placement by default.
     """
 
     shape: Literal["polygon"] = "polygon"
@@ -197,12 +231,6 @@ class Scene:
         return self.in_turn[placement % len(self.in_turn)] if self.in_turn else self.objects
 
 
-@cache
-def scene_names() -> tuple[str, ...]:
-    """Return the names of the scenes that come with the plugin, sorted."""
-    return tuple(sorted(p.stem for p in SCENES.glob("*.yaml")))
-
-
 def load_scene(scene: str | Mapping[str, Any]) -> Scene:
     """Return a scene by its name, by its YAML file, or from a mapping.
 
@@ -222,8 +250,5 @@ def load_scene(scene: str | Mapping[str, Any]) -> Scene:
         return read_record(inline(scene, "scene"), Scene, "a scene")
     path = Path(scene)
     if path.suffix not in (".yaml", ".yml"):
-        if scene not in scene_names():
-            hint = did_you_mean(scene, scene_names()) or f"; there are: {one_of(scene_names(), 30)}"
-            raise UsageError(f"no scene named {scene!r}{hint}")
-        path = SCENES / f"{scene}.yaml"
+        path = installed().path("scenes", scene)
     return read_record(read_file(path, "scene"), Scene, "a scene")

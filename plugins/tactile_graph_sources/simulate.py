@@ -30,7 +30,7 @@ def simulate(
     output: Literal["volt", "counts"] = "volt",
     rng: np.random.Generator,
     report: Report,
-) -> Iterator[Annotated[Frame, Quantity("volt", "counts")]]:
+) -> Iterator[Annotated[Frame, Quantity("volt", "counts", of="output")]]:
     """Give frames of objects put down on a simulated pad, each with its truth.
 
     Load is shared by exact coverage over uneven elements, turned into conductance by the force

@@ -200,13 +200,15 @@ class Pipeline(Graph):
 
     # -- variants ----------------------------------------------------------------------------
 
-    def with_settings(self, settings: Mapping[str, Any]) -> Pipeline:
+    def with_settings(self, settings: Mapping[str, Any], source: SourceOverride = None) -> Pipeline:
         """Return the pipeline with some settings replaced, checked like a file.
 
         Parameters
         ----------
         settings : mapping
             ``{"node.setting": value}``; ``"node/inner.setting"`` inside an embedded pipeline.
+        source : tuple of (step name, settings), optional
+            Another source, put in at once: the settings may be right for its frames only.
 
         Raises
         ------
@@ -219,7 +221,7 @@ class Pipeline(Graph):
             if not dot:
                 raise PipelineError([Problem(None, f"setting {name!r}: it is named node.setting")])
             overrides.setdefault(node, {})[setting] = value
-        return self._again(overrides, self.source_override)
+        return self._again(overrides, source or self.source_override)
 
     def with_source(self, step: str, **settings: Any) -> Pipeline:
         """Return the pipeline with another source; rules about quantities are checked again."""

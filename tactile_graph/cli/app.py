@@ -17,14 +17,14 @@ Exit codes:
 
 COMMANDS = {
     "run": "Run a pipeline over recordings or another source.",
-    "check": "Report all that is wrong with pipeline files.",
+    "check": "Report all that is wrong with files of pipelines, pads and the like.",
     "explain": "Say for one frame what each node did, and why.",
     "prepare": "Compile the kernels of pipelines now, so that no first frame waits.",
     "graph": "Draw a pipeline's graph: SVG, mermaid or dot.",
-    "pipelines": "List the pipelines, and which evolved from which.",
-    "steps": "List the steps, or describe one of them.",
+    "pipelines": "List the pipelines, search them, or print one of them.",
+    "steps": "List the steps, search them, or describe one of them.",
     "plugins": "List the plugins, what they offer and what is wrong with them.",
-    "schema": "Write a JSON Schema of pipeline files, for editors.",
+    "schema": "Write a JSON Schema of pipeline and other files, for editors.",
 }
 """Name -> what ``--help`` says; the command ``x`` is ``tactile_graph.cli.x:x``."""
 

@@ -137,10 +137,12 @@ def open_pipeline(
     if name is None:
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
     pipeline = load(name, found)
-    if settings:
-        pipeline = pipeline.with_settings(dict(assignment("--set", s) for s in settings))
+    replaced = dict(assignment("--set", s) for s in settings)
+    step = source_named(pipeline, recordings, source, source_settings, span or Span())
+    if replaced or step:
+        pipeline = pipeline.with_settings(replaced, step)
     _help_preparing(name, recordings, settings)
-    return sourced(pipeline, recordings, source, source_settings, span or Span())
+    return pipeline
 
 
 def _help_preparing(name: str, recordings: Sequence[str], settings: Sequence[str]) -> None:
@@ -166,14 +168,14 @@ def offered() -> str:
     return "\n".join(["there are:", *lines]) if lines else "no plugin offers any"
 
 
-def sourced(
+def source_named(
     pipeline: Pipeline,
     recordings: Sequence[str],
     step: str | None,
     given: Sequence[str],
     span: Span,
-) -> Pipeline:
-    """Return a pipeline on the source a command line names; on its own if it names none.
+) -> tuple[str, dict[str, Any]] | None:
+    """Return the source a command line names, step and settings; None for the pipeline's own.
 
     Raises
     ------
@@ -200,9 +202,9 @@ def sourced(
     if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
         base[COUNT] = span.stop
     if own is not None and step == own.name and not (recordings or given or COUNT in base):
-        return pipeline
+        return None
     _check_source(step, base, bool(recordings))
-    return pipeline.with_source(step, **base)
+    return step, base
 
 
 def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:

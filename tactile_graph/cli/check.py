@@ -1,51 +1,134 @@
-"""``tactile-graph check``: everything wrong with pipeline files, at once."""
+"""``tactile-graph check``: everything wrong with files of pipelines, pads and the like, at once."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from tactile_graph.cli.arguments import complete_pipeline
 from tactile_graph.cli.endings import NOT_DONE
+from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, kind_of
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.text import Text
+
     from tactile_graph.api.pipeline import Pipeline
 
 
-@click.command(epilog="Exit codes: 0 all are right, 2 some are not.")
-@click.argument("pipelines", metavar="[PIPELINE]...", nargs=-1, shell_complete=complete_pipeline)
-def check(pipelines: tuple[str, ...]) -> None:
-    """Report all that is wrong with pipeline files or names; without any, with all installed."""
-    from rich.text import Text
+class Target(NamedTuple):
+    """A name or path to check; the kind is empty where the file itself is to tell it."""
 
-    from tactile_graph.api.pipeline import load
-    from tactile_graph.cli.problems import show_problems
+    name: str
+    kind: str = ""
+
+
+def complete_file(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return names of what can be checked and YAML files that begin so, for the shell."""
+    found = registry.installed()
+    offers = ["pipelines", *(file_kind(found, k).offers for k in found.names("file_kinds"))]
+    names = sorted({n for kind in offers for n in found.names(kind)})
+    return [n for n in names if n.startswith(incomplete)] + [
+        str(p) for p in Path().glob(f"{incomplete}*.y*ml")
+    ]
+
+
+@click.command(epilog="Exit codes: 0 all are right, 2 some are not; of --watch at the last look.")
+@click.argument("files", metavar="[FILE|NAME]...", nargs=-1, shell_complete=complete_file)
+@click.option("--as", "kind", metavar="KIND", default="",
+              help="What they are: pipeline, pad, preset, scene, or what else plugins read. "
+              "Otherwise the keys of a file tell.")  # fmt: skip
+@click.option(
+    "--watch", "watched", is_flag=True,
+    help="Look again at every save of the files, and of those they use, until Ctrl-C.",
+)  # fmt: skip
+def check(files: tuple[str, ...], kind: str, watched: bool) -> None:
+    """Report all that is wrong with files of pipelines, pads, presets or scenes.
+
+    Installed ones go by name; without any, all that are installed are checked.
+    """
     from tactile_graph.cli.terminal import console
 
-    found = registry.installed()
-    names = pipelines or tuple(found.names("pipelines"))
-    if not names:
-        raise UsageError("name a pipeline or a file of one: no plugin offers any")
     out = console()
-    wrong = 0
-    for name in names:
+    targets = targets_of(registry.installed(), files, kind)
+    if watched:
+        from tactile_graph.cli.watch import watch
+
+        right = watch(lambda: show_outcomes(out, targets), _paths(targets), out)
+    else:
+        right = show_outcomes(out, targets)
+    if not right:
+        click.get_current_context().exit(NOT_DONE)
+
+
+def _paths(targets: Sequence[Target]) -> list[str]:
+    """Return the files that are named as such; those of names are found when they are read."""
+    return [t.name for t in targets if Path(t.name).suffix in YAML or "/" in t.name]
+
+
+def targets_of(found: registry.Registry, files: Sequence[str], kind: str) -> list[Target]:
+    """Return what is to be checked: the files and names given, or else all that are installed.
+
+    Raises
+    ------
+    UsageError
+        If there is no such kind, or nothing to check.
+    """
+    if kind and kind != PIPELINE:
+        file_kind(found, kind)
+    if files:
+        return [Target(name, kind) for name in files]
+    kinds = [kind] if kind else kind_names(found)
+    targets = [Target(name, k) for k in kinds for name in found.names(_offers(found, k))]
+    if not targets:
+        raise UsageError(f"name a {kind or PIPELINE} or a file of one: no plugin offers any")
+    return targets
+
+
+def _offers(found: registry.Registry, kind: str) -> str:
+    return "pipelines" if kind == PIPELINE else file_kind(found, kind).offers
+
+
+def show_outcomes(out: Console, targets: Sequence[Target]) -> bool:
+    """Print of each whether it is right, or all that is wrong; return whether all are right."""
+    from rich.text import Text
+
+    from tactile_graph.cli.problems import show_problems
+
+    n_wrong = 0
+    for target in targets:
         try:
-            out.print(_right(load(name, found)), soft_wrap=True)
+            out.print(_right(target), soft_wrap=True)
         except TactileGraphError as error:
-            wrong += 1
-            out.print(Text.assemble((f"{name}: wrong", "bold red")), soft_wrap=True)
+            n_wrong += 1
+            out.print(Text.assemble((f"{target.name}: wrong", "bold red")), soft_wrap=True)
             if isinstance(error, PipelineError):
                 show_problems(out, error)
             else:
                 out.print(str(error), style="red", soft_wrap=True)
-    if wrong:
-        click.get_current_context().exit(NOT_DONE)
+    return n_wrong == 0
 
 
-def _right(pipeline: Pipeline) -> Any:
+def _right(target: Target) -> Text:
+    """Return what there is to say of something right; raises what is wrong with it."""
+    from rich.text import Text
+
+    from tactile_graph.api.pipeline import load
+
+    found = registry.installed()
+    kind = target.kind or kind_of(found, target.name)
+    if kind == PIPELINE:
+        return _right_pipeline(load(target.name, found))
+    known = file_kind(found, kind)
+    told = known.tell(known.read(target.name))
+    return Text.assemble((f"{target.name}: right", "bold green"), f"  {kind}: {told}")
+
+
+def _right_pipeline(pipeline: Pipeline) -> Text:
     from rich.text import Text
 
     n = len(pipeline.nodes)

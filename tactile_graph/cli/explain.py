@@ -45,6 +45,8 @@ def explain(
     out = console()
     out.print(_heading(result))
     out.print(result_table(result))
+    for node, text in result.notices.items():
+        out.print(f"notice  {node}: {text}", style="yellow", soft_wrap=True)
     if any(isinstance(result.outcome(name), Failed) for name in result.plan.asked):
         click.get_current_context().exit(SOME_FAILED)
 

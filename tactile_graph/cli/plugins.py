@@ -94,7 +94,7 @@ def _offers(plugin: registry.Plugin, broken: Mapping[str, str]) -> Any:
         for kind, names in plugin.offers.items()
     }
     parts = [
-        f"{len(names)} {kind if len(names) != 1 else kind[:-1]}"
+        f"{len(names)} {registry.singular(kind)}{'s' if len(names) != 1 else ''}"
         for kind, names in usable.items()
         if names
     ]

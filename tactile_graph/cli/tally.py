@@ -15,12 +15,13 @@ from rich.text import Text
 from tactile_graph.api.result import Result
 from tactile_graph.cli.live_table import shown
 from tactile_graph.engine.columns import OutputColumns, values_of
+from tactile_graph.engine.notices import notices
 from tactile_graph.engine.outcome import Failed, Skipped, item_words
 from tactile_graph.steps.injected import Report
 
 MOST_TROUBLES = 20
 LOOKED_THROUGH = 100
-"""Frames at the beginning in which nodes are asked what they assume."""
+"""Frames at the beginning in which nodes are asked what they assume, and have to say."""
 LONGEST_REASON = 300
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
@@ -50,6 +51,33 @@ class _Error:
 
 
 @dataclass
+class _Noticed:
+    """What a node had to say in the frames looked through: how often, and the first time."""
+
+    text: str = ""
+    first_frame: int = -1
+    n: int = 0
+    n_ran: int = 0
+
+    def add(self, text: str, frame: int) -> None:
+        self.n_ran += 1
+        self.n += bool(text)
+        if text and not self.text:
+            self.text, self.first_frame = text, frame
+
+    @property
+    def usual(self) -> bool:
+        """Whether more than half of the frames were so: now and then it may be a faulty reading."""
+        return 2 * self.n > self.n_ran
+
+    @property
+    def times(self) -> str:
+        if self.n_ran == 1:
+            return f"in frame {self.first_frame}"
+        return f"in {self.n} of {self.n_ran} frames looked at, first in frame {self.first_frame}"
+
+
+@dataclass
 class Tally:
     """What a run came to so far."""
 
@@ -64,6 +92,7 @@ class Tally:
     n_items_failed: int = 0
     assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
     """What a node took that nobody said, and in which frame first."""
+    noticed: dict[str, _Noticed] = field(default_factory=dict)
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     not_finite: dict[tuple[str, str], _Kept] = field(default_factory=dict)
@@ -76,6 +105,7 @@ class Tally:
         self.n += 1
         if self.n <= LOOKED_THROUGH:
             self._assumed(result)
+            self._noticed(result)
         classes = {result.outcome(o.output).__class__ for o in self.outputs}
         self.n_failed += Failed in classes
         self.n_skipped += Skipped in classes and Failed not in classes
@@ -120,6 +150,11 @@ class Tally:
                 self.assumed[item.name] = (told, result.frame.index)
             seen.add(id(value))
 
+    def _noticed(self, result: Result) -> None:
+        """Note what steps had to say beside their values."""
+        for node, text in notices(result).items():
+            self.noticed.setdefault(node, _Noticed()).add(text, result.frame.index)
+
     def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
         """Note each value that is no number and should be one; return whether there is any."""
         strange = [c.key for c in output.values if not _finite(values.get(c.key))]
@@ -147,6 +182,7 @@ class Tally:
             "frames_not_finite": self.n_not_finite,
             "failures_by_node": failed,
             "assumed": {node: told for node, (told, _) in self.assumed.items()},
+            "notices": {node: found.text for node, found in self.noticed.items() if found.usual},
         }
 
     # -- in closing --------------------------------------------------------------------------
@@ -177,6 +213,9 @@ class Tally:
             yield _labelled("strange", "red", text)
         for node, (told, frame) in self.assumed.items():
             yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
+        for node, found in self.noticed.items():
+            if found.usual:
+                yield _labelled("notice", "yellow", f"{node}: {found.text} ({found.times})")
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
             text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, Self
 
+from tactile_graph.engine.notices import notices
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED, Failed, Outcome, Skipped, gaps
 from tactile_graph.engine.plan import Plan
 from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
@@ -166,6 +167,11 @@ class Outcomes(Mapping[str, Any]):
         """For each output whose list lacks items, the outcomes that stand in their places."""
         found = {name: gaps(self.outcome(name)) for name in self.plan.asked}
         return {name: empty for name, empty in found.items() if empty}
+
+    @property
+    def notices(self) -> dict[str, str]:
+        """What steps say of this frame beside their values, by node; worked out on each asking."""
+        return {node: text for node, text in notices(self).items() if text}
 
     @property
     def ok(self) -> bool:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import compile_condition
+from tactile_graph.pipeline.facts import ref_facts
+from tactile_graph.pipeline.graph import FRAME
 from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.wiring import Ref
 
 
 def check_conditions(scope: Scope) -> None:
@@ -26,6 +29,35 @@ def check_conditions(scope: Scope) -> None:
         if wrong.named not in broken:
             what = f"node {node.name!r}, 'when': {wrong.message}"
             _condition_problem(scope, what, node.when or "", wrong, *node.path, "when")
+
+
+def check_fields_read(scope: Scope) -> None:
+    """Report conditions over fields that images of the quantity at hand do not have.
+
+    A step's output says so of itself: ``field_quantities`` holds the quantities by field.
+    """
+    for name, node in scope.nodes.items():
+        declared = scope.declaration.nodes.get(name)
+        for ref in node.guard.refs if node.guard and declared else ():
+            wanted = _quantities_of(scope, ref)
+            got = _quantity_read(scope, ref.node)
+            if declared and wanted and got not in ("", FRAME, *wanted):
+                scope.problem(declared, f", 'when': {ref} is there for images in "
+                              f"{' or '.join(wanted)}, here they are in {got}: it never runs",
+                              "when")  # fmt: skip
+
+
+def _quantities_of(scope: Scope, ref: Ref) -> tuple[str, ...]:
+    """Return the quantities for which a field has a value; nothing where it always may."""
+    fields = getattr(scope.types.get(ref.node), "field_quantities", {})
+    return tuple(fields.get(ref.path[0], ())) if ref.path else ()
+
+
+def _quantity_read(scope: Scope, name: str) -> str:
+    """Return the quantity of the first image a node reads, as far as it is known."""
+    bindings = scope.nodes[name].inputs if name in scope.nodes else ()
+    known = (ref_facts(b.refs[0], scope.facts).quantity for b in bindings if b.refs)
+    return next((quantity for quantity in known if quantity), "")
 
 
 def _condition_problem(

@@ -6,21 +6,35 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, Literal, get_args, get_origin
+from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import did_you_mean, shown
-from tactile_graph.pipeline.comparable import fields_hint, is_scalar, sort_of
+from tactile_graph.errors import shown
+from tactile_graph.pipeline.comparable import fields_hint, is_scalar
+from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_truth, nonsense
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
 from tactile_graph.steps.signature import list_item, type_name
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
 LONGEST = 2_000
 LONGEST_SPELLED = 4_000
 DEEPEST = 100
+
+SIGNS = {
+    r"&&": "write 'and' for '&&'",
+    r"\|\|": "write 'or' for '||'",
+    r"=>": "write '>=' for '=>'",
+    r"=<": "write '<=' for '=<'",
+    r"<>": "write '!=' for '<>'",
+    r"\bis\b": "write '==' for 'is'",
+    r"(?<![<>=!])=(?![=<>])": "to compare, write '=='",
+    r"!(?!=)": "write 'not' for '!'",
+    r"\b(AND|OR|NOT)\b": "'and', 'or' and 'not' are written small",
+    r"\?": "there is no '?'",
+    r"(?<![\w.])[\d.]+[A-Za-z%°µ]": "a number stands alone, without a unit",
+}
+"""What people write who think of another language -> what to write instead."""
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -100,6 +114,10 @@ def compile_condition(
     compiler = _Compiler(types, named or {}, also)
     try:
         tree = compiler.parse(text, ())
+        if not isinstance(tree, ast.Constant) or isinstance(tree.value, str):
+            words = no_truth(tree)
+            if words:
+                raise ConditionError(words)
         if not compiler.is_truth(tree):
             raise ConditionError(compiler.not_truth(tree))
         _check_depth(tree)
@@ -158,7 +176,7 @@ class _Compiler:
                 raise ConditionError(
                     f"{type(node).__name__.lower()} is not allowed in a condition; allowed are "
                     "and, or, not, comparisons, + - * / // %, numbers, texts, node fields, "
-                    f"{', '.join(FUNCTIONS)}",
+                    f"{', '.join(FUNCTIONS)}{_typo_hint(text)}",
                     getattr(node, "col_offset", 0),
                 )
         return self.rewrite(tree.body, within)
@@ -173,6 +191,10 @@ class _Compiler:
             raise ConditionError("a field can only be taken from a node", node.col_offset)
         if isinstance(node, ast.Constant) and not isinstance(node.value, int | float | str):
             raise ConditionError(f"{node.value!r} is not allowed in a condition", node.col_offset)
+        for part in _truth_parts(node):
+            words = no_truth(part)
+            if words:
+                raise ConditionError(words, part.col_offset)
         for field, value in ast.iter_fields(node):
             if isinstance(value, ast.expr):
                 setattr(node, field, self.rewrite(value, within))
@@ -185,70 +207,14 @@ class _Compiler:
         for part in _compared_parts(node):
             if not self.is_comparable(part):
                 raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
-        if isinstance(node, ast.BinOp):
-            self.refuse_arithmetic(node)
+        words = ""
         if isinstance(node, ast.Compare):
-            self.refuse_mixed(node)
-            self.refuse_settled(node)
-            self.refuse_impossible(node)
+            words = nonsense(node, self)
+        elif isinstance(node, ast.BinOp):
+            words = no_arithmetic(node, self)
+        if words:
+            raise ConditionError(words, getattr(node, "col_offset", 0))
         return node
-
-    def refuse_arithmetic(self, node: ast.BinOp) -> None:
-        """Refuse texts and lists: a few signs of these can ask for all memory there is."""
-        for side in (node.left, node.right):
-            if isinstance(side, ast.Tuple | ast.List):
-                raise ConditionError("arithmetic takes numbers, not a list", side.col_offset)
-            if self.sort(side) == "text":
-                text = f"arithmetic takes numbers, and {self.spell(side)} is a text"
-                raise ConditionError(text, getattr(node, "col_offset", 0))
-
-    def refuse_settled(self, node: ast.Compare) -> None:
-        """Refuse a comparison that reads no node: it comes out the same in every frame."""
-        if any(isinstance(part, ast.Name) for part in ast.walk(node)):
-            return
-        try:
-            always = bool(_function(self, node, ())())
-        except Exception as error:  # 1 / 0 > 2
-            always_words = f"cannot be told ({error})"
-        else:
-            always_words = f"is always {str(always).lower()}"
-        text = f"{ast.unparse(node)} reads no node: it {always_words}"
-        raise ConditionError(text, getattr(node, "col_offset", 0))
-
-    def refuse_impossible(self, node: ast.Compare) -> None:
-        """Refuse to look for a text that a field never holds: one of a few is all it can be."""
-        sides = [node.left, *node.comparators]
-        for (left, right), operator in zip(pairwise(sides), node.ops, strict=True):
-            if not isinstance(operator, ast.Eq | ast.NotEq | ast.In | ast.NotIn):
-                continue
-            for field, other in ((left, right), (right, left)):
-                allowed = _literals(self.kind(field))
-                for given in _constants(other) if allowed else []:
-                    if given not in allowed:
-                        known = ", ".join(repr(a) for a in allowed)
-                        hint = did_you_mean(str(given), [str(a) for a in allowed])
-                        text = f"{self.spell(field)} is never {given!r}; it is one of {known}{hint}"
-                        raise ConditionError(text, getattr(node, "col_offset", 0))
-
-    def refuse_mixed(self, node: ast.Compare) -> None:
-        """Refuse to compare a number with a text: it fails, or never holds, in every frame."""
-        sides = [node.left, *node.comparators]
-        for left, right in pairwise(sides):
-            sorts = self.sort(left), self.sort(right)
-            if None not in sorts and sorts[0] != sorts[1]:
-                words = " and ".join(
-                    f"{self.spell(side)} is a {sort}"
-                    for side, sort in zip((left, right), sorts, strict=True)
-                )
-                text = f"{words}: they cannot be compared"
-                raise ConditionError(text, getattr(node, "col_offset", 0))
-
-    def sort(self, node: ast.expr) -> str | None:
-        """Return ``number`` or ``text``, None where nobody knows."""
-        if isinstance(node, ast.Constant):
-            return "text" if isinstance(node.value, str) else "number"
-        found = {sort_of(arm) for arm in arms(self.kind(node))}
-        return found.pop() if len(found) == 1 else None
 
     def spell(self, node: ast.expr) -> str:
         if isinstance(node, ast.Name):
@@ -276,6 +242,8 @@ class _Compiler:
                 return self.parse(self.named[root], (*within, root))
             except ConditionError as error:
                 raise ConditionError(error.message, offset, error.named or root) from None
+        if root in ("true", "false") and root not in self.types:
+            raise ConditionError(f"{root} is written {root.capitalize()} in a condition", offset)
         ref, kind = resolve_reference(chain, self.types, [*self.named, *self.also], offset)
         if ref not in self.refs:
             self.refs.append(ref)
@@ -312,24 +280,7 @@ class _Compiler:
 
 def _typo_hint(text: str) -> str:
     """Return what other languages' signs are here."""
-    signs = {r"&&": "write 'and' for '&&'", r"\|\|": "write 'or' for '||'",
-             r"(?<![<>=!])=(?!=)": "to compare, write '=='",
-             r"!(?!=)": "write 'not' for '!'", r"\?": "there is no '?'"}  # fmt: skip
-    return "".join(f"; {hint}" for sign, hint in signs.items() if re.search(sign, text))
-
-
-def _literals(kind: Any) -> tuple[Any, ...]:
-    """Return all that a value can be; nothing where it is not one of a few texts or numbers."""
-    found = arms(kind) if kind is not None else ()
-    if not found or not all(get_origin(arm) is Literal for arm in found):
-        return ()
-    return tuple(value for arm in found for value in get_args(arm))
-
-
-def _constants(node: ast.expr) -> list[Any]:
-    """Return the constants a field is compared with: one, or those of a list."""
-    parts = node.elts if isinstance(node, ast.Tuple | ast.List) else [node]
-    return [part.value for part in parts if isinstance(part, ast.Constant)]
+    return "".join(f"; {hint}" for sign, hint in SIGNS.items() if re.search(sign, text))
 
 
 def _chain(node: ast.expr) -> tuple[str, ...] | None:

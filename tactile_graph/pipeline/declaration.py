@@ -6,13 +6,24 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from tactile_graph.errors import did_you_mean, one_of, shown
+from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
 TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
 NODE_KEYS = ("step", "use", "first_of", "in", "with", "when", "each", "about")
 SOURCE_KEYS = ("step", "with")
 RESERVED = ("frame", "and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
+MEANT = {
+    **dict.fromkeys(("input", "inputs", "from", "reads"), "in"),
+    **dict.fromkeys(("setting", "settings", "params", "parameters", "options", "args"), "with"),
+    **dict.fromkeys(("if", "condition", "only_if"), "when"),
+    **dict.fromkeys(("for", "foreach", "for_each", "map"), "each"),
+    **dict.fromkeys(("type", "function", "filter", "op"), "step"),
+    **dict.fromkeys(("description", "comment", "note"), "about"),
+    **dict.fromkeys(("steps", "graph"), "nodes"),
+    "name": "pipeline",
+}
+"""What keys are called elsewhere -> what they are called here."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _REF = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
 
@@ -64,6 +75,17 @@ def kind_of(value: Any) -> str:
     return kind if value is None else f"{kind}: {shown(value)}"
 
 
+def _key_hint(name: str, allowed: tuple[str, ...]) -> str:
+    """Return what was meant by an unknown key, or else what is allowed."""
+    hint = key_typo(name, allowed) or did_you_mean(name, allowed)
+    if not hint and MEANT.get(name.lower()) in allowed:
+        hint = f"; did you mean {MEANT[name.lower()]!r}?"
+    if hint:
+        return hint
+    settings = f"; a setting stands under 'with': {{{name}: …}}" if "with" in allowed else ""
+    return f"; allowed: {', '.join(allowed)}{settings}"
+
+
 class _Declarer:
     def __init__(self, document: Document) -> None:
         self.document = document
@@ -76,7 +98,7 @@ class _Declarer:
     def keys(self, data: dict[str, Any], allowed: tuple[str, ...], path: Path, what: str) -> None:
         for name in data:
             if name not in allowed:
-                hint = did_you_mean(name, allowed) or f"; allowed: {', '.join(allowed)}"
+                hint = _key_hint(name, allowed)
                 self.problem(f"{what}: unknown key {name!r}{hint}", *path, name, key=True)
 
     def text(self, data: dict[str, Any], key: str, *path: str | int, what: str) -> str:
@@ -113,7 +135,10 @@ class _Declarer:
         if data is None:
             return
         if not isinstance(data, dict):
-            self.problem(f"'source' must be {{step: …, with: …}}, got {kind_of(data)}", "source")
+            hint = f"; write {{step: {data}}}" if isinstance(data, str) else ""
+            self.problem(
+                f"'source' must be {{step: …, with: …}}, got {kind_of(data)}{hint}", "source"
+            )
             return
         self.keys(data, SOURCE_KEYS, ("source",), "source")
         step = self.text(data, "step", "source", what="source, 'step'")

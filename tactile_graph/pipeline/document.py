@@ -135,6 +135,8 @@ def _yaml_words(error: yaml.MarkedYAMLError) -> str:
         return "a tab cannot stand here: YAML is indented with spaces"
     if text == "but found another document":
         return "'---' begins a second document, but a file holds one pipeline"
+    if text.startswith("expected ',' or '}', but got ':'"):
+        return f"{text}: a comma is missing before this key, or braces around a mapping in {{…}}"
     if text.startswith("mapping values are not allowed"):
         return f"{text}: is the line indented as the others, and a text with ': ' in it quoted?"
     return text

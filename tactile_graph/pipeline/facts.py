@@ -16,11 +16,10 @@ FactTable = Mapping[str, Facts]
 
 def source_facts(source: Source | None) -> Facts:
     """Return what the source says of its frames before the first one comes."""
-    names = (
-        source.signature.output_quantity.names
-        if source and source.signature.output_quantity
-        else ()
-    )
+    rule = source.signature.output_quantity if source else None
+    names = rule.names if rule else ()
+    if source and rule and rule.port:
+        names = tuple(n for n in names if n == source.settings.get(rule.port))
     return Facts(names[0] if len(names) == 1 else FRAME, GridFact(FRAME), of_frame=True)
 
 
@@ -42,7 +41,8 @@ def output_facts(
         like = by_port.get(quantity.port, like)
     elif quantity is not None and len(quantity.names) == 1:
         like = Facts(quantity.names[0])
-    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port))
+    views = tuple(getattr(signature.output, "provides", {}).values())
+    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port), views=views)
 
 
 def _output_grid(
@@ -102,7 +102,7 @@ def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list
     setting = getattr(made, "takes_by", "")
     troubles: list[Trouble] = []
     rules: list[FrameRule] = []
-    by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in node.inputs if b.refs}
+    by_port = {b.port.name: _view_facts(b.refs[0], facts) for b in node.inputs if b.refs}
     for port in takes.keys() & by_port.keys():
         known, what = by_port[port], node.what
         text = quantity_trouble(what, port, takes[port], known.quantity, setting)
@@ -110,6 +110,12 @@ def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list
         if known.of_frame:
             rules.append(FrameRule(node.name, port, what, takes[port], setting=setting))
     return troubles, rules
+
+
+def _view_facts(ref: Ref, facts: FactTable) -> Facts:
+    """Return what is known of the value at a reference, or of what a record is seen as there."""
+    known = facts.get(ref.node, Facts())
+    return known if ref.path in [(view,) for view in known.views] else ref_facts(ref, facts)
 
 
 def quantity_trouble(

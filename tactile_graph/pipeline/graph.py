@@ -54,12 +54,13 @@ class Facts:
 
     ``quantity`` is the name of a quantity, or `FRAME` for "that of the frame", or "". With
     ``of_frame`` it is the frame's, whether the source names it or not: who runs the pipeline on
-    other frames is told.
+    other frames is told. ``views`` are the attributes through which the value is seen otherwise.
     """
 
     quantity: str = ""
     grid: GridFact | None = None
     of_frame: bool = False
+    views: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from numpy.random import default_rng
 
 from tactile_graph.errors import PipelineError, PluginError, Problem, TactileGraphError, UsageError
 from tactile_graph.pipeline.bind import bind_inputs
-from tactile_graph.pipeline.checks import check_conditions, check_overrides
+from tactile_graph.pipeline.checks import check_conditions, check_fields_read, check_overrides
 from tactile_graph.pipeline.conditions import Guard, compile_condition
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.facts import (
@@ -75,6 +75,7 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
             scope.problem(declared, str(error))
             scope.types.setdefault(name, UNKNOWN)
     check_conditions(scope)
+    check_fields_read(scope)
     check_overrides(scope)
     outputs = _outputs(scope)
     d = scope.declaration

@@ -42,5 +42,15 @@ def tactile_graph_presets() -> Mapping[str, Path]:  # type: ignore[empty-body]
 
 
 @hookspec
+def tactile_graph_scenes() -> Mapping[str, Path]:  # type: ignore[empty-body]
+    """Scene name -> its YAML file."""
+
+
+@hookspec
+def tactile_graph_file_kinds() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Kind of YAML file (``"pad"``) -> import string of its `FileKind`, for check and schema."""
+
+
+@hookspec
 def tactile_graph_commands() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Command name -> import string of a click command, ``"package.module:name"``."""

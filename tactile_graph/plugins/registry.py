@@ -24,14 +24,21 @@ if TYPE_CHECKING:
 
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
-OFFERS = ("steps", "readers", "pipelines", "pads", "presets", "commands")
-_FILES = ("pipelines", "pads", "presets")
+OFFERS = (
+    "steps", "readers", "pipelines", "pads", "presets", "scenes", "file_kinds", "commands",
+)  # fmt: skip
+_FILES = ("pipelines", "pads", "presets", "scenes")
 _TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
 _WANTED = {
     **dict.fromkeys(OFFERS, 'an import string "module:name" is needed'),
     **dict.fromkeys(_FILES, "a file's path is needed"),
     "readers": "the name of its setting is needed",
 }
+
+
+def singular(kind: str) -> str:
+    """Return the word for one offer of a kind: ``"file kind"`` for ``"file_kinds"``."""
+    return kind.removesuffix("s").replace("_", " ")
 
 
 @dataclass(frozen=True)
@@ -161,7 +168,7 @@ class Registry:
             self._offers[kind][offer.name] = offer
             return
         clash = (
-            f"{kind[:-1]} {offer.name!r} of {offer.plugin.label} is refused: "
+            f"{singular(kind)} {offer.name!r} of {offer.plugin.label} is refused: "
             f"{taken.plugin.label} has it already"
         )
         self.clashes.append(clash)
@@ -189,7 +196,7 @@ class Registry:
     def unknown(self, kind: str, name: str) -> str:
         """Return the text that says a name is not on offer, with what is near."""
         names = self.names(kind)
-        text = f"no {kind[:-1]} named {name!r}{did_you_mean(name, names)}"
+        text = f"no {singular(kind)} named {name!r}{did_you_mean(name, names)}"
         if not did_you_mean(name, names):
             text += f"; there are: {one_of(names)}"
         return text + self.missing_plugins()
@@ -237,7 +244,7 @@ class Registry:
         return self._signatures[name]
 
     def path(self, kind: str, name: str) -> Path:
-        """Return the file of a pipeline, pad or preset."""
+        """Return the file of a pipeline, pad, preset or scene."""
         return Path(self.offer(kind, name).target)
 
 

@@ -87,6 +87,9 @@ def _rules(signature: Signature) -> Iterator[str]:
         if rule is None:
             continue
         what = f"the {type(rule).__name__} of {where} names"
+        by_setting = signature.kind is Kind.SOURCE and isinstance(rule, Quantity)
+        if by_setting and rule.port in settings:
+            continue
         if rule.port and rule.port not in ports:
             hint = did_you_mean(rule.port, ports) or f"; ports: {one_of(ports)}"
             yield f"{what} {rule.port!r}, which is no port{hint}"

@@ -22,8 +22,9 @@ from tactile_graph.wires.image import QUANTITIES, Image, Mask
 class Quantity:
     """What an image's values mean.
 
-    On a port: the quantities it takes. On a return value: the one it gives. On a setting: what
-    the port ``of`` must carry whenever the setting is given.
+    On a port: the quantities it takes. On a return value: the one it gives; of a source whose
+    setting ``of`` names it, those it may name. On a setting: what the port ``of`` must carry
+    whenever the setting is given.
     """
 
     names: tuple[str, ...] = ()

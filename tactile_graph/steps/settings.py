@@ -11,7 +11,7 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from tactile_graph.errors import did_you_mean, one_of, shown
+from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
 from tactile_graph.steps.inner import Place, fields, item, leaves, place
 from tactile_graph.steps.signature import Setting, Signature, strip, type_name
 
@@ -28,6 +28,7 @@ _WORDS = {
 }
 _QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
 """Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
+_WITH_UNIT = re.compile(r"\s*([-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*([A-Za-z%°µΩ]*)\s*")
 _COMPARISONS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", ">="),
@@ -124,11 +125,21 @@ def _allowed(annotation: Any) -> str:
 
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:
-    hint = did_you_mean(name, known) or f"; {signature.name} takes: {one_of(known)}"
-    head, colon, value = name.partition(":")
-    if colon and head in known:
-        hint = f"; a space is missing behind the colon: {head}: {value}"
-    return f"unknown setting {name!r}{hint}"
+    hint = key_typo(name, known) or did_you_mean(name, known)
+    if not hint and name.isdigit():
+        hint = "; the decimals of a number stand behind a point: 0.01"
+    return f"unknown setting {name!r}{hint or f'; {signature.name} takes: {one_of(known)}'}"
+
+
+def _number_typo(got: Any, annotation: Any) -> str:
+    """Return what makes a text of what was meant as a number; empty where it was not."""
+    found = _WITH_UNIT.fullmatch(got) if isinstance(got, str) else None
+    if found is None or not _only_numbers(annotation):
+        return ""
+    number, unit = found[1].replace(",", "."), found[2]
+    if unit:
+        return f"; a number stands without its unit: {number}"
+    return f"; its decimals stand behind a point: {number}"
 
 
 def _shortest(error: ValidationError, given: Any) -> dict[Place, Any]:
@@ -175,7 +186,7 @@ def _words(e: Any, setting: Setting, at: Place) -> str:
     if kind == "value_error":
         return f"{context.get('error', e['msg'])}"
     if kind.endswith(("_parsing", "_type", "_from_float")):
-        return f"must be {_allowed(annotation)}, got {shown(got)}"
+        return f"must be {_allowed(annotation)}, got {shown(got)}{_number_typo(got, annotation)}"
     if kind in ("too_short", "too_long"):
         return f"{str(e['msg'])[0].lower()}{str(e['msg'])[1:]}"
     return f"must be {_allowed(annotation)}, got {shown(got)} ({e['msg']})"

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, NoReturn
+from typing import Annotated, Any, ClassVar, Literal, NoReturn, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 """Units of quantities; counts, raw readings and levels are their own."""
-QUANTITIES = ("counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary")
+Known = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
+QUANTITIES: tuple[str, ...] = get_args(Known)
 """What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
 
 
@@ -87,7 +88,7 @@ class Image(_Gridded):
     __slots__ = ("quantity", "valid")
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
     image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
-    quantity: str
+    quantity: Annotated[str, Known]
     valid: NDArray[np.bool_] | None
 
     def __init__(

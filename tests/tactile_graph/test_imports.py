@@ -21,6 +21,7 @@ PUBLIC = (
     "tactile_graph.locks",
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",
+    "tactile_graph.plugins.file_kind",
     "tactile_graph.inspect",
     "tactile_graph.provenance",
 )

@@ -21,7 +21,7 @@ IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
     *("adaptive", "circle-by-order", "circle-followed", "circle-full")
 }
 """Those that weigh a pad's volts: they cannot do with less."""
-KNOWN_IN_GRAMS = {"identify", "identify-locate"}
+KNOWN_IN_GRAMS = {"identify", "identify-any", "identify-locate"}
 """Those that know the thesis' objects, by their grams."""
 
 SLOW = {"locate", "locate-contacts", "locate-objects", "locate-rectangle", "bayes-circle"}

@@ -42,7 +42,9 @@ def test_the_circle_it_finds_is_that_of_circle_3():
     assert (found.x_cm, found.y_cm, found.radius_cm) == (alone.x_cm, alone.y_cm, alone.radius_cm)
 
 
-@pytest.mark.parametrize("name", ["features", "identify", "identify-locate"])
+@pytest.mark.parametrize(
+    "name", ["features", "describe", "identify", "identify-any", "identify-locate"]
+)
 def test_an_empty_pad_is_skipped_and_only_the_footprint_is_computed(name):
     pipeline = load(name)
     result = pipeline.run(Frame.of(np.zeros((16, 16)), 1.3, quantity="volt"))
@@ -68,3 +70,12 @@ def test_other_features_are_a_line_in_yaml():
     )
     pipeline = pipeline.with_source("simulate", scene="rectangles", frames=10)
     assert all(r["identity"].name == true_name(r.frame) for r in pipeline.stream(seed=1))
+
+
+def test_identify_any_names_the_objects_of_the_thesis_by_all_features():
+    results = list(
+        load("identify-any").with_source("simulate", scene="identify", frames=25).stream()
+    )
+    right = [r["identity"].name == true_name(r.frame) for r in results]
+    assert sum(right) >= 23
+    assert all(r["identity"].nearest == true_name(r.frame) for r in results)

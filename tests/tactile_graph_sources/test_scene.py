@@ -5,18 +5,18 @@ import math
 import pytest
 
 from tactile_graph.errors import UsageError
+from tactile_graph.plugins.registry import installed
 from tactile_graph.wires import Circle, Polygon, Rectangle
 from tactile_graph_pads.records import RecordError
-from tactile_graph_sources.scene import Disc, Plate, Scene, Slab, load_scene, scene_names
+from tactile_graph_sources.scene import Disc, Plate, Scene, Slab, load_scene
 
 DISC = {"shape": "disc", "weight_g": 10, "radius_cm": 3}
 
 
 def test_every_shipped_scene_loads_and_says_what_it_is():
-    assert {"disc-1", "discs", "threshold-discs", "rectangle-2", "two-objects", "empty"} <= set(
-        scene_names()
-    )
-    for name in scene_names():
+    names = installed().names("scenes")
+    assert {"disc-1", "discs", "threshold-discs", "rectangle-2", "two-objects"} <= set(names)
+    for name in names:
         assert load_scene(name).about
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from tactile_graph_classifiers.commands.shared import database_option
+from tactile_graph_classifiers.commands.shared import database_option, tell_apart
 
 
 @click.command()
@@ -16,5 +16,7 @@ def forget(name: str, database: Path, timeout_s: float) -> None:
     """Forget the object NAME and all its readings."""
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
-    n = ObjectDatabase(database, timeout_s).forget(name)
+    store = ObjectDatabase(database, timeout_s)
+    n = store.forget(name)
     click.echo(f"{database}: {name} forgotten, with {n} readings")
+    tell_apart(store)

@@ -23,7 +23,7 @@ HEAD = ("frame", "object", "distance", "runner-up", "margin", "")
 @click.command()
 @source_options
 @database_option
-@click.option("--pipeline", default="identify", show_default=True,
+@click.option("--pipeline", default="identify-any", show_default=True,
               help="Which pipeline identifies: a name or a YAML file.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
@@ -42,7 +42,7 @@ def identify(
     """Say for each frame of the recordings which known object it is, and which comes next.
 
     The margin is 0 for a tie of the two and 1 where nothing else comes into question. Programs
-    ask 'tactile-graph run identify -o -' for lines.
+    ask 'tactile-graph run identify-any -o -' for lines.
     """
     from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.database.store import ObjectDatabase
@@ -99,12 +99,21 @@ class _Lines:
         self.n_true = self.n_right = 0
 
     def add(self, result: Result) -> None:
-        """Write the line of a frame."""
-        from tactile_graph.engine.outcome import Failed, Skipped
+        """Write the line of a frame.
 
+        Raises
+        ------
+        OtherQuantityError
+            If it is in another unit than the objects were learned in.
+        """
+        from tactile_graph.engine.outcome import Failed, Skipped
+        from tactile_graph_classifiers.database.known import OtherQuantityError
+
+        outcome: Any = result.outcome(self.node)
+        if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
+            raise outcome.error  # no other frame of these recordings would fare better
         if not self.counts:
             click.echo(_line(*HEAD))
-        outcome: Any = result.outcome(self.node)
         if isinstance(outcome, Failed | Skipped):
             kind = "failed" if isinstance(outcome, Failed) else "skipped"
             self.n_failed += kind == "failed"

@@ -9,7 +9,7 @@ import click
 import numpy as np
 
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option, print_table
+from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
 
 if TYPE_CHECKING:
     from tactile_graph_classifiers.database.known import Known, KnownObject
@@ -39,6 +39,7 @@ def objects(
         setting, lessons = read_export(imported)
         store.learn(setting, lessons, new=True)
         click.echo(f"{database}: {len(lessons)} objects imported")
+        tell_apart(store)
         return
     known = store.known()
     if exported is not None:
@@ -76,6 +77,8 @@ def _list(known: Known) -> None:
     unit = f", readings in {known.quantity}" if known.quantity else ""
     by = f", measured by {known.pipeline}" if known.pipeline else ""
     print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
+    if known.choice is not None:
+        click.echo(f"{known.choice}.")
 
 
 def _spread(known: Known, it: KnownObject, feature: str) -> str:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+if TYPE_CHECKING:
+    from tactile_graph_classifiers.database.store import ObjectDatabase
 
 F = TypeVar("F", bound=Callable[..., Any])
 DEFAULT_DATABASE = "tactile-objects.sqlite"
@@ -34,6 +37,23 @@ def database_option(command: F) -> F:
     ):
         command = add(command)
     return command
+
+
+def tell_apart(store: ObjectDatabase) -> None:
+    """Find how the objects of a database are told apart best, keep it, and say how well.
+
+    Parameters
+    ----------
+    store : ObjectDatabase
+    """
+    from tactile_graph_classifiers.distances.choosing import Examples, choose
+
+    known = store.known()
+    if len(known.objects) < 2 or max(len(it.readings) for it in known.objects) < 2:
+        return
+    choice = choose(Examples.of(known))
+    store.keep(choice, known)
+    click.echo(f"{store.path}: {choice}")
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

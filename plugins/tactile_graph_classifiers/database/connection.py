@@ -91,10 +91,15 @@ def _opened(path: Path, mode: str, timeout_s: float) -> Iterator[sqlite3.Connect
             uri=True,
             isolation_level=None,
         )
+        # What is no UTF-8 any more must reach the seals, not end in an error of another kind.
+        connection.text_factory = lambda raw: raw.decode("utf-8", "replace")
         connection.execute("PRAGMA foreign_keys = ON")
         yield connection
     except sqlite3.Error as error:
         raise DataError(str(path), _words(error, path, timeout_s)) from error
+    except UnicodeDecodeError as error:  # SQLite's own words quote a damaged name
+        raise DataError(str(path), "is damaged: a name in it is no text; take a copy, or an export,"
+                        " of it") from error  # fmt: skip
     finally:
         if connection is not None:
             connection.close()
@@ -129,10 +134,13 @@ def _is_made(connection: sqlite3.Connection, path: Path) -> bool:
     if owner != APPLICATION_ID:
         raise DataError(str(path), "is an SQLite database, but not one of objects")
     if version != VERSION:
+        todo = (
+            "update tactile-graph" if version > VERSION else
+            "export it with the version that made it ('objects --export'), and import that"
+        )  # fmt: skip
         raise DataError(
             str(path),
-            f"has schema {version}, this version of the plugin reads schema {VERSION};"
-            " update tactile-graph",
+            f"has schema {version}, this version of the plugin reads schema {VERSION}; {todo}",
         )
     return True
 
@@ -154,7 +162,7 @@ def _words(error: sqlite3.Error, path: Path, timeout_s: float) -> str:
         return "cannot be written: file or folder is read-only"
     if code == sqlite3.SQLITE_CANTOPEN:
         return "cannot be opened; may file and folder be read and written?"
-    if code == sqlite3.SQLITE_CORRUPT:
+    if code in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CONSTRAINT):
         return f"is damaged: {error}; take a copy, or an export, of it"
     if code == sqlite3.SQLITE_FULL:
         return "cannot be written: the disc is full"

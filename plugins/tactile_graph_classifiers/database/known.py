@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
+
+
+class OtherQuantityError(DataError):
+    """Readings in another unit than that the objects were learned in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +57,8 @@ class Known:
     objects : tuple of KnownObject
     pipeline : str
         Name of the pipeline that measured them.
+    choice : Choice, optional
+        How a discriminant of all these features tells them apart best, where that is known.
     """
 
     where: str
@@ -59,6 +66,7 @@ class Known:
     quantity: str
     objects: tuple[KnownObject, ...]
     pipeline: str = ""
+    choice: Choice | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -85,12 +93,13 @@ class Known:
         """Unbiased covariance of each object, shape (K, F, F)."""
         return np.array([o.statistics.covariance for o in self.objects])
 
-    def chosen(self, features: Sequence[str]) -> Known:
+    def chosen(self, features: Sequence[str] | None) -> Known:
         """Return the objects with these features alone.
 
         Parameters
         ----------
-        features : sequence of str
+        features : sequence of str, optional
+            All that were learned if not given.
 
         Raises
         ------
@@ -99,6 +108,8 @@ class Known:
         DataError
             If one of them was not learned.
         """
+        if features is None:
+            return self
         if not features or len(set(features)) != len(features):
             raise ValueError(f"features: name at least one, each once, got {list(features)}")
         for name in features:
@@ -121,6 +132,18 @@ class Known:
         )
         return Known(self.where, tuple(features), self.quantity, objects, self.pipeline)
 
+    def same_readings(self, other: Known) -> bool:
+        """Return whether both hold the same readings of the same objects.
+
+        Parameters
+        ----------
+        other : Known
+        """
+        mine, theirs = self.objects, other.objects
+        return (self.features, self.names) == (other.features, other.names) and all(
+            np.array_equal(a.readings, b.readings) for a, b in zip(mine, theirs, strict=True)
+        )
+
     def measured(self, quantity: str) -> None:
         """Check that a reading is in the unit the objects were learned in.
 
@@ -131,11 +154,12 @@ class Known:
 
         Raises
         ------
-        DataError
+        OtherQuantityError
             If it is not.
         """
         if quantity and self.quantity and quantity != self.quantity:
-            raise DataError(
+            raise OtherQuantityError(
                 self.where,
-                f"the objects were learned in {self.quantity}, this reading is in {quantity}",
+                f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
+                " them from recordings like these, into another database",
             )

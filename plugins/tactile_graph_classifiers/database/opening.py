@@ -14,7 +14,7 @@ SAMPLE = Path(__file__).parents[1] / "samples" / "thesis-objects.yaml"
 """Readings of the objects of thesis tables 4.6 and 4.9 on the simulated pad."""
 
 
-def load_known(database: Path | dict[str, Any] | None, features: Sequence[str]) -> Known:
+def load_known(database: Path | dict[str, Any] | None, features: Sequence[str] | None) -> Known:
     """Return the objects of a database with the chosen features.
 
     Parameters
@@ -22,7 +22,8 @@ def load_known(database: Path | dict[str, Any] | None, features: Sequence[str]) 
     database : Path, mapping or None
         An SQLite file or an export, told apart by content; an export as plain data; or, if None,
         the sample that comes with the plugin.
-    features : sequence of str
+    features : sequence of str, optional
+        All that were learned if not given.
 
     Raises
     ------

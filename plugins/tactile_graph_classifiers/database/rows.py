@@ -5,12 +5,15 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
+from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.known import KnownObject
+from tactile_graph_classifiers.database.seal import seal, seal_of_object
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
@@ -50,56 +53,193 @@ class Setting(NamedTuple):
     pipeline: str = ""
 
 
-def setting_of(connection: sqlite3.Connection) -> Setting:
-    """Return what all readings have in common; no features where nothing was learned yet."""
-    features = tuple(r[0] for r in connection.execute("SELECT name FROM features ORDER BY id"))
-    about = dict(connection.execute("SELECT key, value FROM about"))
-    return Setting(features, about.get("quantity", ""), about.get("pipeline", ""))
+class StoredObject(NamedTuple):
+    """An object as a row has it.
+
+    Parameters
+    ----------
+    number : int
+    learned_at : str
+    known : KnownObject
+    """
+
+    number: int
+    learned_at: str
+    known: KnownObject
 
 
-def add(connection: sqlite3.Connection, lesson: Lesson) -> None:
-    """Add a lesson's readings to its object, made if it is new, and to the statistics."""
-    n, n_features = lesson.readings.shape
-    row = connection.execute("SELECT id FROM objects WHERE name = ?", (lesson.name,)).fetchone()
-    now = datetime.now(UTC).isoformat(timespec="seconds")
-    if row is None:
-        row = (_insert(connection, "INSERT INTO objects (name, shape, learned_at, n_readings)"
-                       " VALUES (?, ?, ?, 0)", (lesson.name, lesson.shape, now)),)  # fmt: skip
-    number = int(row[0])
-    old = statistics_of(connection, number, n_features)
-    for values, source in zip(lesson.readings.tolist(), lesson.sources, strict=True):
-        of_reading = _insert(
-            connection, "INSERT INTO readings (object_id, source) VALUES (?, ?)", (number, source)
-        )
-        cells = [(of_reading, k, v) for k, v in enumerate(values)]
-        connection.executemany("INSERT INTO reading_values VALUES (?, ?, ?)", cells)
-    store_statistics(connection, number, old.joined(Statistics.of(lesson.readings)))
-    connection.execute(
-        "UPDATE objects SET n_readings = n_readings + ?, learned_at = ?,"
-        " shape = coalesce(nullif(?, ''), shape) WHERE id = ?",
-        (n, now, lesson.shape, number),
+class Contents(NamedTuple):
+    """All that a database says.
+
+    Parameters
+    ----------
+    setting : Setting
+        No features where nothing was learned yet.
+    objects : tuple of StoredObject
+        In the order they were first learned.
+    choice : Choice, optional
+    """
+
+    setting: Setting
+    objects: tuple[StoredObject, ...]
+    choice: Choice | None
+
+
+# -- reading ---------------------------------------------------------------------------------
+
+
+def contents(connection: sqlite3.Connection, where: str) -> Contents:
+    """Return all that a database says, its seals verified.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+    where : str
+        The file, for errors.
+
+    Raises
+    ------
+    DataError
+        If anything in it is not as it was written.
+    """
+    about = connection.execute("SELECT quantity, pipeline, seal FROM about").fetchall()
+    features = connection.execute("SELECT id, name FROM features ORDER BY id").fetchall()
+    rows = connection.execute(
+        "SELECT id, name, shape, learned_at, n_readings, seal FROM objects ORDER BY id"
+    ).fetchall()
+    if not about and not features and not rows:
+        return Contents(Setting((), ""), (), None)
+    _typed(about, (str, str, str), where)
+    _typed(features, (int, str), where)
+    _typed(rows, (int, str, str, str, int, str), where)
+    if len(about) != 1 or [k for k, _ in features] != list(range(len(features))):
+        raise damaged(where, "rows are missing or there are too many")
+    quantity, pipeline, sealed = about[0]
+    setting = Setting(tuple(name for _, name in features), quantity, pipeline)
+    objects = tuple(_object(connection, row, len(features), where) for row in rows)
+    found = Contents(setting, objects, _choice(connection, where))
+    if _whole_seal(found, [row[-1] for row in rows]) != sealed:
+        raise damaged(where, "its objects are not those that were learned")
+    return found
+
+
+def damaged(where: str, what: str) -> DataError:
+    """Return the error that a database is not as it was written."""
+    return DataError(
+        where, f"is damaged, or was edited by another program: {what}; take a copy, or an export"
     )
 
 
-def _insert(connection: sqlite3.Connection, statement: str, values: tuple[object, ...]) -> int:
-    number = connection.execute(statement, values).lastrowid
-    assert number is not None
-    return number
+def _typed(rows: Sequence[tuple[Any, ...]], types: tuple[type, ...], where: str) -> None:
+    for row in rows:
+        if any(type(value) is not kind for value, kind in zip(row, types, strict=True)):
+            raise damaged(where, "a value is of another type")
 
 
-def statistics_of(connection: sqlite3.Connection, number: int, n_features: int) -> Statistics:
-    """Return an object's statistics as they are kept."""
-    (n,) = connection.execute("SELECT n_readings FROM objects WHERE id = ?", (number,)).fetchone()
-    none = Statistics.none(n_features)
-    for k, mean in connection.execute(
-        "SELECT feature_id, mean FROM means WHERE object_id = ?", (number,)
+def _object(
+    connection: sqlite3.Connection, row: tuple[Any, ...], n_features: int, where: str
+) -> StoredObject:
+    number, name, shape, learned_at, n, sealed = row
+    query = "SELECT source FROM readings WHERE object_id = ? ORDER BY id"
+    sources = connection.execute(query, (number,)).fetchall()
+    _typed(sources, (str,), where)
+    cells = connection.execute(
+        "SELECT v.feature_id, v.value FROM readings r JOIN reading_values v ON v.reading_id = r.id"
+        " WHERE r.object_id = ? ORDER BY r.id, v.feature_id",
+        (number,),
+    ).fetchall()
+    means = connection.execute(
+        "SELECT feature_id, mean FROM means WHERE object_id = ? ORDER BY feature_id", (number,)
+    ).fetchall()
+    scatters = connection.execute(
+        "SELECT feature_a, feature_b, scatter FROM scatters WHERE object_id = ?"
+        " ORDER BY feature_a, feature_b",
+        (number,),
+    ).fetchall()
+    _typed(cells, (int, float), where)
+    _typed(means, (int, float), where)
+    _typed(scatters, (int, int, float), where)
+    features = list(range(n_features))
+    above = np.triu_indices(n_features)
+    if (
+        len(sources) != n
+        or [k for k, _ in cells] != features * n
+        or [k for k, _ in means] != features
+        or [s[:2] for s in scatters] != list(zip(*(at.tolist() for at in above), strict=True))
     ):
-        none.mean[k] = mean
-    for a, b, scatter in connection.execute(
-        "SELECT feature_a, feature_b, scatter FROM scatters WHERE object_id = ?", (number,)
-    ):
-        none.scatter[a, b] = none.scatter[b, a] = scatter
-    return Statistics(int(n), none.mean, none.scatter)
+        raise damaged(where, f"readings or statistics of {name!r} are missing")
+    scatter = np.zeros((n_features, n_features))
+    scatter[above] = [s for *_, s in scatters]
+    scatter.T[above] = scatter[above]
+    statistics = Statistics(n, np.array([m for _, m in means], dtype=np.float64), scatter)
+    readings = np.array([v for _, v in cells], dtype=np.float64).reshape(n, n_features)
+    known = KnownObject(name, shape, readings, statistics, tuple(s for (s,) in sources))
+    if seal_of_object(known, learned_at) != sealed:
+        raise damaged(where, f"{name!r} is not what was learned")
+    return StoredObject(number, learned_at, known)
+
+
+_CHOICE_TYPES = (float, int, float, float, int, int, int, int)
+
+
+def _choice(connection: sqlite3.Connection, where: str) -> Choice | None:
+    rows = connection.execute(
+        "SELECT shrinkage, variates, prior_readings, beyond, n_left_out, n_right, n_strangers,"
+        " n_found FROM choice"
+    ).fetchall()
+    _typed(rows, _CHOICE_TYPES, where)
+    if len(rows) > 1:
+        raise damaged(where, "there are two choices")
+    return Choice(Manner(*rows[0][:4]), *rows[0][4:]) if rows else None
+
+
+def _whole_seal(found: Contents, seals: Sequence[str]) -> str:
+    setting, choice = found.setting, found.choice
+    of_choice = (*choice.manner, *choice[1:]) if choice else ()
+    return seal(
+        (len(setting.features), *setting.features, setting.quantity, setting.pipeline,
+         *of_choice, len(seals), *seals)
+    )  # fmt: skip
+
+
+# -- writing ---------------------------------------------------------------------------------
+
+
+def add(connection: sqlite3.Connection, lesson: Lesson, old: KnownObject | None) -> KnownObject:
+    """Add a lesson's readings to its object, made if it is new; return it as it is now.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+    lesson : Lesson
+        Of at least one reading.
+    old : KnownObject, optional
+        The object as it is.
+    """
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    statistics, readings = Statistics.of(lesson.readings), lesson.readings
+    shape, sources = lesson.shape, tuple(lesson.sources)
+    if old is not None:
+        statistics = old.statistics.joined(statistics)
+        readings = np.concatenate([old.readings, readings])
+        shape, sources = shape or old.shape, (*old.sources, *sources)
+    known = KnownObject(lesson.name, shape, readings, statistics, sources)
+    values = (known.shape, now, statistics.n, seal_of_object(known, now), known.name)
+    if old is None:
+        columns = "(shape, learned_at, n_readings, seal, name)"
+        connection.execute(f"INSERT INTO objects {columns} VALUES (?, ?, ?, ?, ?)", values)
+    else:
+        changes = "shape = ?, learned_at = ?, n_readings = ?, seal = ?"
+        connection.execute(f"UPDATE objects SET {changes} WHERE name = ?", values)
+    query = "SELECT id FROM objects WHERE name = ?"
+    ((number,),) = connection.execute(query, (known.name,)).fetchall()
+    for row, source in zip(lesson.readings.tolist(), lesson.sources, strict=True):
+        statement = "INSERT INTO readings (object_id, source) VALUES (?, ?)"
+        of_reading = connection.execute(statement, (number, source)).lastrowid
+        cells = [(of_reading, k, value) for k, value in enumerate(row)]
+        connection.executemany("INSERT INTO reading_values VALUES (?, ?, ?)", cells)
+    store_statistics(connection, number, statistics)
+    return known
 
 
 def store_statistics(connection: sqlite3.Connection, number: int, statistics: Statistics) -> None:
@@ -115,25 +255,25 @@ def store_statistics(connection: sqlite3.Connection, number: int, statistics: St
     connection.executemany("INSERT OR REPLACE INTO scatters VALUES (?, ?, ?, ?)", scatters)
 
 
-def objects_of(connection: sqlite3.Connection, n_features: int) -> list[KnownObject]:
-    """Return the objects with all their readings, in the order they were first learned."""
-    cells: dict[int, list[float]] = {}
-    sources: dict[int, list[str]] = {}
-    for number, source in connection.execute("SELECT object_id, source FROM readings ORDER BY id"):
-        sources.setdefault(number, []).append(source)
-    for number, value in connection.execute(
-        "SELECT r.object_id, v.value FROM readings r JOIN reading_values v ON v.reading_id = r.id"
-        " ORDER BY r.id, v.feature_id"
-    ):
-        cells.setdefault(number, []).append(value)
-    query = "SELECT id, name, shape FROM objects ORDER BY id"
-    return [
-        KnownObject(
-            name,
-            shape,
-            np.array(cells.get(number, []), dtype=np.float64).reshape(-1, n_features),
-            statistics_of(connection, number, n_features),
-            tuple(sources.get(number, [])),
-        )
-        for number, name, shape in connection.execute(query).fetchall()
-    ]
+def settle(connection: sqlite3.Connection, setting: Setting, choice: Choice | None) -> None:
+    """Write what all readings have in common and the choice, and seal the whole.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+    setting : Setting
+    choice : Choice, optional
+        None where the objects are others than a choice was made for.
+    """
+    connection.execute("DELETE FROM choice")
+    if choice is not None:
+        values = (*choice.manner, *choice[1:])
+        connection.execute("INSERT INTO choice VALUES (1, ?, ?, ?, ?, ?, ?, ?, ?)", values)
+    seals = [row[0] for row in connection.execute("SELECT seal FROM objects ORDER BY id")]
+    sealed = _whole_seal(Contents(setting, (), choice), seals)
+    features = list(enumerate(setting.features))
+    connection.executemany("INSERT OR IGNORE INTO features VALUES (?, ?)", features)
+    connection.execute(
+        "INSERT OR REPLACE INTO about VALUES (1, ?, ?, ?)",
+        (setting.quantity, setting.pipeline, sealed),
+    )

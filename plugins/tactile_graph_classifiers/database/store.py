@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-import sqlite3
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
+from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.connection import reading, writing
 from tactile_graph_classifiers.database.known import Known
-from tactile_graph_classifiers.database.rows import Lesson, Setting, add, objects_of, setting_of
+from tactile_graph_classifiers.database.rows import (
+    Contents,
+    Lesson,
+    Setting,
+    add,
+    contents,
+    settle,
+)
 from tactile_graph_classifiers.distances.identity import UNKNOWN
 
 DEFAULT_PATH = "tactile-objects.sqlite"
@@ -63,11 +70,31 @@ class ObjectDatabase:
         """
         checked = [_checked(lesson, setting) for lesson in lessons]
         with writing(self.path, self.timeout_s, create=True) as connection:
-            self._same_setting(connection, setting)
+            there = contents(connection, str(self.path))
+            objects = {it.known.name: it.known for it in there.objects}
+            self._same_setting(there.setting, setting)
             if new:
-                self._none_there([lesson.name for lesson in checked], connection)
+                self._none_there([lesson.name for lesson in checked], objects)
+            if there.setting.features:
+                setting = there.setting
+            settle(connection, setting, None)  # features first: values refer to them
             for lesson in checked:
-                add(connection, lesson)
+                objects[lesson.name] = add(connection, lesson, objects.get(lesson.name))
+            settle(connection, setting, None)
+
+    def keep(self, choice: Choice, of: Known) -> None:
+        """Keep how the objects are told apart best, unless they have changed since.
+
+        Parameters
+        ----------
+        choice : Choice
+        of : Known
+            What the choice was made for.
+        """
+        with writing(self.path, self.timeout_s) as connection:
+            there = contents(connection, str(self.path))
+            if self._known(there).same_readings(of):
+                settle(connection, there.setting, choice)
 
     def forget(self, name: str) -> int:
         """Remove an object with all its readings; return how many these were.
@@ -82,11 +109,13 @@ class ObjectDatabase:
             If there is none of that name.
         """
         with writing(self.path, self.timeout_s) as connection:
-            known = dict(connection.execute("SELECT name, n_readings FROM objects"))
+            there = contents(connection, str(self.path))
+            known = {it.known.name: it.known.statistics.n for it in there.objects}
             if name not in known:
                 raise self.unknown(name, known)
             connection.execute("DELETE FROM objects WHERE name = ?", (name,))
-            return int(known[name])
+            settle(connection, there.setting, None)
+            return known[name]
 
     def unknown(self, name: str, known: Iterable[str]) -> UsageError:
         """Return the error that there is no object of that name.
@@ -100,13 +129,8 @@ class ObjectDatabase:
         hint = did_you_mean(name, names) or f"; there are: {one_of(names, 30)}"
         return UsageError(f"{self.path}: no object named {name!r}{hint}")
 
-    def _same_setting(self, connection: sqlite3.Connection, setting: Setting) -> None:
-        there = setting_of(connection)
+    def _same_setting(self, there: Setting, setting: Setting) -> None:
         if not there.features:
-            rows = list(enumerate(setting.features))
-            connection.executemany("INSERT INTO features VALUES (?, ?)", rows)
-            about = [("quantity", setting.quantity), ("pipeline", setting.pipeline)]
-            connection.executemany("INSERT INTO about VALUES (?, ?)", about)
             return
         for what in ("features", "quantity"):
             got, had = getattr(setting, what), getattr(there, what)
@@ -117,8 +141,7 @@ class ObjectDatabase:
                     " database of their own"
                 )
 
-    def _none_there(self, names: Sequence[str], connection: sqlite3.Connection) -> None:
-        there = {row[0] for row in connection.execute("SELECT name FROM objects")}
+    def _none_there(self, names: Sequence[str], there: Container[str]) -> None:
         clash = [name for name in names if name in there]
         if clash:
             raise UsageError(
@@ -130,9 +153,12 @@ class ObjectDatabase:
 
     def summaries(self) -> list[Summary]:
         """Return the objects in short, in the order they were first learned."""
-        query = "SELECT name, shape, n_readings, learned_at FROM objects ORDER BY id"
         with reading(self.path, self.timeout_s) as connection:
-            return [Summary(*row) for row in connection.execute(query)]
+            found = contents(connection, str(self.path))
+        return [
+            Summary(it.known.name, it.known.shape, it.known.statistics.n, it.learned_at)
+            for it in found.objects
+        ]
 
     def known(self) -> Known:
         """Return everything: objects, readings and statistics.
@@ -143,11 +169,11 @@ class ObjectDatabase:
             If there is no such database, or none that can be read.
         """
         with reading(self.path, self.timeout_s) as connection:
-            setting = setting_of(connection)
-            objects = objects_of(connection, len(setting.features))
-        return Known(
-            str(self.path), setting.features, setting.quantity, tuple(objects), setting.pipeline
-        )
+            return self._known(contents(connection, str(self.path)))
+
+    def _known(self, found: Contents) -> Known:
+        setting, objects = found.setting, tuple(it.known for it in found.objects)
+        return Known(str(self.path), *setting[:2], objects, setting.pipeline, found.choice)
 
 
 def _checked(lesson: Lesson, setting: Setting) -> Lesson:
@@ -161,6 +187,8 @@ def _checked(lesson: Lesson, setting: Setting) -> Lesson:
         raise UsageError(
             f"{name}: readings must be of shape (n, {len(setting.features)}), got {readings.shape}"
         )
+    if not len(readings):
+        raise UsageError(f"{name}: there is no reading to learn")
     if not np.isfinite(readings).all():
         raise DataError(name, "a reading holds a value that is no finite number")
     if len(lesson.sources) != len(readings):

@@ -77,6 +77,8 @@ def from_text(text: str, where: str) -> tuple[Setting, list[Lesson]]:
         mark = getattr(error, "problem_mark", None)
         at = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
         raise DataError(f"{where}{at}", f"is no YAML: {getattr(error, 'problem', error)}") from None
+    except (ValueError, RecursionError) as error:  # a 13th month; brackets without end
+        raise DataError(where, f"is no YAML that can be read: {error}") from None
     return from_data(data, where)
 
 
@@ -139,9 +141,11 @@ def _lesson(data: Any, n_features: int, where: str, what: str) -> Lesson:
     _only(data, _OBJECT_KEYS, where, what)
     rows = data.get("readings")
     readings = _numbers(rows, n_features)
-    if readings is None:
+    if readings is None or not len(readings):
         raise DataError(
-            where, f"{what}readings must be rows of {n_features} finite numbers, got {shown(rows)}"
+            where,
+            f"{what}readings must be one or more rows of {n_features} finite numbers,"
+            f" got {shown(rows)}",
         )
     sources: Sequence[str] = data.get("sources") or [""] * len(readings)
     if not _texts(sources) or len(sources) != len(readings):
@@ -160,7 +164,10 @@ def _numbers(rows: Any, n_features: int) -> Any:
         good = isinstance(row, list) and len(row) == n_features
         if not good or any(isinstance(v, bool) or not isinstance(v, int | float) for v in row):
             return None
-    array = np.array(rows, dtype=np.float64).reshape(-1, n_features)
+    try:
+        array = np.array(rows, dtype=np.float64).reshape(-1, n_features)
+    except OverflowError:  # a whole number of more than 308 digits
+        return None
     return array if np.isfinite(array).all() else None
 
 

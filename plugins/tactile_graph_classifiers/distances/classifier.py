@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_classifiers.distances.nearest import Two
@@ -28,15 +29,25 @@ class Lookup:
     ----------
     database : Path, mapping or None
         As the steps take it.
-    features : sequence of str
+    features : sequence of str, optional
+        All that were learned if not given.
+
+    Attributes
+    ----------
+    takes : dict
+        The quantity the objects were learned in, by port, for the loader to check.
     """
 
-    def __init__(self, database: Path | dict[str, Any] | None, features: Sequence[str]) -> None:
+    def __init__(
+        self, database: Path | dict[str, Any] | None, features: Sequence[str] | None
+    ) -> None:
         from tactile_graph_classifiers.database.opening import load_known
 
         self.known: Known = load_known(database, features)
         if not self.known.objects:
             raise DataError(self.known.where, "no object was learned yet")
+        quantity = self.known.quantity
+        self.takes = {"features": (quantity,)} if quantity in QUANTITIES else {}
         # One attribute for both: threads may share a classifier.
         self._last: tuple[tuple[str, ...], NDArray[np.intp]] = ((), np.zeros(0, np.intp))
 

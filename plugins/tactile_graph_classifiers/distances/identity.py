@@ -33,7 +33,8 @@ class Identity:
     runner_up_distance : float, optional
         None where only one object is known.
     margin : float
-        1 - distance / runner_up_distance: 0 for a tie, 1 if nothing else comes into question.
+        0 for a tie of the two, 1 if nothing else comes into question: 1 - distance /
+        runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first.
     """
 
     name: str

@@ -68,6 +68,7 @@ class MinimumDistanceNormalised:
         confidence: Annotated[float, Gt(0), Lt(1)] = 0.99,
     ) -> None:
         self._lookup = Lookup(database, features)
+        self.takes = self._lookup.takes
         known = self._lookup.known
         if reject and len(known.objects) < 2:
             raise ValueError(

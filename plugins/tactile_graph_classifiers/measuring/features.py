@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from tactile_graph.errors import DataError, Degenerate
-from tactile_graph.steps.rules import Grid, require_same_shape
+from tactile_graph.steps.rules import Grid, Quantity, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_classifiers.measuring.feature_sums import Sums, feature_sums
 from tactile_graph_classifiers.measuring.measurements import Measurements
@@ -100,7 +100,9 @@ class FeaturesOf:
 
     stateless = True
 
-    def __call__(self, image: Image, mask: Annotated[Mask, Grid.like("image")]) -> Features:
+    def __call__(
+        self, image: Image, mask: Annotated[Mask, Grid.like("image")]
+    ) -> Annotated[Features, Quantity.like("image")]:
         """Return the features of what the mask marks.
 
         Parameters

@@ -136,7 +136,7 @@ def _check_files(options: _Options) -> None:
 def _prepared(
     words: Sequence[str], span: Span, options: _Options
 ) -> tuple[list[PreparedVariant], list[str]]:
-    from tactile_graph.cli.arguments import offered, sourced
+    from tactile_graph.cli.arguments import offered, source_named
     from tactile_graph.pipeline.document import assignment
     from tactile_graph_compare.variants.one_source import first_source, on_source
     from tactile_graph_compare.variants.prepare import prepare
@@ -158,7 +158,8 @@ def _prepared(
     base, notes = prepared[0], list[str]()
     if not recordings and options.source is None:
         base, notes = first_source(prepared)
-    placed = sourced(base.pipeline, recordings, options.source, options.source_settings, span)
+    named = source_named(base.pipeline, recordings, options.source, options.source_settings, span)
+    placed = base.pipeline.with_settings({}, named) if named else base.pipeline
     assert placed.source is not None
     return on_source(prepared, placed.source.name, placed.source.given), notes
 

@@ -36,7 +36,9 @@ class Load(NamedTuple):
     n_left_out: int = 0
 
 
-Load.image_unit = ("total", "peak")  # type: ignore[attr-defined]  # within, it would be a field
+# Within the class both would be fields of it.
+Load.image_unit = ("total", "peak")  # type: ignore[attr-defined]
+Load.field_quantities = {"force_n": ("gram", "kilopascal")}  # type: ignore[attr-defined]
 
 
 @compiled_later

@@ -42,17 +42,41 @@ def noise_level(image: Image) -> float:
     Chosen on 90 frames of a capacitive panel (CapContact), so that its contacts are as many as the
     optical reference shows.
     """
+    found = lower_readings(image)
+    if found is None:
+        return math.inf
+    low, base, peak = found
+    return level_above(base - low, base, peak)
+
+
+def lower_readings(image: Image) -> tuple[float, float, float] | None:
+    """Return the 5 % quantile, the lower quartile and the peak of the cells that are read.
+
+    None where no cell is valid.
+    """
     rows, columns = dead_lines(image)
     usable = ~rows[:, None] & ~columns
     values = image.values[usable if image.valid is None else usable & image.valid]
     if values.size == 0:
-        return math.inf
+        return None
     seen = np.asarray(values, np.float64).ravel()
     low, middle = (int(share * (seen.size - 1)) for share in (LOW, MIDDLE))
     parted = np.partition(seen, (low, middle, seen.size - 1))
-    base, peak = float(parted[middle]), float(parted[-1])
-    noise = (base - float(parted[low])) / LOW_TO_MIDDLE_SD
-    level = base + max(NOISES * noise, LEAST_SHARE * (peak - base))
+    return float(parted[low]), float(parted[middle]), float(parted[-1])
+
+
+def level_above(spread: float, base: float, peak: float) -> float:
+    """Return the level above the noise.
+
+    Parameters
+    ----------
+    spread : float
+        From the 5 % quantile to the lower quartile.
+    base : float
+        The lower quartile.
+    peak : float
+    """
+    level = base + max(NOISES * (spread / LOW_TO_MIDDLE_SD), LEAST_SHARE * (peak - base))
     return level if level > base else math.nextafter(base, math.inf)
 
 
@@ -67,13 +91,16 @@ class LevelledMask(Mask):
         What its cells reach.
     quantity : str
         Of the readings.
+    above : str
+        What the level is above.
     """
 
-    __slots__ = ("level", "quantity")
+    __slots__ = ("above", "level", "quantity")
     columns_shown: ClassVar[tuple[str, ...]] = (*Mask.columns_shown, "level")
     image_unit: ClassVar[tuple[str, ...]] = ("level",)
     level: float
     quantity: str
+    above: str
 
     def __init__(
         self,
@@ -83,10 +110,12 @@ class LevelledMask(Mask):
         count: int | None,
         level: float,
         quantity: str,
+        above: str = "the frame's own noise",
     ) -> None:
         super().__init__(values, pitch_cm, origin_cm, count)
         object.__setattr__(self, "level", level)
         object.__setattr__(self, "quantity", quantity)
+        object.__setattr__(self, "above", above)
 
     def __reduce__(self) -> tuple[type[LevelledMask], tuple[Any, ...]]:
         """Copy and pickle by what it is made of."""
@@ -97,6 +126,7 @@ class LevelledMask(Mask):
             self.count,
             self.level,
             self.quantity,
+            self.above,
         )
         return LevelledMask, made_of
 
@@ -104,4 +134,4 @@ class LevelledMask(Mask):
     def assumed(self) -> str:
         """What was taken that nobody said."""
         unit = UNITS.get(self.quantity, self.quantity)
-        return f"cells from {self.level:.4g} {unit} on, which is above the frame's own noise"
+        return f"cells from {self.level:.4g} {unit} on, which is above {self.above}"

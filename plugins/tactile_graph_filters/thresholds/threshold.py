@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -15,6 +16,7 @@ from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_nan
 from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
+from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
 
 
 @compiled_later
@@ -82,6 +84,12 @@ def levelled(image: Image) -> LevelledMask:
     return LevelledMask(mask.values, *grid, mask.count, level, image.quantity)
 
 
+def with_level(mask: Mask, recorded: RecordingLevel) -> LevelledMask:
+    """Return a mask that says which level, and of which recording, made it."""
+    grid, level = (mask.pitch_cm, mask.origin_cm), (recorded.level, recorded.quantity)
+    return LevelledMask(mask.values, *grid, mask.count, *level, recorded.told)
+
+
 class Threshold:
     """Turn on the valid cells at or above a level.
 
@@ -93,13 +101,18 @@ class Threshold:
         The level in the image's own unit, whatever that is. ``auto`` finds one in each frame,
         above the noise that its lower readings show (`noise_level`): the mask then says which.
         Beside ``level_v`` it is for images that are not in volts.
+    noise_of : Path or mapping, optional
+        A recording, by its file or as settings of the source that reads it: ``auto`` then finds
+        one level for all frames, above the noise that the whole recording shows
+        (`recording_level`), in its unit.
     above : bool
         Whether a cell must exceed the level instead of reaching it.
 
     Raises
     ------
     ValueError
-        If neither ``level_v`` nor ``level`` is given, or one that is not finite.
+        If neither ``level_v`` nor ``level`` is given, or one that is not finite, or ``noise_of``
+        without ``level: auto``.
 
     Notes
     -----
@@ -115,14 +128,23 @@ class Threshold:
         level_v: Annotated[float | None, Ge(0)] = None,
         level: float | Literal["auto"] | None = None,
         above: bool = False,
+        noise_of: Path | dict[str, Any] | None = None,
     ) -> None:
         if level_v is None and level is None:
             raise ValueError("level_v or level must be given, got neither")
+        if noise_of is not None and level != "auto":
+            raise ValueError(f"noise_of belongs to level: auto, got level {level}")
         self._above = above
         self._level_v = self._reached(level_v)
         self._other = None if level == "auto" else self._reached(level)
         self.takes = {} if level is not None else {"image": ("volt",)}
         self.takes_by = "level_v"
+        self._recorded = None if noise_of is None else recording_level(noise_of)
+        if self._recorded is not None:
+            self._other = self._reached(self._recorded.level)
+            volts = () if level_v is None else ("volt",)
+            self.takes = {"image": tuple({self._recorded.quantity, *volts})}
+            self.takes_by = "noise_of"
         self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
 
     def _reached(self, level: float | None) -> float | None:
@@ -140,13 +162,14 @@ class Threshold:
         Raises
         ------
         ValueError
-            If only a level in volts is known, and the image is in something else.
+            If only a level in another unit is known than the image is in.
         """
         in_volts = self._level_v is not None and image.quantity == "volt"
         level = self._level_v if in_volts else self._other
+        if self.takes and image.quantity not in self.takes["image"]:
+            wanted = " or ".join(self.takes["image"])
+            raise ValueError(f"{self.takes_by} is for images in {wanted}, got {image.quantity}")
         if level is None:
-            if self.takes:
-                raise ValueError(f"level_v is for images in volts, got {image.quantity}")
             return levelled(image)
         empty = self._empty
         if (
@@ -157,6 +180,8 @@ class Threshold:
         ):
             return empty  # a pad is empty for long: a look suffices, and nothing is made anew
         mask = footprint(image, level)
+        if self._recorded is not None and not in_volts:
+            mask = with_level(mask, self._recorded)
         self._empty = None if mask.count or image.valid is not None else mask
         return mask
 

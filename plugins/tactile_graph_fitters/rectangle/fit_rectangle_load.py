@@ -22,6 +22,7 @@ from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 from tactile_graph_fitters.rectangle.quasi_newton import minimise
 from tactile_graph_fitters.rectangle.rectangle_likelihood import OFF, ON, UNKNOWN, Window
+from tactile_graph_hull.parts import several_parts
 
 AROUND = 2  # cells looked at around the footprint
 SOFT_CELLS = 0.92  # over which a cell's coverage rises, as the outline passes it
@@ -69,6 +70,7 @@ class FitRectangleLoad:
     """
 
     stateless = True
+    notice = staticmethod(several_parts)
 
     def __init__(
         self,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask, Points
+from tactile_graph_hull.parts import several_parts
 
 Reals: TypeAlias = NDArray[np.float64]
 
@@ -90,6 +91,9 @@ def outline_points(
         dx, dy = (across, np.full(i.shape, along)) if upright else (np.full(i.shape, along), across)
         found.append(np.column_stack([x + (j + dx) * px, y + (i + dy) * py]))
     return Points(np.concatenate(found))
+
+
+outline_points.notice = several_parts  # type: ignore[attr-defined]
 
 
 def coverage(

@@ -31,7 +31,17 @@ class Record(BaseModel):
 
 
 class Transport(Record):
-    """Choice 1: the port's own settings."""
+    """Choice 1: the port's own settings.
+
+    Parameters
+    ----------
+    baud : int
+        Bits a second on the line.
+    dtr, rts : bool, optional
+        State of the control lines as the port is opened; the driver's own by default.
+    silence_s : float
+        A pause this long ends a reply.
+    """
 
     baud: Annotated[int, Field(gt=0)]
     dtr: bool | None = None
@@ -40,7 +50,15 @@ class Transport(Record):
 
 
 class Request(Record):
-    """Choice 2: what the host sends to get frames, and when."""
+    """Choice 2: what the host sends to get frames, and when.
+
+    Parameters
+    ----------
+    send : bytes
+        In hex, such as ``'AA 55'``, or letters after ``text:``.
+    when : "start" or "frame"
+        Once after the port is opened, or for each frame.
+    """
 
     send: bytes
     when: Literal["start", "frame"] = "frame"
@@ -54,7 +72,14 @@ class Request(Record):
 
 
 class Magic(Record):
-    """Bytes that are always the same."""
+    """Bytes that are always the same.
+
+    Parameters
+    ----------
+    part : "magic"
+    bytes : bytes
+        In hex, such as ``AA 55``.
+    """
 
     part: Literal["magic"]
     bytes: bytes
@@ -66,14 +91,34 @@ class Magic(Record):
 
 
 class Skip(Record):
-    """Bytes without a known meaning."""
+    """Bytes without a known meaning.
+
+    Parameters
+    ----------
+    part : "skip"
+    size : int
+        How many.
+    """
 
     part: Literal["skip"]
     size: Annotated[int, Field(gt=0)]
 
 
 class Cells(Record):
-    """The values: all cells, or one row, chunk or cell, by the assembler."""
+    """The values: all cells, or one row, chunk or cell, by the assembler.
+
+    Parameters
+    ----------
+    part : "cells"
+    type : str
+        Number format of a cell: unsigned, signed or floating, its bits, little or big endian.
+    count : int, optional
+        Cells in one packet, where that is not what the assembler says.
+    mask : int, optional
+        Bits of a cell's number that are its value; all by default.
+    row_tag : bool
+        Whether the four top bits of each number count the row.
+    """
 
     part: Literal["cells"]
     type: Number
@@ -85,9 +130,20 @@ class Cells(Record):
 class Value(Record):
     """A number beside the cells.
 
-    ``length`` must equal ``equals``; ``sequence`` counts units; ``time`` is the device's clock in
-    ``unit_s``; ``start`` is the first cell (or row) of a chunk, counted from ``first``; ``device``
-    tells apart pads that share a line.
+    Parameters
+    ----------
+    part : str
+        What it is: ``sequence`` counts units, ``time`` is the device's clock, ``length`` must
+        equal ``equals``, ``start`` is the first cell (or row) of a chunk, ``device`` tells apart
+        pads that share a line.
+    type : str
+        Its number format.
+    equals : int, optional
+        The only right value; packets of any other are refused.
+    first : int
+        What the first cell (or row) is called.
+    unit_s : float
+        Seconds that one step of a clock takes.
     """
 
     part: Literal["sequence", "time", "length", "start", "device"]
@@ -98,7 +154,18 @@ class Value(Record):
 
 
 class Checksum(Record):
-    """A CRC over all bytes from ``after`` to itself."""
+    """A CRC over all bytes from ``after`` to itself.
+
+    Parameters
+    ----------
+    part : "crc16"
+    variant : str
+        Which CRC: polynomial, start value and reflection go by these names.
+    order : "le" or "be"
+        Whether its low or its high byte comes first.
+    after : int
+        Bytes at the packet's beginning that it leaves out.
+    """
 
     part: Literal["crc16"]
     variant: Literal["ccitt-false", "xmodem", "modbus", "kermit", "arc"]
@@ -110,7 +177,14 @@ Part: TypeAlias = Annotated[Magic | Skip | Cells | Value | Checksum, Discriminat
 
 
 class Packet(Record):
-    """Choice 3a: units of fixed size."""
+    """Choice 3a: units of fixed size.
+
+    Parameters
+    ----------
+    kind : "packet"
+    layout : tuple of parts
+        What follows what in a packet; exactly one part is ``cells``.
+    """
 
     kind: Literal["packet"]
     layout: tuple[Part, ...]
@@ -123,7 +197,22 @@ class Packet(Record):
 
 
 class Text(Record):
-    """Choice 3b: lines of numbers; ``time_unit_s`` is given where a time comes first."""
+    """Choice 3b: lines of numbers.
+
+    Parameters
+    ----------
+    kind : "text"
+    prefix : str
+        What a line of values begins with; other lines are passed over.
+    separator : str
+        One character between the numbers.
+    trailing_separator : bool
+        Whether one stands behind the last number too.
+    time_unit_s : float, optional
+        Given where a time comes first: seconds that one step of it takes.
+    size_prefix : str
+        What the line that announces the size begins with.
+    """
 
     kind: Literal["text"]
     prefix: str = ""
@@ -134,7 +223,16 @@ class Text(Record):
 
 
 class Delimited(Record):
-    """Choice 3c: bytes up to an end byte, plain or with runs of zeros as ``00 n``."""
+    """Choice 3c: bytes up to an end byte.
+
+    Parameters
+    ----------
+    kind : "delimited"
+    end : bytes
+        The end byte in hex, such as ``FF``.
+    coding : "plain" or "zero_runs"
+        A byte a cell, or runs of zeros as ``00 n``.
+    """
 
     kind: Literal["delimited"]
     end: bytes
@@ -150,7 +248,29 @@ class Delimited(Record):
 
 
 class Geometry(Record):
-    """Choice 5: how the cells on the wire lie on the pad."""
+    """Choice 5: how the cells on the wire lie on the pad.
+
+    Parameters
+    ----------
+    rows, columns : int
+        Number of cells down and across, as they come.
+    order : "rows" or "columns"
+        Whether a row or a column is sent as a whole.
+    transpose : bool
+        Whether rows and columns are swapped then.
+    flip : str
+        Whether the order of the rows, the columns or both is reversed then.
+    row_map, column_map : tuple of int, optional
+        Where each row (column) that comes lies on the pad, counted from 0.
+    valid_range : (float, float), optional
+        Least and greatest value that a cell can have; a frame with any other is refused.
+    invert_from : float, optional
+        A value v becomes ``invert_from - v``, where readings fall under pressure.
+    quantity : str
+        What the values mean: counts, volt, gram, …
+    pitch_cm : float or (float, float)
+        Distance of neighbouring centres; x and y where they differ.
+    """
 
     rows: Annotated[int, Field(gt=0)]
     columns: Annotated[int, Field(gt=0)]
@@ -190,7 +310,24 @@ class Geometry(Record):
 
 
 class Preset(Record):
-    """One kit: transport, request, framer, assembler and geometry."""
+    """One kit: transport, request, framer, assembler and geometry.
+
+    Parameters
+    ----------
+    preset : str
+        Its name.
+    about : str
+        One line for people.
+    cannot_tell : str
+        What the protocol cannot tell, for people.
+    transport : Transport
+    request : Request, optional
+    framer : Packet, Text or Delimited
+        Choice 3: how units are found in the stream.
+    assembler : str
+        Choice 4: what one unit brings: a full frame, a row, a chunk or one cell.
+    geometry : Geometry
+    """
 
     preset: str
     about: str = ""

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from tactile_graph.errors import Mark, Problem, TactileGraphError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, did_you_mean, one_of
+from tactile_graph.pipeline.document import Document
 from tactile_graph.plugins.registry import installed
 from tactile_graph_sources.devices import preset as records
 from tactile_graph_sources.devices.preset import Preset
@@ -18,15 +18,8 @@ from tactile_graph_sources.devices.preset import Preset
 DEEPEST = 5
 
 
-class PresetError(TactileGraphError):
+class PresetError(PipelineError):
     """All that is wrong with a preset file, found in one run."""
-
-    def __init__(self, problems: Sequence[Problem]) -> None:
-        super().__init__(tuple(problems))
-        self.problems = tuple(problems)
-
-    def __str__(self) -> str:
-        return "\n".join(str(p) for p in self.problems)
 
 
 def load_preset(name_or_path: str) -> Preset:
@@ -56,24 +49,35 @@ def _find(name_or_path: str) -> Path:
 
 def read_preset(path: Path) -> Preset:
     """Return the preset in a file; `load_preset` says what is raised."""
-    node, data = _merged(path, DEEPEST)
+    file, data = _merged(path, DEEPEST)
     try:
         return Preset.model_validate(data)
     except ValidationError as error:
-        raise PresetError([_problem(path, node, e) for e in error.errors()]) from None
+        raise PresetError([_problem(file, e) for e in error.errors()]) from None
 
 
-def _merged(path: Path, deepest: int) -> tuple[yaml.Node, dict[str, Any]]:
-    """Return a file's own node, and its data laid over that of the preset it extends."""
-    node, data = _parse(path)
+class _File(NamedTuple):
+    """A file that was parsed, to say where in it something is wrong."""
+
+    document: Document
+    root: yaml.Node
+
+    def problem(self, node: yaml.Node, message: str) -> Problem:
+        mark = Mark(self.document.file, node.start_mark.line + 1, node.start_mark.column + 1)
+        return Problem(mark, message, self.document.snippet(mark))
+
+
+def _merged(path: Path, deepest: int) -> tuple[_File, dict[str, Any]]:
+    """Return a file itself, and its data laid over that of the preset it extends."""
+    file, data = _parse(path)
     base = data.pop("extends", None)
     if base is None:
-        return node, data
+        return file, data
     if deepest == 0:
-        raise PresetError([Problem(_mark(path, node), "'extends' goes round in a circle")])
+        raise PresetError([file.problem(file.root, "'extends' goes round in a circle")])
     beside = path.parent / str(base)
     _, below = _merged(beside if beside.is_file() else _find(str(base)), deepest - 1)
-    return node, _laid_over(below, data)
+    return file, _laid_over(below, data)
 
 
 def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -85,7 +89,7 @@ def _laid_over(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def _parse(path: Path) -> tuple[yaml.Node, dict[str, Any]]:
+def _parse(path: Path) -> tuple[_File, dict[str, Any]]:
     try:
         text = path.read_text(encoding="utf-8")
         node = yaml.compose(text, Loader=yaml.SafeLoader)
@@ -97,50 +101,47 @@ def _parse(path: Path) -> tuple[yaml.Node, dict[str, Any]]:
     except yaml.MarkedYAMLError as error:
         at = error.problem_mark
         mark = Mark(str(path), at.line + 1, at.column + 1) if at else Mark(str(path), 1, 1)
-        raise PresetError([Problem(mark, f"not YAML: {error.problem}")]) from None
+        snippet = Document(str(path), text).snippet(mark)
+        raise PresetError([Problem(mark, f"not YAML: {error.problem}", snippet)]) from None
     if node is None or not isinstance(data, dict):
         got = type(data).__name__
         what = f"must be a mapping with keys {', '.join(Preset.model_fields)}, got {got}"
         raise PresetError([Problem(Mark(str(path), 1, 1), what)])
-    doubled = list(_doubled(path, node))
+    file = _File(Document(str(path), text), node)
+    doubled = list(_doubled(file, node))
     if doubled:
         raise PresetError(doubled)
-    return node, data
+    return file, data
 
 
-def _doubled(path: Path, node: yaml.Node) -> list[Problem]:
+def _doubled(file: _File, node: yaml.Node) -> list[Problem]:
     """Return a problem for every key given twice, which YAML itself would let pass."""
     out: list[Problem] = []
     if isinstance(node, yaml.MappingNode):
         seen: set[str] = set()
         for key, value in node.value:
             if key.value in seen:
-                out.append(Problem(_mark(path, key), f"key {key.value!r} is given twice"))
+                out.append(file.problem(key, f"key {key.value!r} is given twice"))
             seen.add(key.value)
-            out += _doubled(path, value)
+            out += _doubled(file, value)
     elif isinstance(node, yaml.SequenceNode):
         for item in node.value:
-            out += _doubled(path, item)
+            out += _doubled(file, item)
     return out
 
 
-def _mark(path: Path, node: yaml.Node) -> Mark:
-    return Mark(str(path), node.start_mark.line + 1, node.start_mark.column + 1)
-
-
-def _problem(path: Path, root: yaml.Node, error: ErrorDetails) -> Problem:
+def _problem(file: _File, error: ErrorDetails) -> Problem:
     """Return a validation error in words, at its line."""
     where = [k for k in error["loc"] if not (isinstance(k, str) and k in _TAGS)]
-    node, key_node = root, root
+    node, key_node = file.root, file.root
     for key in where:
         found = _step(node, key)
         if found is None:
             break
         key_node, node = found
     unknown = error["type"] == "extra_forbidden"
-    spot = key_node if unknown else node
     dotted = ".".join(str(k) for k in where) or "preset"
-    return Problem(_mark(path, spot), f"{dotted}: {_words(error, where)}")
+    return file.problem(key_node if unknown else node, f"{dotted}: {_words(error, where)}")
 
 
 _TAGS = {"packet", "text"} | {"magic", "skip", "cells", "crc16"}

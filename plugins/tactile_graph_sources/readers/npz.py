@@ -137,7 +137,9 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
         raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
-    raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}")
+    deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
+    hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
 
 
 def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | None:

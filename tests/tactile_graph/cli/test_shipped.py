@@ -17,10 +17,11 @@ def command(*args: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_every_shipped_pipeline_is_right():
+def test_everything_that_ships_is_right():
     got = command("check")
     assert got.returncode == 0, got.stdout
-    assert got.stdout.count(": right") == len(installed().names("pipelines"))
+    kinds = ("pipelines", "pads", "presets", "scenes")
+    assert got.stdout.count(": right") == sum(len(installed().names(k)) for k in kinds)
 
 
 @pytest.mark.parametrize("name", ["circle-3", "contacts"])

@@ -111,3 +111,53 @@ def test_an_item_of_a_list_that_failed_is_named_and_the_frame_is_not_whole() -> 
     line = json.loads(call("run", "p.yaml", "--source", "made", "-o", "-").stdout.splitlines()[0])
     lacking = {"failed": "2 is even", "origin": "b", "kind": "degenerate", "item": "2"}
     assert line["outputs"]["b"] == [0.5, lacking, 1.5]
+
+
+# -- notices -------------------------------------------------------------------------------------
+
+
+class Counting:
+    """Says something of the frames whose peak is above 2."""
+
+    def __call__(self, image: Image) -> float:
+        return image.peak
+
+    @staticmethod
+    def notice(image: Image) -> str:
+        return f"a peak of {image.peak:g} is much" if image.peak > 2 else ""
+
+
+@pytest.mark.parametrize(
+    ("peaks", "told"),
+    [
+        ([1, 3, 4], "notice   c: a peak of 3 is much (in 2 of 3 frames looked at, first in "
+         "frame 1)"),
+        ([5], "notice   c: a peak of 5 is much (in frame 0)"),
+        ([1, 3], ""),
+        ([1, 1], ""),
+    ],
+)  # fmt: skip
+def test_what_more_than_half_of_the_frames_say_is_told_in_closing_and_kept(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch, peaks: list[int], told: str
+) -> None:
+    install(monkeypatch, hand_made, steps={"counting": Counting})
+    (hand_made / "r.txt").write_text("\n".join(map(str, peaks)))
+    text = "{pipeline: p, nodes: {c: {step: counting, in: frame}}, outputs: [c]}"
+    (hand_made / "p.yaml").write_text(text)
+    got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
+    assert got.exit_code == 0
+    lines = [line for line in (got.stdout + got.stderr).splitlines() if line.startswith("notice")]
+    assert lines == ([told] if told else [])
+    kept = json.loads((hand_made / "out.jsonl.meta.json").read_text())
+    words = told.partition(": ")[2].partition(" (")[0]
+    assert kept["result"]["notices"] == ({"c": words} if told else {})
+
+
+def test_explain_says_it_of_its_frame(hand_made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    install(monkeypatch, hand_made, steps={"counting": Counting})
+    (hand_made / "r.txt").write_text("1\n3\n")
+    nodes = "nodes: {c: {step: counting, in: frame}, l: {step: counting, in: frame, when: c > 9}}"
+    (hand_made / "p.yaml").write_text(f"{{pipeline: p, {nodes}, outputs: [c, l]}}")
+    assert "notice" not in call("explain", "p.yaml", "r.txt").stdout
+    got = call("explain", "p.yaml", "r.txt", "--frame", 1).stdout
+    assert got.splitlines()[-1] == "notice  c: a peak of 3 is much"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_graph import Frame, loads
+from tactile_graph.errors import PipelineError
 from tactile_graph.pipeline.conditions import compile_condition, names_in
 from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.wiring import Ref
@@ -22,7 +23,17 @@ class Found(NamedTuple):
 
 
 Kind = Literal["disc", "rectangle"]
-TYPES = {"kind": Kind, "a": int, "b": float, "found": Found, "text": str, "frame": int}
+Unit = Annotated[str, Literal["volt", "gram"]]
+TYPES = {
+    "kind": Kind,
+    "unit": Unit,
+    "flag": bool,
+    "a": int,
+    "b": float,
+    "found": Found,
+    "text": str,
+    "frame": int,
+}
 VALUES = {"a": 3, "b": 0.5, "found.count": 2, "found.names": ("x", "y"), "text": "on"}
 
 
@@ -66,6 +77,99 @@ def test_a_text_that_a_field_never_holds_is_refused(text: str) -> None:
 def test_a_text_is_not_compared_with_a_number() -> None:
     with pytest.raises(ConditionError, match="kind is a text and 1 is a number"):
         compile_condition("kind == 1", TYPES)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1 > 2", "1 > 2 reads no node: it is always false"),
+        ("max(1, 2) > 1", r"max\(1, 2\) > 1 reads no node: it is always true"),
+        ("1 / 0 > 2", r"1 / 0 > 2 reads no node: it cannot be told \(division by zero\)"),
+        ("10 < 5 < a", "10 < 5 reads no node: it is always false"),
+        ("3 + 4", r"3 \+ 4 reads no node: it is always true"),
+        ("len('abc')", r"len\('abc'\) reads no node: it is always true"),
+        ("'yes'", "'yes' reads no node: it is always true; what is it to be compared with"),
+        ("a > 0 or 1", "1 reads no node: it is always true; what is it to be compared with"),
+        ("kind == 'disc' or 'rectangle'", "'rectangle' reads no node: it is always true"),
+        ("not 0", "0 reads no node: it is always false"),
+        ("b > 0,5", "this is a list, which is always true: .*the decimals of a number behind a po"),
+        ("(a > 2, b) and a", "this is a list, which is always true"),
+        ("a in 3", r"'in' looks into a list, and 3 is a number; a list is written \(3,\)"),
+        ("a in (3)", r"'in' looks into a list, and 3 is a number"),
+        ("text in a", r"'in' looks into a list, and a is a number"),
+        ("a in ()", "nothing is in an empty list: this is always false"),
+        ("a not in []", "nothing is in an empty list: this is always true"),
+        ("len(found.names) < 0", r"len\(\) is never negative: this is always false"),
+        ("abs(b) >= 0", r"abs\(\) is never negative: this is always true"),
+        ("abs(b) == -1", r"abs\(\) is never negative: this is always false"),
+        ("found.count == found.count", "found.count is compared with itself: that is always true"),
+        ("a < a", "a is compared with itself: that is always false"),
+        ("flag == 3", "flag is never 3; it is one of True, False"),
+        ("unit == 'volts'", "unit is never 'volts'; it is one of 'volt', 'gram'; did you mean 'vo"),
+    ],
+)
+def test_what_comes_out_the_same_in_every_frame_is_refused(text: str, words: str) -> None:
+    with pytest.raises(ConditionError, match=words):
+        compile_condition(text, TYPES)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["True", "1", "a > 0 and True", "len(found.names) > 0", "len(found.names) <= 0", "abs(b) > 0",
+     "abs(b) == 0", "flag == True", "flag == 1", "unit == 'volt'", "text in ('on', 'off')",
+     "'n' in text", "found.any in found.any", "a == b"],
+)  # fmt: skip
+def test_what_frames_may_decide_and_plain_switches_are_let_through(text: str) -> None:
+    assert compile_condition(text, TYPES).text == text
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a > 0 && b", "write 'and' for '&&'"),
+        ("a > 0 || b", r"write 'or' for '\|\|'"),
+        ("a = 3", "to compare, write '=='$"),
+        ("a => 3", "write '>=' for '=>'$"),
+        ("a =< 3", "write '<=' for '=<'$"),
+        ("a <> 3", "write '!=' for '<>'$"),
+        ("!a", "write 'not' for '!'"),
+        ("a > 0 AND b", "'and', 'or' and 'not' are written small"),
+        ("NOT a", "'and', 'or' and 'not' are written small"),
+        ("a is 3", "write '==' for 'is'"),
+        ("b > 0.5V", "a number stands alone, without a unit"),
+        ("a == true", "true is written True in a condition"),
+        ("A > 3", "no node named 'A'; did you mean 'a'"),
+        ("found.COUNT > 3", "has no field 'COUNT'; did you mean 'count'"),
+    ],
+)
+def test_signs_of_other_languages_are_told(text: str, words: str) -> None:
+    with pytest.raises(ConditionError, match=words):
+        compile_condition(text, TYPES)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "words"),
+    [
+        ("volt", "node 'b', 'when': a.force_n is there for images in gram or kilopascal, here they "
+                 "are in volt: it never runs"),
+        ("gram", ""),
+    ],
+)  # fmt: skip
+def test_a_condition_over_a_field_that_images_in_volts_lack_is_refused(
+    quantity: str, words: str
+) -> None:
+    siemens = "  s: {step: decouple, in: frame}\n  g: {step: force, in: s}\n"
+    image = "frame" if quantity == "volt" else "g"
+    text = (
+        f"pipeline: p\nsource: {{step: sample}}\nnodes:\n{siemens}"
+        f"  a: {{step: load, in: {image}}}\n"
+        "  b: {step: inpaint, in: frame, when: a.force_n > 3}\noutputs: [b]\n"
+    )
+    if not words:
+        assert loads(text).nodes["b"].guard is not None
+        return
+    with pytest.raises(PipelineError, match=words):
+        loads(text)
 
 
 def test_each_value_is_read_once_in_order() -> None:

@@ -254,6 +254,37 @@ BAD_NODES = [
         "unknown setting 'level_v:0.2'; a space is missing behind the colon: level_v: 0.2",
     ),
     (
+        "m: {step: threshold, in: frame, with: {level_v=0.2}}",
+        "a key and its value have a colon and a space between them: level_v: 0.2",
+    ),
+    ("m: {step: threshold, in: frame, with: {level_v 0.2}}", "a colon is missing: level_v: 0.2"),
+    (
+        "m: {step: threshold, in: frame, with: {level_v: 0,2}}",
+        "unknown setting '2'; the decimals of a number stand behind a point",
+    ),
+    (
+        "m: {step: threshold, in: frame, with: {level_v: 0.2V}}",
+        "got '0.2V'; a number stands without its unit: 0.2",
+    ),
+    (
+        "m: {step: threshold, in: frame, with: {level_v: '0,2'}}",
+        "got '0,2'; its decimals stand behind a point: 0.2",
+    ),
+    ("m: {step: threshold, in: frame, with: {LEVEL_V: 0.2}}", "did you mean 'level_v'"),
+    ("m: {step:threshold, in: frame}", "a space is missing behind the colon: step: threshold"),
+    ("m: {step: threshold, in:frame}", "a space is missing behind the colon: in: frame"),
+    ("m: {STEP: threshold, in: frame}", "unknown key 'STEP'; did you mean 'step'"),
+    ("m: {step: threshold, inputs: frame}", "unknown key 'inputs'; did you mean 'in'"),
+    ("m: {step: threshold, in: frame, Params: {}}", "unknown key 'Params'; did you mean 'with'"),
+    (
+        "m: {step: threshold, in: frame, level_v: 3}",
+        "about; a setting stands under 'with': {level_v: …}",
+    ),
+    (
+        "m: {step: threshold, in: frame, with: level_v: 3}",
+        "a comma is missing before this key, or braces around a mapping in {…}",
+    ),
+    (
         M + "n: {step: finer, in: m, when: qqq.count > 1}",
         "no node named 'qqq'; there are: frame, m, n",
     ),
@@ -400,6 +431,7 @@ BAD_FILES = [
         text_of("m: {step: volts, in: frame}", "outputs: [m]\nsource: {step: frames}"),
         "step 'volts' takes volt at port 'image', got counts",
     ),
+    (text_of(rest="outputs: [m]\nsource: frames"), "'source' must be .*; write {step: frames}"),
     (text_of(rest="outputs: [m]\nconditions: 3"), "'conditions' must be a mapping, got 3"),
     (
         text_of(rest="outputs: [m]\nconditions: {a: [m]}"),

@@ -15,6 +15,8 @@ import pytest
 
 from helpers_classifiers import SETTING, lesson
 from tactile_graph.errors import DataError
+from tactile_graph_classifiers.database.choice import Choice, Manner
+from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson
 from tactile_graph_classifiers.database.statistics import Statistics
 from tactile_graph_classifiers.database.store import ObjectDatabase
@@ -227,14 +229,15 @@ def test_another_programs_database_is_left_alone(tmp_path):
         ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
 
 
-def test_a_newer_schema_is_refused_and_says_what_to_do(tmp_path):
+def test_another_schema_is_refused_and_says_what_to_do(tmp_path):
     path = tmp_path / "o.sqlite"
     ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
-    with sqlite3.connect(path) as newer:
-        newer.execute("PRAGMA user_version = 7")
-    newer.close()
-    with pytest.raises(DataError, match=r"has schema 7, .* reads schema 1; update tactile-graph"):
-        ObjectDatabase(path).summaries()
+    for version, todo in ((7, "update tactile-graph"), (1, "export it with the version that made")):
+        with sqlite3.connect(path) as other:
+            other.execute(f"PRAGMA user_version = {version}")
+        other.close()
+        with pytest.raises(DataError, match=f"has schema {version}, .* schema 2; {todo}"):
+            ObjectDatabase(path).summaries()
 
 
 def test_a_damaged_database_is_an_error_in_words(tmp_path):
@@ -246,3 +249,138 @@ def test_a_damaged_database_is_an_error_in_words(tmp_path):
     path.write_bytes(data)
     with pytest.raises(DataError, match="is damaged"):
         ObjectDatabase(path).known()
+
+
+# -- damage that SQLite does not see ---------------------------------------------------------
+
+
+def learned(path: Path) -> Known:
+    rng = np.random.default_rng(0)
+    lessons = [Lesson(n, "disc", rng.normal(9.0, 1.0, (6, 2)), [f"{n} {i}" for i in range(6)])
+               for n in ("cup", "Würfel", "key")]  # fmt: skip
+    store = ObjectDatabase(path)
+    store.learn(SETTING, lessons)
+    store.keep(Choice(Manner(0.1, 8, 16.0), 18, 17, 18, 12), store.known())
+    return store.known()
+
+
+def edit(path: Path, *statements: str) -> None:
+    with sqlite3.connect(path) as other:
+        other.execute("PRAGMA ignore_check_constraints = ON")
+        for statement in statements:
+            other.execute(statement)
+    other.close()
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "DELETE FROM means",
+        "DELETE FROM means WHERE object_id = 2 AND feature_id = 1",
+        "DELETE FROM scatters WHERE object_id = 1",
+        "DELETE FROM reading_values WHERE reading_id = 3",
+        "DELETE FROM readings WHERE id = 3",
+        "DELETE FROM objects WHERE name = 'cup'",
+        "DELETE FROM features WHERE id = 1",
+        "DELETE FROM about",
+        "DELETE FROM choice",
+        "UPDATE choice SET variates = 4",
+        "UPDATE reading_values SET value = value + 1e-12 WHERE reading_id = 7 AND feature_id = 0",
+        "UPDATE reading_values SET value = 'x' WHERE reading_id = 7",
+        "UPDATE means SET mean = x'00' WHERE feature_id = 1",
+        "UPDATE scatters SET scatter = -scatter",
+        "UPDATE objects SET name = 'cap' WHERE name = 'cup'",
+        "UPDATE objects SET shape = ''",
+        "UPDATE objects SET n_readings = 5",
+        "UPDATE objects SET n_readings = 'many'",
+        "UPDATE readings SET source = '' WHERE id = 1",
+        "UPDATE readings SET object_id = 2 WHERE id = 1",
+        "UPDATE features SET name = 'width' WHERE id = 1",
+        "UPDATE features SET id = 2 WHERE id = 1",
+        "UPDATE about SET quantity = 'raw'",
+        "UPDATE about SET seal = 'x'",
+    ],
+)
+def test_what_another_program_changed_is_refused_by_readers_and_writers(tmp_path, statement):
+    path = tmp_path / "o.sqlite"
+    learned(path)
+    edit(path, statement)
+    store = ObjectDatabase(path)
+    before = path.read_bytes()
+    for use in (
+        store.known,
+        store.summaries,
+        lambda: store.learn(SETTING, [lesson("new", (1, 1))]),
+        lambda: store.forget("Würfel"),
+    ):
+        with pytest.raises(DataError, match=r"o.sqlite: is damaged"):
+            use()
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "INSERT INTO reading_values VALUES (1, 7, 1.0)",
+        "UPDATE reading_values SET value = 'x'",
+        "UPDATE means SET mean = 9e999",
+        "UPDATE objects SET n_readings = 0",
+        "INSERT INTO about VALUES (2, '', '', '')",
+        "INSERT INTO scatters VALUES (1, 1, 0, 1.0)",
+        "UPDATE features SET id = -1",
+    ],
+)
+def test_the_schema_itself_refuses_what_cannot_be(tmp_path, statement):
+    path = tmp_path / "o.sqlite"
+    learned(path)
+    with sqlite3.connect(path) as other:
+        other.execute("PRAGMA foreign_keys = ON")
+        with pytest.raises(sqlite3.IntegrityError):
+            other.execute(statement)
+    other.close()
+
+
+def test_bytes_changed_anywhere_give_the_same_or_a_refusal(tmp_path):
+    path = tmp_path / "o.sqlite"
+    known = learned(path)
+    whole, rng, n_refused = path.read_bytes(), np.random.default_rng(4), 0
+    for i in range(400):
+        data = bytearray(whole)
+        for at in rng.integers(0, 100 if i % 10 == 0 else len(data), rng.integers(1, 30)):
+            data[at] = rng.integers(256)
+        path.write_bytes(data if i % 5 else data[: rng.integers(1, len(data))])
+        try:
+            found = ObjectDatabase(path).known()
+        except DataError:
+            n_refused += 1
+            continue
+        assert found.same_readings(known)
+        assert (found.choice, found.quantity, found.pipeline) == (known.choice, "gram", "features")
+        for a, b in zip(found.objects, known.objects, strict=True):
+            assert (a.name, a.shape, a.sources) == (b.name, b.shape, b.sources)
+            np.testing.assert_array_equal(a.statistics.scatter, b.statistics.scatter)
+    assert 100 < n_refused < 400
+
+
+def test_a_name_that_is_no_text_any_more_is_told(tmp_path):
+    path = tmp_path / "o.sqlite"
+    learned(path)
+    data = path.read_bytes()
+    path.write_bytes(data.replace(b"reading_values", b"reading\xff\xfevalue"))
+    with pytest.raises(DataError, match="is damaged"):
+        ObjectDatabase(path).known()
+
+
+def test_a_choice_lives_until_the_objects_change(tmp_path):
+    path = tmp_path / "o.sqlite"
+    known = learned(path)
+    assert known.choice == Choice(Manner(0.1, 8, 16.0), 18, 17, 18, 12)
+    assert known.chosen(["weight"]).choice is None
+    store = ObjectDatabase(path)
+    store.learn(SETTING, [lesson("new", (1, 1))])
+    assert store.known().choice is None
+    store.keep(known.choice, known)  # made for the objects as they were
+    assert store.known().choice is None
+    store.keep(known.choice, store.known())
+    store.forget("new")
+    assert store.known().choice is None

@@ -76,7 +76,9 @@ def change(**more):
         (change(objects={}), "objects: must be a list, got {}"),
         (change(objects=[1]), "object 1: must be a mapping with a name, got 1"),
         (change(objects=[{"name": "a", "reading": []}]), "object 'a': unknown key 'reading'; did"),
-        (change(objects=[{"name": "a"}]), "object 'a': readings must be rows of 2 finite numbers"),
+        (change(objects=[{"name": "a"}]), "object 'a': readings must be one or more rows of 2"),
+        (change(objects=[{"name": "a", "readings": []}]), "must be one or more rows of 2"),
+        (change(objects=[{"name": "a", "readings": [[1, 10**400]]}]), "rows of 2 finite numbers"),
         (change(objects=[{"name": "a", "readings": [[1]]}]), "rows of 2 finite numbers"),
         (change(objects=[{"name": "a", "readings": [[1, True]]}]), "rows of 2 finite numbers"),
         (change(objects=[{"name": "a", "readings": [[1, float("nan")]]}]), "rows of 2 finite"),
@@ -95,6 +97,9 @@ def test_what_is_no_export_is_refused_in_words(data, message):
 def test_what_is_no_yaml_is_refused_with_its_place(tmp_path):
     with pytest.raises(DataError, match=r"x.yaml:\d+:\d+: is no YAML"):
         from_text("a: 1\nb: [", "x.yaml")
+    for text in ("a: 2026-13-45", "[" * 5000):
+        with pytest.raises(DataError, match=r"x\.yaml.*: is no YAML"):
+            from_text(text, "x.yaml")
     path = tmp_path / "x.yaml"
     with pytest.raises(DataError, match="cannot be read: No such file"):
         read_export(path)

@@ -123,7 +123,7 @@ def test_of_both_levels_one_is_for_volts_and_one_for_all_else():
 
 
 def test_a_level_in_volts_alone_is_for_volts():
-    with pytest.raises(ValueError, match="level_v is for images in volts, got gram"):
+    with pytest.raises(ValueError, match="level_v is for images in volt, got gram"):
         Threshold(level_v=1.0)(Image(np.ones((1, 2)), quantity="gram"))
 
 

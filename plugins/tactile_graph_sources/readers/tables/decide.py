@@ -32,6 +32,7 @@ from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.names import ColumnsTold
+from tactile_graph_sources.readers.tables.sensors import of_one_sensor
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table, table_of
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.readers.units import length_unit
@@ -61,6 +62,11 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     if table is None:
         return None
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
+    try:
+        table, sensor = of_one_sensor(table, told)
+    except ValueError as error:
+        return replace(base, trouble=str(error))
+    base = replace(base, sensor=sensor)
     roles = _roles(table, told.of_columns)
     trouble = _unnamed_value(table, roles) or _strange_column(table, roles)
     if trouble:

@@ -26,6 +26,11 @@ _DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds t
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 
 
+def unquoted(text: str) -> str:
+    """Return a field without quotes and blanks around it."""
+    return text.strip().strip("\"'").strip()
+
+
 def is_numeric(line: str) -> bool:
     """Return whether a line could be a row of numbers."""
     return (

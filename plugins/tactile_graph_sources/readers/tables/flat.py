@@ -15,7 +15,7 @@ from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
-from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.told import Told
@@ -66,7 +66,7 @@ def read(reading: Reading) -> Iterator[Frame]:
             if is_row(line) and len(fields := layout.dialect.fields(line)) != layout.width:
                 reading.damaged(number, f"{len(fields)} values, not {layout.width}")
             continue
-        frame = _frame(reading, lines, number, line)
+        frame = _frame(reading, lines, number, line) if of_sensor(layout, line) else None
         if frame is not None:
             yield frame
 

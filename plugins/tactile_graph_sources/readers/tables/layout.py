@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tactile_graph_sources.readers.tables.dialect import Dialect
+from tactile_graph_sources.readers.tables.dialect import Dialect, unquoted
 from tactile_graph_sources.readers.tables.evidence import Numbers
 from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.tables.table import Table
@@ -43,6 +43,8 @@ class Layout:
         Of the column of clock, where the settings say it.
     spacing : (float, float)
         Distance of rows and of columns in the numbers of a long table: 1, or what positions have.
+    sensor : (int, str), optional
+        The column that says which sensor a line is of, and the one that is read.
     first : (float, float)
         The first row's and the first column's position, where they are positions.
     said : Described
@@ -66,10 +68,20 @@ class Layout:
     time_format: str = ""
     spacing: tuple[float, float] = (1.0, 1.0)
     first: tuple[float, float] = (0.0, 0.0)
+    sensor: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)
     why: str = ""
     assumed: tuple[str, ...] = ()
     trouble: str = ""
+
+
+def of_sensor(layout: Layout, line: str) -> bool:
+    """Return whether a line is of the sensor that is read; any is where nothing parts them."""
+    if layout.sensor is None:
+        return True
+    column, wanted = layout.sensor
+    fields = layout.dialect.fields(line)
+    return len(fields) <= column or unquoted(fields[column]) == wanted
 
 
 def timed(base: Layout, table: Table) -> Layout:

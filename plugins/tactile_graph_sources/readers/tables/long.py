@@ -13,7 +13,7 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
-from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 
@@ -167,7 +167,11 @@ def _first_of_each(
 
 def _gather(reading: Reading, layout: Layout) -> tuple[Cells, NDArray[np.intp]]:
     """Return frame, time (s), row, column and value of each cell, shape (N, 5), and its line."""
-    text = (pair for pair in reading.text() if pair[0] >= layout.first_line)
+    text = (
+        (number, line)
+        for number, line in reading.text()
+        if number >= layout.first_line and of_sensor(layout, line)
+    )
     stamps = Stamps(reading, layout)
     cells, numbers = [np.empty((0, 5))], [np.empty(0, dtype=np.intp)]
     while batch := list(islice(text, _BATCH)):

@@ -1,0 +1,93 @@
+"""Canonical variates: the directions in which known objects differ most for how they vary."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+
+Array = NDArray[np.float64]
+RESOLUTION = 1e-3
+"""Share of a feature's deviation over all readings below which a spread is not believed."""
+
+
+class WithLogarithms(NamedTuple):
+    """The way from features to features and the logarithms of those that are always above 0.
+
+    Parameters
+    ----------
+    positive : ndarray of int
+        Where the latter stand.
+    least : ndarray, shape (len(positive),)
+        What a reading below is taken for.
+    """
+
+    positive: NDArray[np.intp]
+    least: Array
+
+    @classmethod
+    def of(cls, readings: Array) -> WithLogarithms:
+        """Return the way for features of which these, shape (n, F), are examples."""
+        lowest = readings.min(axis=0)
+        positive = np.flatnonzero(lowest > 0.0)
+        return cls(positive, np.maximum(0.1 * lowest[positive], np.finfo(np.float64).tiny))
+
+    def __call__(self, readings: Array) -> Array:
+        """Return readings with logarithms, shape (n, T)."""
+        logarithms = np.log(np.maximum(readings[:, self.positive], self.least))
+        return np.hstack([readings, logarithms])
+
+
+class Space(NamedTuple):
+    """Coordinates in which readings of one object vary alike in every direction.
+
+    Parameters
+    ----------
+    whitening : ndarray, shape (T, T)
+        From features to coordinates.
+    variates : ndarray, shape (T, V)
+        From coordinates to canonical variates, most telling first; at right angles, of length 1.
+    """
+
+    whitening: Array
+    variates: Array
+
+    @classmethod
+    def of(cls, rows: Array, labels: NDArray[np.intp], shrinkage: float) -> Space:
+        """Return the space that readings of known objects span.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (n, T)
+        labels : ndarray of int, shape (n,)
+            Which object each is of, from 0 without a gap.
+        shrinkage : float
+            Share of a common variance in the covariance of scaled features, above 0.
+
+        Notes
+        -----
+        R. A. Fisher, 1936, doi:10.1111/j.1469-1809.1936.tb02137.x; shrunk as by Ledoit and Wolf,
+        2004, doi:10.1016/S0047-259X(03)00096-4.
+        """
+        means = means_of(rows, labels)
+        off = rows - means[labels]
+        freedom = max(len(rows) - len(means), 1)
+        total = rows.std(axis=0)
+        floor = np.where(total > 0.0, RESOLUTION * total, np.maximum(1.0, np.abs(rows[0])))
+        scale = np.maximum(np.sqrt((off * off).sum(axis=0) / freedom), floor)
+        off = off / scale
+        covariance = (1.0 - shrinkage) / freedom * (off.T @ off)
+        covariance[np.diag_indices_from(covariance)] += shrinkage
+        root = np.linalg.cholesky(covariance)
+        whitening = solve_triangular(root, np.diag(1.0 / scale), lower=True).T
+        middle = means @ whitening
+        _, sizes, variates = np.linalg.svd(middle - middle.mean(axis=0), full_matrices=False)
+        return cls(whitening, variates[sizes > 1e-9 * max(float(sizes[0]), 1e-300)].T)
+
+
+def means_of(rows: Array, labels: NDArray[np.intp]) -> Array:
+    """Return the mean of each object's rows, shape (K, T)."""
+    belongs = (labels == np.arange(int(labels.max()) + 1)[:, None]).astype(np.float64)
+    return np.asarray(belongs @ rows / np.bincount(labels)[:, None])

@@ -1,0 +1,201 @@
+"""Which manner of discriminant tells learned objects apart best, by leaving readings out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from tactile_graph.errors import DataError
+from tactile_graph_classifiers.database.choice import CONFIDENCE, Choice, Manner
+from tactile_graph_classifiers.database.known import Known
+from tactile_graph_classifiers.distances.discriminant_model import Labels, Learned, Scores
+from tactile_graph_classifiers.distances.left_out import largest_accepted
+
+Array = NDArray[np.float64]
+SHRINKAGES = (0.3, 0.1, 0.03, 0.01)
+VARIATES = (8, 15, 25)
+PRIORS = (60.0, 16.0, 5.0)
+BEYOND = (1.0, 0.3, 0.1, 0.03, 0.0)
+RUNS = 10
+"""Into how many runs of successive readings an object's are cut."""
+PARTS = 5
+"""In so many parts readings and objects are left out while choosing."""
+
+
+class Examples(NamedTuple):
+    """All readings of known objects.
+
+    Parameters
+    ----------
+    readings : ndarray, shape (n, F)
+    labels : ndarray of int, shape (n,)
+        Which object each is of.
+    runs : ndarray of int, shape (n,)
+        Which run of its object's readings; -1 where an object has only one reading.
+    """
+
+    readings: Array
+    labels: Labels
+    runs: Labels
+
+    @classmethod
+    def of(cls, known: Known) -> Examples:
+        """Return the readings of all objects.
+
+        Raises
+        ------
+        DataError
+            If no object has two readings, or one none.
+        """
+        counts = [len(it.readings) for it in known.objects]
+        if min(counts) < 1:
+            raise DataError(known.where, f"{known.names[counts.index(0)]!r} has no readings")
+        if max(counts) < 2:
+            raise DataError(
+                known.where,
+                "no object has two readings, so nothing says how much readings vary; learn more",
+            )
+        runs = [np.arange(n) * min(RUNS, n) // n if n > 1 else np.full(n, -1) for n in counts]
+        labels = np.repeat(np.arange(len(counts)), counts)
+        return cls(np.concatenate([o.readings for o in known.objects]), labels,
+                   np.concatenate(runs).astype(np.intp))  # fmt: skip
+
+    def chosen(self, kept: NDArray[np.bool_]) -> Examples:
+        """Return those kept, the objects numbered anew."""
+        _, labels = np.unique(self.labels[kept], return_inverse=True)
+        return Examples(self.readings[kept], labels.astype(np.intp), self.runs[kept])
+
+
+class Tried(NamedTuple):
+    """What one manner did with what was left out.
+
+    Parameters
+    ----------
+    manner : Manner
+    n_right : int
+        Readings named right that were left out.
+    log_likelihood : float
+        Of their true objects.
+    own, strangers : list of ndarray
+        Squared distances to what they were named, for each of `BEYOND`: of the same readings, and
+        of those of objects left out whole.
+    """
+
+    manner: Manner
+    n_right: int
+    log_likelihood: float
+    own: list[Array]
+    strangers: list[Array]
+
+    def found(self) -> tuple[int, float]:
+        """Return how many strangers are unknown, and by which ``beyond``."""
+        if not self.strangers[0].size:
+            return 0, BEYOND[0]
+        counts = [
+            int(np.count_nonzero(theirs > largest_accepted(its, CONFIDENCE)))
+            for its, theirs in zip(self.own, self.strangers, strict=True)
+        ]
+        at = int(np.argmax(counts))
+        return counts[at], BEYOND[at]
+
+
+def choose(examples: Examples) -> Choice:
+    """Return the manner that does best with what is left out.
+
+    Parameters
+    ----------
+    examples : Examples
+
+    Notes
+    -----
+    Of the manners that name as many readings right as the best one, but for a standard error,
+    the one is taken that finds most strangers; of equal ones that of the highest likelihood, and
+    then the most cautious. Whole runs of successive readings are left out: neighbours may be
+    alike for reasons that will not come again. Strangers are a fifth of the objects at a time.
+    """
+    tried = [one for shrinkage in SHRINKAGES for one in _tried(examples, shrinkage)]
+    n = len(tried[0].own[0])
+    most = max(one.n_right for one in tried)
+    error = math.sqrt(most * (n - most) / n) if n else 0.0
+    good = [one for one in tried if one.n_right >= most - error]
+    best = max(good, key=lambda one: (one.found()[0], one.n_right, one.log_likelihood))
+    found, beyond = best.found()
+    return Choice(best.manner._replace(beyond=beyond), n, best.n_right, len(best.strangers[0]),
+                  found)  # fmt: skip
+
+
+def left_out_squares(examples: Examples, manner: Manner) -> Array:
+    """Return squared distances of readings left out to what they were named, shape (N,).
+
+    Parameters
+    ----------
+    examples : Examples
+    manner : Manner
+    """
+    parts = [np.zeros(0)]
+    for learned, coordinates, _ in _without_readings(examples, manner.shrinkage, RUNS):
+        parts.append(_squares(learned.discriminant(manner)(coordinates), manner.beyond))
+    return np.concatenate(parts)
+
+
+def _squares(scores: Scores, beyond: float) -> Array:
+    return scores.at(scores.unlikeliness.argmin(axis=1), beyond)
+
+
+def _without_readings(
+    examples: Examples, shrinkage: float, n_parts: int
+) -> Iterator[tuple[Learned, Array, Labels]]:
+    """Yield, for each part of the runs, what is learned of the others, and the part's readings."""
+    for part in range(n_parts):
+        out = (examples.runs >= 0) & (examples.runs % n_parts == part)
+        if not out.any() or out.all():
+            continue
+        learned = Learned.of(examples.readings[~out], examples.labels[~out], shrinkage)
+        yield learned, learned.located(examples.readings[out]), examples.labels[out]
+
+
+def _without_objects(examples: Examples, shrinkage: float) -> Iterator[tuple[Learned, Array]]:
+    """Yield, for each group of objects, what is learned of the others, and the group's readings."""
+    for group in range(PARTS):
+        out = examples.labels % PARTS == group
+        kept = np.bincount(examples.labels[~out]) if out.any() else np.zeros(0)
+        if np.count_nonzero(kept) < 2 or kept.max() < 2:
+            continue
+        others = examples.chosen(~out)
+        learned = Learned.of(others.readings, others.labels, shrinkage)
+        yield learned, learned.located(examples.readings[out])
+
+
+def _tried(examples: Examples, shrinkage: float) -> Iterator[Tried]:
+    """Yield what each manner of a shrinkage does."""
+    of_readings = list(_without_readings(examples, shrinkage, PARTS))
+    of_objects = list(_without_objects(examples, shrinkage))
+    for variates, prior in product(VARIATES, PRIORS):
+        manner = Manner(shrinkage, variates, prior)
+        own: list[list[Array]] = [[np.zeros(0)] for _ in BEYOND]
+        strangers: list[list[Array]] = [[np.zeros(0)] for _ in BEYOND]
+        n_right, likelihood = 0, 0.0
+        for learned, coordinates, labels in of_readings:
+            scores = learned.discriminant(manner)(coordinates)
+            n_right += int(np.count_nonzero(scores.unlikeliness.argmin(axis=1) == labels))
+            likelihood += _log_likelihood(scores.unlikeliness, labels)
+            for some, beyond in zip(own, BEYOND, strict=True):
+                some.append(_squares(scores, beyond))
+        for learned, coordinates in of_objects:
+            scores = learned.discriminant(manner)(coordinates)
+            for some, beyond in zip(strangers, BEYOND, strict=True):
+                some.append(_squares(scores, beyond))
+        yield Tried(manner, n_right, likelihood, [np.concatenate(some) for some in own],
+                    [np.concatenate(some) for some in strangers])  # fmt: skip
+
+
+def _log_likelihood(unlikeliness: Array, labels: Labels) -> float:
+    """Return the log likelihood of the true objects, one surprise not counted beyond all."""
+    logs = -0.5 * unlikeliness[np.arange(len(labels)), labels]
+    return float(np.maximum(logs - logsumexp(-0.5 * unlikeliness, axis=1), -20.0).sum())

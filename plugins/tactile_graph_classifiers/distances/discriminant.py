@@ -1,0 +1,108 @@
+"""Step ``discriminant``: the likeliest known object by all that was measured of it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from annotated_types import Gt, Lt, MinLen
+
+from tactile_graph.errors import DataError
+from tactile_graph_classifiers.database.choice import CONFIDENCE
+from tactile_graph_classifiers.distances.choosing import Examples, choose, left_out_squares
+from tactile_graph_classifiers.distances.classifier import Lookup
+from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
+from tactile_graph_classifiers.distances.left_out import largest_accepted
+from tactile_graph_classifiers.measuring.measurements import Measurements
+
+
+class CanonicalDiscriminant:
+    """Return which known object a reading most likely is of, or that it is of none.
+
+    Parameters
+    ----------
+    database : Path or mapping, optional
+        The object database, or an export of one; the sample of the thesis' objects if not given.
+        It is read once, when the pipeline is loaded.
+    features : list of str, optional
+        Which features to compare; all that were learned if not given.
+    reject : bool
+        Whether a reading too far from the object it most likely is of is unknown.
+    confidence : float
+        Share of known objects' readings to be accepted: the less, the more strangers are found.
+
+    Raises
+    ------
+    DataError
+        If no object has two readings.
+
+    Notes
+    -----
+    A quadratic discriminant in Fisher's canonical variates of the features and their logarithms,
+    covariances shrunk towards that of all objects (J. H. Friedman, 1989,
+    doi:10.1080/01621459.1989.10478752). How far, and in how many variates, is chosen by leaving
+    readings and whole objects out: when they are learned, and kept in the database; when the
+    pipeline is loaded for exports and for features chosen here. The distance is that of
+    Mahalanobis, ``margin`` one minus the likelihood of the runner-up over that of the nearest.
+    What is accepted is the quantile of readings left out (split conformal prediction).
+    """
+
+    stateless = True
+
+    def __init__(
+        self,
+        *,
+        database: Path | dict[str, Any] | None = None,
+        features: Annotated[list[str], MinLen(1)] | None = None,
+        reject: bool = True,
+        confidence: Annotated[float, Gt(0), Lt(1)] = CONFIDENCE,
+    ) -> None:
+        self._lookup = Lookup(database, features)
+        self.takes = self._lookup.takes
+        known = self._lookup.known
+        examples = Examples.of(known)
+        manner = (known.choice or choose(examples)).manner
+        self._learned = Learned.of(examples.readings, examples.labels, manner.shrinkage)
+        self._discriminant = self._learned.discriminant(manner)
+        self._beyond = manner.beyond
+        self._limit: float | None = None
+        if reject:
+            self._limit = largest_accepted(left_out_squares(examples, manner), confidence)
+
+    def __call__(self, features: Measurements) -> Identity:
+        """Return the likeliest object, the runner-up and their margin.
+
+        Raises
+        ------
+        DataError
+            If a feature was not measured or is not finite, or the reading is in another unit.
+        """
+        vector = self._lookup.vector(features)
+        with np.errstate(over="ignore", invalid="ignore"):  # told below
+            scores = self._discriminant(self._learned.located(vector[None]))
+        order = np.argsort(scores.unlikeliness[0], kind="stable")[:2]
+        squares = [float(scores.at(order[i : i + 1], self._beyond)[0]) for i in range(len(order))]
+        if not math.isfinite(squares[0]):
+            raise DataError("features", "they are too far from every known object for a number")
+        behind = float(np.ptp(scores.unlikeliness[0, order]))
+        return self._identity(order.tolist(), [math.sqrt(s) for s in squares], behind)
+
+    def _identity(self, order: list[int], distances: list[float], behind: float) -> Identity:
+        objects = [self._lookup.known.objects[k] for k in order]
+        limit = None if self._limit is None else math.sqrt(self._limit)
+        known = limit is None or distances[0] <= limit
+        single = len(objects) == 1
+        return Identity(
+            objects[0].name if known else UNKNOWN,
+            objects[0].shape if known else "",
+            known,
+            distances[0],
+            limit,
+            objects[0].name,
+            "" if single else objects[1].name,
+            None if single else distances[1],
+            1.0 if single else -math.expm1(-0.5 * behind),
+        )

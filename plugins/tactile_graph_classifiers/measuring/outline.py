@@ -1,0 +1,99 @@
+"""The outline of a footprint as numbers that no move and no turn changes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.spatial import ConvexHull
+
+Array = NDArray[np.float64]
+DIRECTIONS = np.exp(1j * np.linspace(0.0, math.pi, 36, endpoint=False))
+ORDERS = ((2, 0), (3, 0), (2, 1), (4, 0), (3, 1), (2, 2), (5, 0), (6, 0))
+"""Powers of z and of its conjugate; their difference says which turns leave a shape as it is."""
+MOMENTS = tuple(f"moment_{p}{q}" for p, q in ORDERS)
+REACHES = (10, 50, 90)
+NAMES = (
+    "solidity", "hull_cm2", "length_cm", "breadth_cm", "parts", "largest_part", "filled_share",
+    "inscribed_cm", "thickness_cm", "gyration_cm", *(f"reach_{q}" for q in REACHES), *MOMENTS,
+)  # fmt: skip
+
+
+def outline_numbers(on: NDArray[np.bool_], pitch_cm: tuple[float, float]) -> list[float]:
+    """Return the numbers of ``NAMES`` for a footprint.
+
+    Parameters
+    ----------
+    on : ndarray of bool, shape (rows, columns)
+        With at least one cell on.
+    pitch_cm : (float, float)
+        Along x and along y.
+
+    Returns
+    -------
+    list of float
+        Share of its convex hull that the footprint fills, and the hull's area; largest and least
+        extent; number of parts, joined by sides or corners, and the largest one's share of the
+        area; share left of the area when holes are filled; largest and mean distance of its cells
+        from its boundary; radius of gyration; quantiles of the distance from the centre, and
+        magnitudes of complex moments, both over powers of that radius.
+    """
+    px, py = pitch_cm
+    y, x = np.nonzero(on)
+    z = x * px + 1j * (y * py)
+    area, cell = z.size * px * py, (px * px + py * py) / 12.0
+    hull = _hull(on, px, py)
+    extents = np.ptp((hull[:, None] * DIRECTIONS.conj()).real, axis=0)
+    hull_cm2 = _area(hull)
+    parts, n_parts = ndimage.label(on, np.ones((3, 3)))
+    inside = ndimage.distance_transform_edt(np.pad(on, 1), sampling=(py, px))[1:-1, 1:-1][on]
+    z -= z.mean()
+    far = np.abs(z)
+    gyration = math.sqrt(float((far * far).mean()) + cell)
+    filled = np.count_nonzero(ndimage.binary_fill_holes(on))
+    reaches = np.quantile(far, [0.01 * q for q in REACHES]) / gyration
+    return [
+        area / hull_cm2, hull_cm2, float(extents.max()), float(extents.min()),
+        float(n_parts), float(np.bincount(parts[on]).max()) / z.size, z.size / filled,
+        float(inside.max()), float(inside.mean()), gyration,
+        *reaches.tolist(), *moments(z / gyration, np.full(z.size, 1.0 / z.size)),
+    ]  # fmt: skip
+
+
+def moments(z: NDArray[Any], shares: Array) -> list[float]:
+    """Return the magnitudes of complex moments of points about 0, in the order of ``ORDERS``.
+
+    Parameters
+    ----------
+    z : ndarray of complex, shape (n,)
+    shares : ndarray, shape (n,)
+        Weights of sum 1.
+
+    Notes
+    -----
+    J. Flusser, On the independence of rotation moment invariants, 2000,
+    doi:10.1016/S0031-3203(99)00127-2: a turn changes the phase alone.
+    """
+    powers = [shares * z**0]
+    for _ in range(6):
+        powers.append(powers[-1] * z)
+    conjugate = z.conj()
+    return [float(abs((powers[p] * conjugate**q).sum())) for p, q in ORDERS]
+
+
+def _hull(on: NDArray[np.bool_], px: float, py: float) -> NDArray[np.complex128]:
+    """Return the corners of the convex hull of all cells, in order."""
+    rows = np.flatnonzero(on.any(axis=1))
+    first, last = on[rows].argmax(axis=1), on.shape[1] - 1 - on[rows, ::-1].argmax(axis=1)
+    ends = np.concatenate([first - 0.5, last + 0.5] * 2) * px
+    heights = np.concatenate([rows - 0.5] * 2 + [rows + 0.5] * 2) * py
+    points = np.column_stack([ends, heights])
+    corners = points[ConvexHull(points).vertices]
+    return np.asarray(corners[:, 0] + 1j * corners[:, 1])
+
+
+def _area(corners: NDArray[np.complex128]) -> float:
+    return 0.5 * abs(float((corners.conj() * np.roll(corners, -1)).imag.sum()))

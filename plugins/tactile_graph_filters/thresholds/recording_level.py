@@ -1,0 +1,78 @@
+"""The level above the noise of a whole recording, one for all of its frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tactile_graph.errors import UsageError
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps import Report
+from tactile_graph.steps.settings import spelled, validate_settings
+from tactile_graph.wires import Frame
+from tactile_graph_filters.thresholds.noise_level import level_above, lower_readings
+
+
+class RecordingLevel(NamedTuple):
+    """A level, in the unit of ``quantity``, and of what it was made."""
+
+    level: float
+    quantity: str
+    told: str
+
+
+def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
+    """Return the level from which on cells stand out of a recording's noise.
+
+    Parameters
+    ----------
+    recording : Path or mapping
+        The file, or the settings of the source step that reads it.
+
+    Returns
+    -------
+    RecordingLevel
+        Base and noise are the medians of what `noise_level` finds in each frame, the peak is the
+        highest of all: an empty frame, or one with a light touch, has the level of all others.
+
+    Raises
+    ------
+    UsageError
+        If no plugin reads recordings, a setting is wrong, or the frames are of several quantities
+        or without a valid cell.
+    DataError
+        If the file is no recording.
+    """
+    found, quantities = [], set()
+    for frame in _frames(recording):
+        readings = lower_readings(frame.image)
+        quantities.add(frame.image.quantity)
+        if readings is not None:
+            found.append(readings)
+    name = str(recording if isinstance(recording, Path) else dict(recording))
+    if not found or len(quantities) != 1:
+        what = "frames of several quantities" if found else "no frame with a valid cell"
+        raise UsageError(f"noise_of {name}: it holds {what}, so one level cannot be told")
+    low, base, peaks = np.array(found).T
+    level = level_above(float(np.median(base - low)), float(np.median(base)), float(peaks.max()))
+    told = f"the noise of {name}, {len(found)} frames"
+    return RecordingLevel(level, quantities.pop(), told)
+
+
+def _frames(recording: Path | Mapping[str, Any]) -> Iterator[Frame]:
+    registry = installed()
+    reader = registry.reader()
+    if reader is None:
+        raise UsageError("noise_of: no plugin that is installed reads recordings")
+    path = str(registry.offer("readers", reader).target)
+    given = {path: str(recording)} if isinstance(recording, Path) else dict(recording)
+    signature = registry.step(reader)
+    values, troubles = validate_settings(signature, given)
+    for place, message in troubles:
+        raise UsageError(f"noise_of, {spelled(place)}: {message}".replace(", : ", ": "))
+    injected = {signature.report: Report()} if signature.report else {}
+    frames: Iterator[Frame] = signature.target(**signature.arguments(values), **injected)
+    return frames

@@ -1,0 +1,220 @@
+"""The discriminant: who is likeliest, who is unknown, and how its manner is chosen."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from helpers_classifiers import export_of, normal_rows, reading, three_objects
+from tactile_graph import Frame, load
+from tactile_graph.errors import DataError, PipelineError, RuleError
+from tactile_graph_classifiers.database.choice import Choice, Manner
+from tactile_graph_classifiers.database.opening import load_known
+from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms
+from tactile_graph_classifiers.distances.choosing import Examples, choose, left_out_squares
+from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
+from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.measuring.measurements import Measurements
+
+NAMES = tuple(f"f{i}" for i in range(12))
+
+
+def many(n_objects: int, seed: int, n: int = 25, apart: float = 6.0) -> dict[str, np.ndarray]:
+    """Return objects that differ in three of twelve features, which vary together."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(12, 12)) / 3.0 + np.eye(12)
+    objects = {}
+    for k in range(n_objects):
+        mean = 50.0 + np.concatenate([apart * rng.normal(size=3), np.zeros(9)])
+        objects[f"object {k}"] = mean + rng.standard_normal((n, 12)) @ root
+    return objects
+
+
+def split(objects: dict[str, np.ndarray], n: int):
+    return {k: v[:n] for k, v in objects.items()}, {k: v[n:] for k, v in objects.items()}
+
+
+def measured(row) -> Measurements:
+    return Measurements(NAMES, np.array(row, dtype=np.float64), "gram")
+
+
+def examples(objects: dict[str, np.ndarray], names=NAMES) -> Examples:
+    return Examples.of(load_known(export_of(objects, names), None))
+
+
+def test_known_objects_are_named_and_a_stranger_is_unknown():
+    one = CanonicalDiscriminant(database=export_of(three_objects()))
+    for name, at in {"light": (505, 41), "heavy": (1990, 38), "wide": (2010, 147)}.items():
+        found = one(reading(*at))
+        assert (found.name, found.known, found.shape) == (name, True, "disc")
+        assert found.margin > 0.99
+        assert found.distance <= found.limit
+        assert found.runner_up_distance > found.distance
+    found = one(reading(1200.0, 95.0))
+    assert (found.name, found.known, found.shape) == ("unknown", False, "")
+    assert found.distance > found.limit
+    assert found.nearest in {"light", "heavy", "wide"}
+
+
+def test_it_tells_apart_by_directions_what_no_feature_alone_tells():
+    objects = many(12, seed=3, n=60)
+    learned, tested = split(objects, 25)
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES), reject=False)
+    right = [one(measured(row)).name == name for name, rows in tested.items() for row in rows]
+    assert np.mean(right) > 0.93
+
+
+def test_the_confidence_is_the_share_of_known_readings_that_is_accepted():
+    for confidence in (0.95, 0.8):
+        accepted = []
+        for seed in (7, 8, 9):
+            learned, tested = split(many(10, seed=seed, n=65), 25)
+            one = CanonicalDiscriminant(database=export_of(learned, NAMES), confidence=confidence)
+            accepted += [one(measured(row)).known for rows in tested.values() for row in rows]
+        assert np.mean(accepted) == pytest.approx(confidence, abs=0.05)
+
+
+def test_objects_that_were_not_learned_are_unknown():
+    objects = many(12, seed=7)
+    learned = dict(list(objects.items())[:9])
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    strangers = [row for name, rows in objects.items() if name not in learned for row in rows]
+    assert np.mean([one(measured(row)).known for row in strangers]) < 0.1
+
+
+def test_with_two_objects_a_stranger_is_known_by_what_lies_beside_what_tells_them_apart():
+    objects = many(2, seed=8)
+    one = CanonicalDiscriminant(database=export_of(objects, NAMES))
+    stranger = next(iter(objects.values())).mean(axis=0) + np.r_[np.zeros(9), 40.0, -40.0, 40.0]
+    assert not one(measured(stranger)).known
+    single = CanonicalDiscriminant(database=export_of(dict([*objects.items()][:1]), NAMES))
+    found = single(measured(stranger))
+    assert (found.name, found.runner_up, found.runner_up_distance) == ("unknown", "", None)
+
+
+def test_what_was_left_out_foretells_what_new_readings_get():
+    learned, tested = split(many(12, seed=3, n=85, apart=2.5), 25)
+    choice = choose(examples(learned))
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES), reject=False)
+    right = [one(measured(row)).name == name for name, rows in tested.items() for row in rows]
+    assert choice.n_left_out == 300
+    assert choice.n_right / 300 == pytest.approx(np.mean(right), abs=0.07)
+    assert 0 < choice.n_found <= choice.n_strangers == 300
+
+
+def test_features_that_say_nothing_or_never_vary_do_no_harm():
+    rng = np.random.default_rng(0)
+    objects = {
+        name: np.column_stack([rows, np.zeros(25), np.full(25, 7.0), rng.normal(size=25)])
+        for name, rows in three_objects().items()
+    }
+    names = ("weight", "area_cm2", "holes", "same", "noise")
+    one = CanonicalDiscriminant(database=export_of(objects, names))
+    assert one(Measurements(names, np.array([505.0, 41.0, 0.0, 7.0, 0.1]), "gram")).name == "light"
+
+
+def test_fewer_readings_than_features_and_one_of_a_single_reading_are_borne():
+    objects = {k: v[:3] for k, v in many(4, seed=2, apart=40.0).items()}
+    objects["object 3"] = objects["object 3"][:1]
+    one = CanonicalDiscriminant(database=export_of(objects, NAMES))
+    assert one(measured(objects["object 3"][0])).name == "object 3"
+
+
+def test_a_reading_at_or_below_0_is_borne_where_all_learned_ones_are_above():
+    one = CanonicalDiscriminant(database=export_of(three_objects()))
+    assert not one(reading(-5.0, 0.0)).known
+
+
+def test_the_order_of_objects_changes_no_answer():
+    objects = many(6, seed=9)
+    other = dict(reversed(objects.items()))
+    one, two = (CanonicalDiscriminant(database=export_of(o, NAMES)) for o in (objects, other))
+    for rows in many(6, seed=10).values():
+        a, b = one(measured(rows[0])), two(measured(rows[0]))
+        assert (a.nearest, a.runner_up) == (b.nearest, b.runner_up)
+
+
+def test_what_cannot_be_learned_from_is_refused():
+    with pytest.raises(DataError, match="no object has two readings"):
+        CanonicalDiscriminant(database=export_of({"a": [[1.0, 2.0]], "b": [[3.0, 4.0]]}))
+    with pytest.raises(DataError, match="no object was learned yet"):
+        CanonicalDiscriminant(database=export_of({}))
+    one = CanonicalDiscriminant(database=export_of(three_objects()))
+    with pytest.raises(DataError, match="'area_cm2' must be a finite number, got"):
+        one(reading(500.0, math.nan))
+    small = {name: 1e-9 * rows for name, rows in three_objects().items()}
+    one = CanonicalDiscriminant(database=export_of(small))
+    with pytest.raises(DataError, match="too far from every known object for a number"):
+        one(reading(1e150, -1e150))
+
+
+PIPELINE = """
+pipeline: p
+nodes:
+  footprint: {step: threshold, in: frame, with: {level: auto}}
+  siemens: {step: decouple, in: frame}
+  features: {step: features, in: {image: IMAGE, mask: footprint}}
+  identity: {step: STEP, in: features}
+outputs: [identity]
+"""
+
+
+@pytest.mark.parametrize("step", ["discriminant", "mahalanobis"])
+def test_another_unit_is_refused_when_the_pipeline_is_loaded_where_it_is_known(step, tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text(PIPELINE.replace("STEP", step).replace("IMAGE", "siemens"))
+    with pytest.raises(PipelineError, match=f"'{step}' takes gram at port 'features', got siemens"):
+        load(path)
+    path.write_text(PIPELINE.replace("STEP", step).replace("IMAGE", "frame"))
+    wanted = f"'{step}' takes gram at port 'features', got a frame of volt"
+    with pytest.raises(RuleError, match=wanted):  # before any step runs
+        load(path).run(Frame.of(np.eye(16), 1.3, quantity="volt"))
+
+
+# -- its parts -------------------------------------------------------------------------------
+
+
+def test_in_its_space_readings_of_an_object_vary_alike_in_every_direction():
+    some = examples(many(8, seed=1, n=400))
+    rows = WithLogarithms.of(some.readings)(some.readings)
+    space = Space.of(rows, some.labels, 1e-9)
+    at = rows @ space.whitening
+    off = at - np.array([at[some.labels == k].mean(axis=0) for k in range(8)])[some.labels]
+    np.testing.assert_allclose(off.T @ off / (len(off) - 8), np.eye(24), atol=1e-4)
+    np.testing.assert_allclose(space.variates.T @ space.variates, np.eye(7), atol=1e-9)
+
+
+def test_scores_are_those_of_the_gaussian_densities():
+    some = examples(three_objects(), ("weight", "area_cm2"))
+    learned = Learned.of(some.readings, some.labels, 0.01)
+    it = learned.discriminant(Manner(0.01, 2, 5.0))
+    row = learned.located(np.array([[700.0, 50.0]]))
+    scores, at = it(row), (row - it.means)[:, :]
+    for k in range(3):
+        own = (learned.coordinates[some.labels == k] - it.means[k]) @ it.space.variates
+        covariance = (own.T @ own + 5.0 * np.eye(2)) / 29.0 * (1.0 + 1.0 / 25.0)
+        off = at[k] @ it.space.variates
+        square = off @ np.linalg.solve(covariance, off)
+        assert scores.squares[0, k] == pytest.approx(square)
+        wanted = square + np.linalg.slogdet(covariance)[1]
+        assert scores.unlikeliness[0, k] == pytest.approx(wanted)
+        beside = (at[k] @ at[k] - off @ off) / (1.0 + 1.0 / 25.0)
+        assert scores.beside[0, k] == pytest.approx(beside, abs=1e-6)
+
+
+def test_runs_of_successive_readings_are_left_out_together():
+    some = examples({"a": normal_rows(np.random.default_rng(0), (9.0, 5.0), (1, 1), 20),
+                     "b": [[1.0, 2.0]]}, ("weight", "area_cm2"))  # fmt: skip
+    assert some.runs.tolist() == [*np.repeat(np.arange(10), 2), -1]
+    assert len(left_out_squares(some, Manner(0.1, 8, 16.0))) == 20
+
+
+def test_a_choice_says_how_well_it_did():
+    choice = Choice(Manner(0.1, 8, 16.0), 200, 190, 200, 180)
+    assert str(choice) == (
+        "95.0 % of 200 readings are named right when left out; 90 % are unknown when their object"
+        " is left out whole"
+    )
+    assert str(choice._replace(n_left_out=0, n_strangers=0)) == "too few readings to leave any out"
