@@ -72,8 +72,7 @@ class FitFootprints:
     """Return the outlines of all objects on the pad, their number and kinds by evidence.
 
     Loads of all objects add up on each element. The search begins with connected pieces of the
-    footprint, cuts them along straight lines, and then joins, cuts anew, drops and exchanges
-    outlines for those of other kinds while the evidence grows.
+    footprint, and then parts, joins and parts anew while the evidence grows.
 
     Parameters
     ----------

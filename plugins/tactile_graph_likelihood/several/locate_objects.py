@@ -36,7 +36,6 @@ from tactile_graph_likelihood.several.posteriors import goodness_of_load, poster
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
-from tactile_graph_likelihood.single.posterior import UNLIKELY
 from tactile_graph_likelihood.single.readings import Readings
 
 COVERED = 0.95
@@ -52,8 +51,9 @@ ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
 
-LIKELY = 0.6
-"""Probability of the number of objects below which the answer is flagged."""
+LIKELY, VAGUE, STRANGE = 0.5, 0.62, -6.0
+"""Where an answer is flagged: the number's probability is no larger, the mean deviation of all
+centres is larger, in pitches, or the surprise is no larger."""
 
 FEW_ELEMENTS = 1.7
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
@@ -92,7 +92,7 @@ class LocateObjects:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 3.0,
+        more: float = 2.0,
         settings: Annotated[
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,
@@ -137,9 +137,9 @@ class LocateObjects:
             found.count_probability,
             max(found.counts.values()),
             fit.surprise,
-            fit.surprise > UNLIKELY
+            fit.surprise > STRANGE
             and found.count_probability > LIKELY
-            and all(shape.fits for shape in shapes),
+            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch,
         )
 
     def _found(self, readings: Readings, told: Noise) -> tuple[JointProblem, OnPad]:

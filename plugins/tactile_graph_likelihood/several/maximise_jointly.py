@@ -1,4 +1,4 @@
-"""Outlines brought to their joint mode, the evidence there, and one fitted to a piece."""
+"""Outlines brought to their joint mode, and the evidence there."""
 
 from __future__ import annotations
 
@@ -22,10 +22,8 @@ from tactile_graph_likelihood.several.joint_posterior import (
     slopes,
     smallest,
 )
-from tactile_graph_likelihood.single.element_terms import STRAYS, States
+from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.information import STEP, Information, steps_of
-from tactile_graph_likelihood.single.problem import Places, problem_of
-from tactile_graph_likelihood.single.search import likeliest_start
 
 HALVINGS = 6
 LOOSE, GAP = 0.01, 6.0
@@ -33,7 +31,6 @@ LOOSE, GAP = 0.01, 6.0
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft search
 NO_STRAYS = 1e-12
-ROUNDS, ENOUGH = 25, 0.2
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -201,69 +198,3 @@ def _log_of_part(fall: float) -> float:
     if fall < -5.0:
         return 0.0
     return 0.5 * fall * fall + math.log(0.5 * math.erfc(fall * math.sqrt(0.5)))
-
-
-@compiled_as_is
-def fit_piece(
-    problem: JointProblem, outline: Outlines, piece: States, table: Values, tries: int,
-    matrix: Values,
-) -> float:  # fmt: skip
-    """Fit one outline to a piece beside others; return the log evidence around it.
-
-    Parameters
-    ----------
-    problem : JointProblem
-        Its states are what the outline has to explain in the end.
-    outline : Outlines
-        One, written; where its size is positive the search begins there, else with the piece.
-    piece : ndarray of uint8, shape (rows, columns)
-        States of the elements, in which only the piece's own are on.
-    table, tries : ndarray, shape (N, 6), and int
-        As in `search.likeliest_start`.
-    matrix : ndarray, shape (6, 6)
-        Written: the information.
-    """
-    kind, corners, points = outline.kinds[0], outline.corners[0], outline.points
-    if points[0, 2] <= 0.0:
-        first = unknowns(kind, corners)
-        start = np.zeros(first + 1)
-        alone = problem_of(
-            kind, corners, problem.grid, problem.logs, piece, problem.noise, problem.prior
-        )
-        likeliest_start(alone, table, tries, start)
-        for k in range(first + 1):
-            points[0, k] = start[k]
-        bare = np.zeros(piece.shape)
-        by_itself = JointProblem(
-            problem.grid, problem.logs, piece, problem.noise, problem.prior, bare, bare
-        )
-        maximise_softly(by_itself, outline, ROUNDS)
-    return settle(problem, outline, 0, ROUNDS, ENOUGH, matrix)
-
-
-@compiled_as_is
-def piece_states(states: States, labels: Places, own: int, around: States) -> None:
-    """Write states in which only one piece's elements are on.
-
-    Parameters
-    ----------
-    states : ndarray of uint8
-        Of the whole image.
-    labels : ndarray of int64, the same shape
-        Which piece each touched element belongs to.
-    own : int
-        The piece.
-    around : ndarray of uint8
-        Written: other pieces' elements are unknown next to the piece's own, off elsewhere.
-    """
-    rows, cols = states.shape
-    for i in range(rows):
-        for j in range(cols):
-            around[i, j] = states[i, j]
-            if states[i, j] != 1 or labels[i, j] == own:
-                continue
-            near = False
-            for y in range(max(i - 1, 0), min(i + 2, rows)):
-                for x in range(max(j - 1, 0), min(j + 2, cols)):
-                    near = near or (states[y, x] == 1 and labels[y, x] == own)
-            around[i, j] = 2 if near else 0

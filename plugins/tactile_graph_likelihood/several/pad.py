@@ -12,16 +12,15 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
-from tactile_graph_likelihood.several.cuts import components
 from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
     JointProblem,
     add_outline,
 )
-from tactile_graph_likelihood.several.parts import LEAST_PIECE
+from tactile_graph_likelihood.several.partings import components
 from tactile_graph_likelihood.several.scene import Configuration, joined
-from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.several.search import LEAST_PIECE, Search
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import LIGHT_EDGE

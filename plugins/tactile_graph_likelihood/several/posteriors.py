@@ -25,7 +25,6 @@ from tactile_graph_likelihood.single.element_terms import (
     UNDER,
     UNKNOWN,
     VOIDS,
-    States,
 )
 from tactile_graph_likelihood.single.goodness_of_fit import (
     DENSITY,
@@ -135,9 +134,8 @@ def posteriors_of(part: Found) -> list[Posterior]:
     """
     scene, every = part.scene, list[Kinds]()
     found, _ = scene.settled(part.outlines)
-    own = scene.owners(found)
     for k in range(found.count):
-        every.append(kinds_of(scene, found, k, scene.labelled((own == k).astype(np.int64))))
+        every.append(kinds_of(scene, found, k))
         found = found.with_one(k, every[-1].best)
     found, matrix = scene.settled(found, None, 4)
     together = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
@@ -183,14 +181,14 @@ class Kinds:
         return shift, spread
 
 
-def kinds_of(scene: Search, found: Configuration, k: int, piece: States) -> Kinds:
-    """Return one outline, of a piece, as each kind beside the others."""
+def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
+    """Return one outline as each kind beside the others."""
     beside, own, fits = scene.beside(found, k), found.only(k), []
     for kind in scene.kinds:
         if kind == (found.kinds[k], found.corners[k]):
             fits.append(scene.settled(own, beside, 4)[0])
         else:
-            fits.append(scene.fitted(kind, piece, beside, own))
+            fits.append(scene.as_kind(kind, own, beside))
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
     logs = np.array([fit.log_evidence for fit in fits]) / (TEMPER * scene.shared)
     chances = np.exp(logs - logs.max())

@@ -10,6 +10,7 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
+    ELLIPSE,
     RECTANGLE,
     REGULAR,
     Values,
@@ -21,9 +22,9 @@ from tactile_graph_likelihood.several.joint_posterior import (
     Outlines,
     add_outline,
 )
-from tactile_graph_likelihood.several.maximise_jointly import fit_piece, settle
+from tactile_graph_likelihood.several.maximise_jointly import settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
-from tactile_graph_likelihood.single.element_terms import ON, States
+from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.problem import Places
 from tactile_graph_likelihood.single.sample import Plan
@@ -34,8 +35,14 @@ BLOCK, POINTS, WORTH = 32, 128, 24.0
 FEWEST_POINTS = 3.0
 """Equal weights that say more than the information at the mode."""
 
-TRIES = 8
-"""Outlines tried around a piece's moments before the search."""
+ROUNDS = 8
+"""Rounds in which an outline of another kind is brought to its mode."""
+
+AROUND = np.array([0.25, 0.25, 0.2, 0.2, 0.15, 0.0])
+"""How far other starts lie off: lengths in cm, an angle in radians."""
+
+TURNS = 4
+"""Angles at which a regular polygon is begun with."""
 
 ROUND = math.sqrt(4.0 / 3.0)
 """Half an ellipse's axis over the half side of the rectangle of the same moments."""
@@ -107,7 +114,6 @@ class Scene:
     ) -> None:
         self.problem, self.kinds, self.more, self.shared = problem, kinds, more, shared
         self.on = problem.states == ON
-        self.table = _table(WIDTH)
 
     def beside(
         self, found: Configuration, *left_out: int, before: JointProblem | None = None
@@ -134,21 +140,31 @@ class Scene:
         log = settle.call(beside or self.problem, outlines, soft, most, 0.1, matrix)
         return Configuration(found.kinds, found.corners, points, log), matrix
 
-    def fitted(
+    def as_kind(
         self,
         kind: tuple[int, int],
-        piece: States,
+        own: Configuration,
         beside: JointProblem,
-        begin: Configuration | None,
+        soft: int = 0,
+        tries: int = 0,
     ) -> Configuration:
-        """Return one kind of outline fitted to a piece beside others, with its own evidence.
+        """Return the outline of a kind near another one, beside others, with its own evidence.
 
-        The search begins with an outline like another one, if there is one.
+        It begins with the likeliest of some ``tries`` around it.
         """
-        points = np.zeros((1, WIDTH)) if begin is None else like(kind[0], begin)
-        outline = Outlines(np.array([kind[0]]), np.array([kind[1]]), points)
-        log = fit_piece.call(beside, outline, piece, self.table, TRIES, np.empty((WIDTH, WIDTH)))
-        return Configuration(*outline, log)
+        n = unknowns.call(*kind) + 1
+        starts = like(kind, own)
+        if tries:
+            around = np.zeros((tries, WIDTH))
+            around[:, :n] = AROUND[:n] * _table(n)[:tries]
+            starts += [start + off for start in starts[:1] for off in around]
+        begun = [
+            Configuration(np.array([kind[0]]), np.array([kind[1]]), start[None], 0.0)
+            for start in starts
+        ]
+        if len(begun) > 1:
+            begun.sort(key=lambda it: -self.settled(it, beside, 0)[0].log_evidence)
+        return self.settled(begun[0], beside, ROUNDS, soft)[0]
 
     def worth(self, found: Configuration) -> float:
         """Return what outlines add to the log probability of a scene."""
@@ -177,23 +193,37 @@ class Scene:
         return Sampled(points[:used], weights[:used], evidence, equal)
 
 
-def like(kind: int, other: Configuration) -> Values:
-    """Return the point of a kind of outline of about another's moments; zeros if none is."""
-    p, points = other.points[0], np.zeros((1, WIDTH))
-    was = int(other.kinds[0])
-    if REGULAR in (kind, was):
-        return points
-    first, second = p[2], p[2] if was == DISC else p[3]
-    angle = 0.0 if was == DISC else p[4]
-    scale = (1.0 if was == RECTANGLE else 1.0 / ROUND) * (1.0 if kind == RECTANGLE else ROUND)
-    points[0, :2] = p[:2]
-    if kind == DISC:
-        points[0, 2] = scale * math.sqrt(0.5 * (first * first + second * second))
-        points[0, 3] = p[5]
+def like(kind: tuple[int, int], other: Configuration) -> list[Values]:
+    """Return points of a kind of outline of about another's moments; of a regular one, turned."""
+    p, was, corners = other.points[0], int(other.kinds[0]), int(other.corners[0])
+    n = unknowns.call(was, corners)
+    if was == REGULAR:
+        first = second = p[2] * math.sqrt(_filled(corners) / math.pi)
     else:
-        points[0, 2:5] = scale * first, scale * second, angle
-        points[0, 5] = p[3] if was == DISC else p[5]
-    return points
+        first, second = p[2], p[2] if was == DISC else p[3]
+    angle = p[4] if was in (ELLIPSE, RECTANGLE) else 0.0
+    scale = ROUND if was == RECTANGLE else 1.0
+    first, second = scale * first, scale * second
+    if kind[0] == DISC:
+        return [_row(p[0], p[1], math.sqrt(0.5 * (first * first + second * second)), p[n])]
+    if kind[0] == REGULAR:
+        corner = math.sqrt(math.pi * first * second / _filled(kind[1]))
+        turn = 2.0 * math.pi / kind[1] / TURNS
+        return [_row(p[0], p[1], corner, angle + k * turn, p[n]) for k in range(TURNS)]
+    scale = 1.0 / ROUND if kind[0] == RECTANGLE else 1.0
+    return [_row(p[0], p[1], scale * first, scale * second, angle, p[n])]
+
+
+def _filled(corners: int) -> float:
+    """Return the area of a regular polygon whose corners are 1 from its centre."""
+    return 0.5 * corners * math.sin(2.0 * math.pi / corners)
+
+
+def _row(*numbers: float) -> Values:
+    """Return a row of a table of points."""
+    row = np.zeros(WIDTH)
+    row[: len(numbers)] = numbers
+    return row
 
 
 @cache

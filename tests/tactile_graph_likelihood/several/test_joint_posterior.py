@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import GRID, NOISE
-from helpers_modes import answered_by, compiled, plainly
+from helpers_modes import compiled, plainly
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
-from tactile_graph_likelihood.several.cuts import ANGLES, components, cuts
 from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     Outlines,
@@ -152,23 +151,6 @@ def test_no_prior_where_an_outline_is_too_small_or_too_light():
     assert rest(REGULAR, 3, good - [0, 0, 0, 0, 3.0, 0]) == -math.inf  # shows not even once
 
 
-@pytest.mark.parametrize("mode", ["plain", pytest.param("compiled", marks=pytest.mark.slow)])
-def test_the_best_cut_parts_two_discs(mode):
-    kinds = np.array([DISC, DISC])
-    points = np.array([[6.0, 6.0, 2.6, 4.5, 0, 0], [9.9, 9.9, 2.6, 4.5, 0, 0]])
-    discs = Outlines(kinds, CORNERS, points)
-    first = beside(0, outlines=discs).load > 5.0
-    load = beside(0, 1, outlines=discs).load
-    states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
-    logs = np.log(np.where(load > 5.0, load, 1.0))
-    sides = np.zeros((2 * ANGLES, 16, 16), np.uint8)
-    with answered_by(mode):
-        found = cuts(problem_of_joint(logs, states), 4, sides).gains
-    best = sides[int(np.argmax(found))]
-    assert ((best > 0) == (states == ON)).all()
-    assert min(((best == k) != first).sum() for k in (1, 2)) <= 2
-
-
 def test_the_surprise_of_one_outline_is_the_single_fits():
     logs, states = image(6)
     problem = problem_of(RECTANGLE, 0, GRID, logs, states, VECTOR, PRIOR)
@@ -176,12 +158,3 @@ def test_the_surprise_of_one_outline_is_the_single_fits():
     seen = problem_of_joint(logs, states, beside(1).load)
     found, _ = goodness_of_load.call(seen, 6)
     assert found == pytest.approx(alone.surprise)
-
-
-def test_components_reach_over_corners_and_as_far_as_asked():
-    on = np.zeros((5, 5), bool)
-    on[0, 0] = on[1, 1] = on[1, 3] = on[4, 4] = True
-    assert components.call(on, 1).max() == 3
-    assert components.call(on, 2).max() == 2
-    assert components.call(on, 3).max() == 1
-    assert ((components.call(on, 1) > 0) == on).all()

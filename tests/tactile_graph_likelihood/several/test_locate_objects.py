@@ -69,9 +69,20 @@ def test_readings_of_any_unit_and_offset_give_the_same_answer():
 def test_other_numbers_of_objects_that_are_as_likely_are_flagged():
     frames = frames_of("voids 0.4", 3, True, Asked(12, 3))
     found = [LocateObjects()(frame.image) for frame in frames]
-    unsure = [f for f in found if f.count_probability <= 0.6]
+    unsure = [f for f in found if f.count_probability <= 0.5]
     assert unsure
     assert not any(f.fits for f in unsure)
+
+
+def test_frames_whose_outlines_are_vague_are_flagged_and_others_are_not():
+    frames = frames_of("gains 0.9", 3, True, Asked(12, 5)) + frames_of(
+        "noise 0", 1, False, Asked(4, 5)
+    )
+    found = [LocateObjects()(frame.image) for frame in frames]
+    vague = [np.mean([its.centre_std_cm for its in f.shapes]) > 0.62 * 1.3 for f in found]
+    assert 0 < sum(vague) < len(found)
+    for its, flagged in zip(found, vague, strict=True):
+        assert its.fits != (flagged or its.count_probability <= 0.5 or its.surprise <= -6.0)
 
 
 def test_nothing_above_the_noise_is_told():

@@ -8,7 +8,6 @@ import pytest
 from tactile_graph.wires import Circle, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.several.pad import Expected, chosen, parts_of, split
-from tactile_graph_likelihood.several.parts import Pieces, combined
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -64,12 +63,6 @@ def test_no_more_than_allowed_are_chosen_and_the_least_likely_go():
     logs, choice = chosen([{1: 10.0}, {1: 5.0}, {1: 7.0}], 2)
     assert max(logs) == 2
     assert choice[2] == (1, 0, 1)
-
-
-def test_divisions_of_two_masks_combine_and_lose_what_they_share():
-    one = {1: Pieces([], 3.0), 2: Pieces([], 4.0)}
-    found = combined(one, {1: Pieces([], 2.0)}, 2, -0.5)
-    assert {n: its.worth for n, its in found.items()} == {2: 4.5}
 
 
 def test_shapes_of_other_kinds_become_what_is_looked_for_and_go_to_the_nearest_part():
