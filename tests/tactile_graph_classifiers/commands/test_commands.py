@@ -130,7 +130,9 @@ UNGUARDED = """
 pipeline: p
 nodes:
   footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
-  features: {step: features, in: {image: frame, mask: footprint}}
+  siemens: {step: decouple, in: frame}
+  grams: {step: force, in: siemens}
+  features: {step: features, in: {image: grams, mask: footprint}}
   identity: {step: mahalanobis, in: features}
 outputs: [features, identity]
 """
