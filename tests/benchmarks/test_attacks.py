@@ -20,6 +20,7 @@ def attacked(script: str, *words: str) -> None:
     assert got.returncode == 0, got.stdout + got.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="it forks")
 def test_no_store_is_silently_wrong_or_short_and_no_kill_loses_one() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")

@@ -93,6 +93,7 @@ def test_stuck_elements_are_unknown_and_show_no_touch(pad, bench):
     assert not AboveNoise(pad=pad)(image).mask.values[bench.stuck].any()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
 @pytest.mark.parametrize("step", [LocateDisc, Locate])
 def test_a_learned_pad_takes_away_what_offsets_and_stuck_elements_spoil(pad, bench, step):
@@ -115,6 +116,7 @@ def placed(folder, bench):
     write_place(folder / "place.npz", place)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
 def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path, bench):
     placed(tmp_path, bench)
@@ -131,6 +133,7 @@ def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path
     assert after.posterior.std(1) == pytest.approx(0.26)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
 def test_where_readings_have_a_law_it_places_better_than_a_correction_does(tmp_path, bench):
     placed(tmp_path, bench)
@@ -152,6 +155,7 @@ def test_learned_gains_leave_less_unevenness(tmp_path, bench):
     assert unevenness_left(evened, 0.3) == pytest.approx(0.09)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
 def test_a_moved_posterior_keeps_its_region_about_its_centre(bench):
     posterior = LocateDisc().posterior(next(bench.frames(1)).image)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from helpers_objects import DISCS, problem_of_discs
+from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.several.partings import (
     ANGLES,
     across,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers_objects import DISCS, problem_of_discs
+from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
 from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
 from tactile_graph_likelihood.several.scene import TURNS, Configuration, like

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from helpers_joint import DISCS, problem_of_discs
 from helpers_likelihood import NOISE
-from helpers_objects import DISCS, problem_of_discs
 from tactile_graph_likelihood.several.sketch import (
     cover,
     frame_of,
