@@ -40,6 +40,7 @@ def run(code: str, space: dict[str, Any]) -> tuple[str, Any]:
     return printed.getvalue(), shown
 
 
+@pytest.mark.slow
 def test_every_cell_runs_prints_what_is_shown_and_shows_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -16,7 +16,7 @@ from tactile_graph_likelihood.single.footprint_of import FootprintDisc, Footprin
 from tactile_graph_likelihood.single.likely import LikelyCircle, LikelyPolygon, likely
 from tactile_graph_likelihood.single.model import Model
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 DISCS = Model(DISC, noise=NOISE, whole=True)
 SLABS = Model(RECTANGLE, noise=NOISE, whole=True)

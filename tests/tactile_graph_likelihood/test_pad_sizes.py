@@ -11,7 +11,7 @@ from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 SIGMA, VOIDS = 0.3, 0.05
 

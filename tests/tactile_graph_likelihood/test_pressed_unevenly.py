@@ -16,7 +16,7 @@ from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 
 DISC_CM = Circle(10.0, 9.5, 6.4)

@@ -21,7 +21,7 @@ from tactile_graph_likelihood.single.readings import readings_of
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.geometry import Geometry
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 DISCS = Model(DISC, noise=NOISE, whole=True)
 

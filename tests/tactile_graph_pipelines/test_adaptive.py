@@ -17,7 +17,7 @@ from tactile_graph.pipeline.graph import NodeKind
 from tactile_graph_fitters.circle.fit_circle_load import EvenCircle
 from tactile_graph_likelihood.single.likely import LikelyCircle
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
 SATURATED = 10e3  # g/cm^2, where an element's law ends at 10 kg

@@ -24,7 +24,10 @@ IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
 KNOWN_IN_GRAMS = {"identify", "identify-any", "identify-locate"}
 """Those that know the thesis' objects, by their grams."""
 
-SLOW = {"locate", "locate-contacts", "locate-objects", "locate-rectangle", "bayes-circle"}
+SLOW = {
+    *("locate", "locate-circle", "locate-contacts", "locate-objects", "locate-rectangle"),
+    "bayes-circle",
+}
 """Those of which much is compiled."""
 
 

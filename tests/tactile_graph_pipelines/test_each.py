@@ -80,7 +80,13 @@ TWO = {
 }
 
 
-@pytest.mark.parametrize(("name", "kind"), LOCALISERS.items())
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        pytest.param(*it, marks=[pytest.mark.slow] if "likelihood" in it[0] else [])
+        for it in LOCALISERS.items()
+    ],
+)
 def test_every_localiser_places_each_of_two_contacts(name: str, kind: str) -> None:
     turn = {} if kind == "disc" else {"angle_deg": 20.0}
     objects = [{**TWO[kind], **turn, "place": place} for place in ([5.5, 5.0], [14.5, 15.0])]

@@ -8,6 +8,7 @@ from tactile_graph.engine.outcome import Skipped
 from tactile_graph_classifiers.measuring.shapes import true_name
 
 
+@pytest.mark.slow
 def test_objects_are_identified_and_located_at_once():
     pipeline = load("identify-likelihood")
     off = []
@@ -19,6 +20,7 @@ def test_objects_are_identified_and_located_at_once():
     assert np.mean(off) < 0.15
 
 
+@pytest.mark.slow
 def test_a_followed_disc_shows_its_radius_ever_better():
     pipeline = load("circle-followed")
     results = list(pipeline.stream(seed=3))

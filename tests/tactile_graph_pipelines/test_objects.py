@@ -26,6 +26,7 @@ def score_of(result: Result) -> ObjectScore:
     return score_objects(result.frame, result["objects"].contacts)
 
 
+@pytest.mark.slow
 def test_six_objects_that_do_not_touch_are_counted_and_placed() -> None:
     pipeline = load("objects").with_source("simulate", scene="six", frames=24)
     scores = [score_of(r) for r in pipeline.stream(seed=1)]
@@ -35,6 +36,7 @@ def test_six_objects_that_do_not_touch_are_counted_and_placed() -> None:
     assert np.mean([s.n_paired for s in scores]) >= 5.8
 
 
+@pytest.mark.slow
 def test_each_object_gets_a_shape_near_its_true_place() -> None:
     pipeline = load("objects").with_source("simulate", scene="six", frames=20)
     errors: list[float] = []
@@ -47,6 +49,7 @@ def test_each_object_gets_a_shape_near_its_true_place() -> None:
     assert np.mean(errors) < 0.4
 
 
+@pytest.mark.slow
 def test_one_to_six_objects_come_in_turn() -> None:
     scores = [score_of(r) for r in load("objects").stream(seed=0)]
     assert [s.n_true for s in scores[:6]] == [1, 2, 3, 4, 5, 6]

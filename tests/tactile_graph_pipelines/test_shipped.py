@@ -17,8 +17,10 @@ NAMES = installed().names("pipelines")
 LONGEST_LINE = 2048
 
 
-SLOW = {"bayes-objects", "circle-by-order", "locate-objects", "objects-likelihood"}
-"""Their kernels alone compile for up to half a minute."""
+SLOW = {name for name in NAMES if "likelihood" in name or "locate" in name} | {
+    *("adaptive", "bayes-objects", "circle-by-order", "circle-followed", "circle-full", "objects")
+}
+"""Their kernels alone compile for a quarter of a minute."""
 
 
 @pytest.mark.parametrize(

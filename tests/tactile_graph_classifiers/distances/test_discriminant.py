@@ -66,6 +66,7 @@ def test_it_tells_apart_by_directions_what_no_feature_alone_tells():
     assert np.mean(right) > 0.93
 
 
+@pytest.mark.slow
 def test_the_confidence_is_the_share_of_known_readings_that_is_accepted():
     for confidence in (0.95, 0.8):
         accepted = []

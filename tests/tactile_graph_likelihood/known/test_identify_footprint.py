@@ -16,7 +16,7 @@ from tactile_graph_likelihood.known.touched_sizes import Touching, sizes_from
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 TRUE = {
     "Disc I": [6.9], "Disc II": [3.8], "Disc III": [5.1], "Disc IV": [7.7],

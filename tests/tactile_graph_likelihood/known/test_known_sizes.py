@@ -12,7 +12,7 @@ from tactile_graph_likelihood.known.known_sizes import KnownSizes, sizes_of
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import readings_of
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 
 def test_share_is_the_integral_of_belief_times_prior_and_the_mean_is_the_one_given():

@@ -10,7 +10,7 @@ from tactile_graph_likelihood.over_time.at_rest import AtRest
 from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
 from tactile_graph_likelihood.single.readings import readings_of
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 PITCH_CM = 1.3
 

@@ -12,7 +12,7 @@ from tactile_graph_likelihood.single.choose_shape import ChooseShape
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 from tactile_graph_likelihood.single.model import Model
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 
 def test_evidence_tells_discs_from_rectangles():

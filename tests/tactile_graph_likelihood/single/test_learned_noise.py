@@ -8,7 +8,7 @@ from tactile_graph import load
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
 from tactile_graph_likelihood.single.learned_noise import learned_noise
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 
 def recorded(scene, sigma, voids, frames=12):

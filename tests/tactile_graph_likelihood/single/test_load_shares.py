@@ -157,6 +157,7 @@ def test_an_even_face_loses_nothing_by_the_question():
     assert asked[1] < 1.1 * plain[1]
 
 
+@pytest.mark.slow
 def test_only_what_leaves_a_pattern_is_looked_at_again():
     model = Model(DISC, noise=NOISE, whole=True)
     again = 0
@@ -170,6 +171,7 @@ def test_only_what_leaves_a_pattern_is_looked_at_again():
     assert 0 < again < 12
 
 
+@pytest.mark.slow
 def test_the_mixture_is_weighed_by_evidence_and_what_was_thought_before():
     model = Model(DISC, noise=NOISE, whole=True)
     _, image = next(frames(1, 5, fall=0.6))
@@ -195,6 +197,7 @@ def test_what_is_known_or_estimated_is_not_asked_again():
     assert asked(foam_cm=0.4) == {"lean", "fall"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", [FootprintRectangle, FitFootprint])
 def test_a_fall_can_be_estimated_with_any_object(step):
     settings = {"shape": "rectangle"} if step is FitFootprint else {}
@@ -207,6 +210,7 @@ def test_a_fall_can_be_estimated_with_any_object(step):
     assert found.length_cm == pytest.approx(15.0, abs=1.0)
 
 
+@pytest.mark.slow
 def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     model = Model(DISC, noise=NOISE, whole=True)
     _, image = next(frames(1, 5, fall=0.6))

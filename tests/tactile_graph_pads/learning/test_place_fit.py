@@ -40,6 +40,7 @@ def learned(n=90, tail=0.6, seed=0, noise=0.2) -> LearnedPlace:
     return learned_place(known_contacts(frames, true, np.arange(n) // 3, 5.0), GOOD)
 
 
+@pytest.mark.slow
 def test_what_a_tail_draws_along_is_taken_off_where_it_was_not_learned() -> None:
     found = learned()
     assert found.helps
@@ -66,6 +67,7 @@ def test_the_errors_held_out_are_those_of_contacts_not_learned() -> None:
     assert found.halves.over_stated == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_an_unlike_contact_is_told_less_surely() -> None:
     found = learned()
     frames, true = contacts(1, 0.3, seed=5)
