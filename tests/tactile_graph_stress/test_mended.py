@@ -11,6 +11,8 @@ from tactile_graph_stress import measure, scenes
 from tactile_graph_stress.references.known import reference_of
 from tactile_graph_stress.trial import Trial
 
+pytestmark = pytest.mark.slow
+
 
 def came(name, given, settings=None, feed=""):
     return Trial(subject_of(name, feed)).run(given, settings)

@@ -21,7 +21,7 @@ from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.trial import Trial
 from tactile_graph_stress.verdict import Outcome
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 BOUNDS = {
     "fit_circle": 100.0,
@@ -44,10 +44,7 @@ BOUNDS = {
 }
 """Errors of equivariance that are allowed, in units of eps times conditioning."""
 
-RESTORERS = [
-    *("gibbs", "gnc", "graph_cuts", "icm", "restore"),
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("mean_field", "posterior", "trw")),
-]
+RESTORERS = ("gibbs", "gnc", "graph_cuts", "icm", "mean_field", "posterior", "restore", "trw")
 MASKS = ("boundary_scan", "mask_points", "orientation", "orientation_robust", "fit_rectangle_load")
 QUICK_MODEL = {"n_levels": 8, "lines": "marginal"}
 JUDGES: dict[str, Judge] = {}

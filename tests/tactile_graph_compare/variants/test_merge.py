@@ -77,6 +77,7 @@ def changed(draw: Callable[..., Any], document: dict[str, Any]) -> dict[str, Any
     return copied
 
 
+@pytest.mark.slow
 @settings(
     max_examples=80,
     deadline=None,

@@ -81,6 +81,7 @@ def by_kernel(shape, fall, lean, which="call"):
     return getattr(shares_of, which)(kind, corners, p, GRID, noise, (0, 0, 16, 16), 16, 16)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
 @pytest.mark.parametrize(
     ("fall", "lean"), [(0.0, (0.9, -0.5)), (0.5, (0.0, 0.0)), (1.0, (0.3, 0.2)), (-0.4, (0.0, 0.0))]

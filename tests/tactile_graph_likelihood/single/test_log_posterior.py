@@ -25,6 +25,7 @@ SHAPES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
 def test_twins_agree(shape):
     problem, p = problem_and_point(shape, 60.0, np.random.default_rng(2))
@@ -68,6 +69,7 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
     assert np.linalg.eigvalsh(matrix).min() > 0.0
 
 
+@pytest.mark.slow
 def test_information_is_the_same_plain_and_compiled():
     problem, p = problem_and_point(SHAPES[2], 60.0, np.random.default_rng(2))
     found = []

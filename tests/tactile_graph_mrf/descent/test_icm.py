@@ -22,6 +22,7 @@ MODELS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_it_ends_where_no_single_cell_or_line_can_lower_the_energy(model):
     problem = prepare(model, picture(6, 5, noise=0.2))

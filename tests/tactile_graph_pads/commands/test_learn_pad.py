@@ -164,6 +164,7 @@ def test_weights_on_the_command_line_make_a_law(tmp_path: Path) -> None:
     assert "No places are known" in said
 
 
+@pytest.mark.slow
 def test_places_can_be_told_by_a_list(tmp_path: Path) -> None:
     pad = MadeUpPad(lean_cells=2.0)
     empty, _ = pad.recorded(tmp_path, n_objects=1)

@@ -97,6 +97,7 @@ def test_pipelines_that_cannot_take_it_are_named_with_the_reason(mat: Path) -> N
     assert "takes volt, got a frame of counts" in run(mat)
 
 
+@pytest.mark.slow
 def test_each_sensor_is_told_for_itself_and_drawn(tmp_path: Path) -> None:
     path = tmp_path / "walk.csv"
     path.write_text(xsensor_text({"LF": film(9, 6, 5), "RF": film(9, 7, 5, seed=1)}))
@@ -106,6 +107,7 @@ def test_each_sensor_is_told_for_itself_and_drawn(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_one_frame_has_contacts_and_no_noise(tmp_path: Path) -> None:
     np.save(tmp_path / "a.npy", film(1, 12, 14)[0])
     (sensor,) = looked(tmp_path / "a.npy")["sensors"]
@@ -125,6 +127,7 @@ def test_a_file_that_is_none_is_an_error_and_costs_the_others_nothing(
     assert "row: unknown" in run(mat, "--with", "row=3", code=2)
 
 
+@pytest.mark.slow
 def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
     for sensor in looked(shared("vendor_exports/xsensor_data.csv"))["sensors"]:
         assert (sensor["dead"], sensor["stuck"]) == ([], [])

@@ -38,6 +38,7 @@ def test_these_are_the_studies_in_the_order_of_the_thesis() -> None:
     assert tuple(i.study or i.id for i in chapter if i.study or not i.number) == STUDIES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_what_the_thesis_concludes_comes_out(name: str) -> None:
     for seed in range(1 if name in SLOW else 3):
