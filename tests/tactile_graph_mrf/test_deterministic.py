@@ -24,6 +24,8 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("maxflow", reason="graph_cuts needs PyMaxflow")
 
 TRUNCATED = Model(smoothness="truncated_quadratic", lines="none")

@@ -64,6 +64,7 @@ def test_an_empty_pad_has_no_objects_and_nothing_is_fitted() -> None:
     assert not result.failures
 
 
+@pytest.mark.slow
 def test_the_tracker_tells_who_stays_who_slides_by_and_who_comes_and_goes() -> None:
     states: dict[int, list[str]] = {}
     results = list(load("tracks").stream(seed=0))

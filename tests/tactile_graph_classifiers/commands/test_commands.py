@@ -91,6 +91,7 @@ def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(reco
     assert lines[4:] == ["unknown: 2, large: 1", "right: 1 of 3"]
 
 
+@pytest.mark.slow
 def test_export_and_import_move_objects_between_databases(recordings):
     learned(recordings)
     assert answer("objects", "--export", "o.yaml")[1] == "o.yaml: 2 objects exported\n"
@@ -190,6 +191,7 @@ def test_a_pipeline_that_does_not_identify_is_refused(recordings):
     assert "pipeline 'features' has no such node; name one with --only" in text
 
 
+@pytest.mark.slow
 def test_learning_says_how_well_the_objects_are_told_apart(recordings):
     assert "named right" not in answer("learn", "small", recordings["small"])[1]
     text = answer("learn", "large", recordings["large"])[1]
@@ -214,6 +216,7 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
     )
 
 
+@pytest.mark.slow
 def test_a_database_of_the_thesis_features_serves_the_default_pipeline(recordings):
     for name in ("small", "large"):
         assert call("learn", name, recordings[name], "--pipeline", "features")[0] == 0

@@ -68,6 +68,7 @@ def test_a_polygon_has_no_more_corners_than_it_may(most):
     assert got.corners in (0, 4) or got.corners == min(most, 7)
 
 
+@pytest.mark.slow
 def test_on_a_pad_of_16_cells_the_confidence_says_how_often_it_is_right():
     """Discs, ellipses and rectangles on an even pad: at least as often as it claims, nearly."""
     boxes = {

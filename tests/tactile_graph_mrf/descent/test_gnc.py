@@ -17,6 +17,8 @@ from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_graduated_cost_of_a_truncated_parabola_is_blake_and_zissermans():
     """Parabola to q, concave of curvature c to r, flat beyond; r² = cap (2 / c + 1 / lambda)."""

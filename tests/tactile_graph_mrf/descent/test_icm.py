@@ -14,6 +14,8 @@ from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.state import observed_state
 from tactile_graph_mrf.energy.total import energy
 
+pytestmark = pytest.mark.slow
+
 MODELS = [
     Model(n_levels=12, lambda_l=10.0),
     Model(n_levels=12, lambda_l=10.0, order=3),

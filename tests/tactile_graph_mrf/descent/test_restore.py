@@ -78,6 +78,7 @@ def best_shift(problem, labels, target):
     return least
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(seed, order):

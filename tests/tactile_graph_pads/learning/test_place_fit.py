@@ -16,6 +16,8 @@ from tactile_graph_pads.learning.place_fit import (
     unlike_halves,
 )
 
+pytestmark = pytest.mark.slow
+
 SHAPE = (16, 22)
 GOOD = np.ones(SHAPE, bool)
 
