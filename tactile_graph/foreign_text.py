@@ -6,7 +6,6 @@ import csv
 import io
 import re
 from collections.abc import Iterable
-from html import escape
 from typing import Any
 
 _HIDDEN = re.compile(
@@ -33,6 +32,8 @@ def _spelled(found: re.Match[str]) -> str:
 
 def html_text(text: str) -> str:
     """Return a text as it may stand in an element of HTML, or in a quoted attribute."""
+    from html import escape  # only now: a command's help must not pay for it
+
     return escape(visible(text))
 
 
