@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import stat
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from types import FrameType
+from typing import Any, BinaryIO
 
 from tactile_graph.errors import UsageError
 
@@ -48,6 +51,39 @@ def write_whole(name: Name, content: str | bytes) -> None:
     """Write a file at once or not at all, a text as UTF-8; see `whole_file`."""
     with whole_file(name) as file:
         file.write(content.encode() if isinstance(content, str) else content)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C, and the signals that end programs, wait for the end of the block.
+
+    For what several steps make and only all of them undo, and for libraries that go on writing in
+    threads of their own after the call that began it was interrupted. Other threads than the main
+    one get no signals; there the block runs as it is.
+    """
+    waiting: list[int] = []
+    before: dict[int, Any] = {}
+    over = False
+
+    def wait(number: int, frame: FrameType | None) -> None:
+        if over:  # what came first is being raised, and this one is not restored yet
+            before[number](number, frame)
+        waiting.append(number)
+
+    try:
+        if threading.current_thread() is threading.main_thread():
+            for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # the last is not on Windows
+                number = getattr(signal, name, None)
+                if number is not None and callable(handler := signal.getsignal(number)):
+                    before[number] = handler
+                    signal.signal(number, wait)
+        yield
+    finally:
+        over = True
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if waiting:
+            before[waiting[0]](waiting[0], None)
 
 
 @contextmanager

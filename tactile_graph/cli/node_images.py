@@ -23,7 +23,7 @@ from tactile_graph.cli.array_files import Cells, Container, Growing, Hdf5, Zarr,
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
-from tactile_graph.files import check_target, said
+from tactile_graph.files import check_target, said, uninterrupted
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.wires import Frame, Image, Mask
@@ -158,7 +158,7 @@ class ImageStore:
     def _whole(self) -> Iterator[None]:
         """Leave nothing behind where anything is raised."""
         try:
-            with said(self.output):
+            with uninterrupted(), said(self.output):
                 yield
         except BaseException:
             self.broken = True

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import TrueObject
 from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.layout import is_store
 from tactile_graph_sources.writers.write_store import StoreWriter
 
@@ -267,6 +269,41 @@ def test_a_store_whose_making_was_cut_short_is_made_anew(tmp_path: Path) -> None
     with StoreWriter(tmp_path / "a.zarr") as store:
         store.write(frames(1)[0])
     assert len(list(read_store(tmp_path / "a.zarr"))) == 1
+    assert not (tmp_path / ".a.zarr.part").exists()
+
+
+def test_ctrl_c_while_a_store_is_made_leaves_a_store(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Zarr writes in a thread of its own, which goes on after its caller was interrupted."""
+    real = StoreWriter._make
+
+    def interrupted(self: StoreWriter, *args: Any) -> Any:
+        signal.raise_signal(signal.SIGINT)
+        return real(self, *args)
+
+    monkeypatch.setattr(StoreWriter, "_make", interrupted)
+    store = StoreWriter(tmp_path / "a.zarr")
+    with pytest.raises(KeyboardInterrupt):
+        store.write(frames(1)[0])
+    store.close()
+    assert is_store(tmp_path / "a.zarr")
+    assert not (tmp_path / ".a.zarr.part").exists()
+    with StoreWriter(tmp_path / "a.zarr", append=True) as store:
+        assert store.n_frames == 0
+
+
+def test_a_store_that_cannot_be_made_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(journal, "head_line", full)
+    store = StoreWriter(tmp_path / "a.zarr")
+    with pytest.raises(UsageError, match=r"a\.zarr: cannot be written: No space"):
+        store.write(frames(1)[0])
+    store.close()
     assert not (tmp_path / ".a.zarr.part").exists()
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.files import said
+from tactile_graph.files import said, uninterrupted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.truth import truth_to_json
@@ -161,10 +161,14 @@ class StoreWriter:
         }
         # Made whole beside its name: a store whose making was cut short would never open.
         part = self.path.with_name(f".{self.path.name}.part")
-        with said(self.path):
+        with uninterrupted(), said(self.path):
             shutil.rmtree(part, ignore_errors=True)
-            self._metadata = self._make(part, attributes)
-            part.rename(self.path)
+            try:
+                self._metadata = self._make(part, attributes)
+                part.rename(self.path)
+            except BaseException:
+                shutil.rmtree(part, ignore_errors=True)
+                raise
         self._grid = grid
 
     def _make(self, part: Path, attributes: dict[str, Any]) -> dict[str, Metadata]:
