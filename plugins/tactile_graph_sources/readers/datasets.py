@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -13,10 +14,14 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.layout import unit_of
-from tactile_graph_sources.readers.tables.names import named
+from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described
 
 MOST_VALUES = 500_000_000
+_NUMBERED = re.compile(r"(.*?)(\d{1,9})")
+_FRAME_WORDS = {w for w, role in ROLES.items() if role == "frame" and len(w) > 2}
+_FRAME_WORDS |= {"arr", "img", "matrix", "map", "t"}
+"""What numbered matrices are called that are frames, not sensors."""
 
 
 class Held(NamedTuple):
@@ -83,7 +88,7 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
         If there is none, or several could be meant, or the one is too large.
     """
     where, asked = str(reading.path), reading.told.sensor
-    stacks = [n for n, s in shapes.items() if len(s) in (2, 3) and min(s) > 1]
+    stacks = [n for n, s in shapes.items() if is_stack(s)]
     listed = one_of(f"{n} {s}" for n, s in shapes.items())
     if asked:
         if asked not in shapes:
@@ -98,6 +103,32 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
     if int(np.prod(shapes[name])) > MOST_VALUES:
         raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")
     return name
+
+
+def is_stack(shape: tuple[int, ...]) -> bool:
+    """Return whether an array of such a shape may be a matrix or matrices, of one channel each."""
+    axes = [n for n in shape[1:] if n != 1] if len(shape) > 3 else shape
+    if len(shape) > 3:
+        return len(axes) == 2
+    return len(shape) in (2, 3) and min(shape) > 1
+
+
+def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
+    """Return the names of matrices that are the frames of one recording, in their order.
+
+    They are alike but for a number, as ``frame_07`` or ``arr_7`` is, and of one shape; none where
+    anything else could be a stack as well.
+    """
+    found = {n: _NUMBERED.fullmatch(n) for n, s in shapes.items() if is_stack(s)}
+    stems = {m[1].lower() if m else None for m in found.values()}
+    one_shape = len({shapes[n] for n in found}) == 1
+    if len(found) < 2 or len(stems) > 1 or None in stems or not one_shape:
+        return []
+    stem = str(next(iter(stems)))
+    word = re.split(r"[\W_]+", stem.strip("/_-. "))[-1]
+    if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
+        return []
+    return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)
 
 
 def time_among(names: Iterable[str]) -> str:

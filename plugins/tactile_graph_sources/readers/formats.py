@@ -23,6 +23,7 @@ from tactile_graph_sources.readers import (
     xsensor,
 )
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.others import remedy_for
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables import flat, long, stacked
 
@@ -75,7 +76,9 @@ def reader_of(head: Head) -> Reader:
     """
     reader = next((r for r in READERS if r.recognises(head)), None)
     if reader is None:
+        remedy = remedy_for(head)
         raise DataError(
-            str(head.path), f"no recording: {head.found()}; formats that are read: {known()}"
+            str(head.path),
+            f"no recording: {head.found()}; {remedy or f'formats that are read: {known()}'}",
         )
     return reader

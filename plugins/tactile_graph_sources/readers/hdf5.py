@@ -10,7 +10,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, time_among
+from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, numbered, time_among
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.matlab import frames_first
 from tactile_graph_sources.readers.reading import Reading
@@ -65,8 +65,10 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             sets: dict[str, Any] = {}
             file.visititems(lambda n, o: sets.update({n: o} if isinstance(o, h5py.Dataset) else {}))
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
-            name = chosen(reading, {n: d.shape for n, d in numbers.items()}, "dataset")
-            values = numbers[name][()]
+            shapes = {n: d.shape for n, d in numbers.items()}
+            frames = [] if reading.told.sensor else numbered(shapes)
+            name = frames[0] if frames else chosen(reading, shapes, "dataset")
+            values = np.stack([numbers[n][()] for n in frames]) if frames else numbers[name][()]
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
             attributes = {**file.attrs, **numbers[name].attrs}
@@ -80,7 +82,8 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
         said, origin_cm = _place(attributes)
         if attributes["kind"] == "mask":
             values = np.where(values > 1, np.nan, values)  # no value in that frame
-    return Held(values, f"dataset {name!r}", said, times, time, origin_cm)
+    what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
+    return Held(values, what, said, times, time, origin_cm)
 
 
 def _place(attributes: Mapping[str, Any]) -> tuple[Described, tuple[float, float]]:

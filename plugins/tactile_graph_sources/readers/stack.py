@@ -13,6 +13,10 @@ from tactile_graph_sources.readers.reading import Reading
 
 SMALLEST_SURE_SQUARE = 36
 LONGEST_UNTOLD = 4
+FEWEST_ALONG, MOST_ALONG = 4, 100
+ALIKE, UNLIKE = 2.5, 4.0
+"""Times the difference of neighbours along one axis that those along another are, at most where
+they are axes of one kind, and at least where not."""
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -39,6 +43,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.dtype.kind not in "buif":
         raise DataError(where, f"{name} holds {array.dtype}, not real numbers")
     rows, columns = reading.told.rows, reading.told.columns
+    if array.ndim > 3:
+        array = without_single_axes(array)
     if rows is not None and columns is not None:
         if array.ndim == 2 and array.shape != (rows, columns) and array.shape[1] == rows * columns:
             array = array.reshape(-1, rows, columns)
@@ -49,7 +55,9 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.ndim not in (2, 3):
         raise DataError(
             where,
-            f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read",
+            f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read: "
+            f"save it as array.reshape(-1, {array.shape[-2] if array.ndim > 3 else 'rows'}, "
+            f"{array.shape[-1] if array.ndim > 3 else 'columns'}), or each sensor alone",
         )
     if rows is None or columns is None:
         _refuse_two_readings(where, array, name)
@@ -58,6 +66,28 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     array = array[None] if array.ndim == 2 else array
     reading.told.agree(where, array.shape[1], array.shape[2])
     return array
+
+
+def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array without the axes of one channel: (N, rows, columns, 1), (N, 1, rows, …)."""
+    extra = [k for k in range(1, array.ndim) if array.shape[k] == 1]
+    return array.squeeze(tuple(extra[: array.ndim - 3])) if array.ndim > 3 and extra else array
+
+
+def _lies_last(array: NDArray[Any]) -> bool:
+    """Return whether the frames may lie along the last axis, by how neighbours differ.
+
+    Those along rows and along columns differ alike, those along time more or less than they.
+    """
+    if min(array.shape) < FEWEST_ALONG:
+        return False
+    values = np.nan_to_num(array[:MOST_ALONG, :MOST_ALONG, :MOST_ALONG].astype(np.float64))
+    values = np.clip(values, -1e30, 1e30)
+    first, middle, last = (float(np.mean(np.abs(np.diff(values, axis=k)))) for k in range(3))
+    if min(first, middle) <= 0.0:
+        return False
+    alike = max(first, middle) < ALIKE * min(first, middle)
+    return alike and (last > UNLIKE * max(first, middle) or last < min(first, middle) / UNLIKE)
 
 
 def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
@@ -84,6 +114,7 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
             f"{columns} colours; give rows and columns, or save one colour",
         )
     last_is_time = (n == rows != columns) or columns > LAST_IS_TIME * max(n, rows)
+    last_is_time = last_is_time or _lies_last(array)
     if last_is_time and min(n, rows) > 1:
         raise DataError(
             where,

@@ -12,6 +12,7 @@ CLEAR = 0.85
 """A lag at which cells differ by less than this share of those beside it is a row's length."""
 EVEN = 3.0
 MOST_CELLS, MOST_FRAMES = 1 << 14, 100
+MOST_LINES, FEWEST_ROWS = 400, 3
 
 
 def rises(column: Numbers) -> bool:
@@ -107,6 +108,31 @@ def row_lengths(cells: Numbers) -> list[tuple[int, int]]:
     # Twice a row's length is a lag of likeness too, but one of less.
     clear.sort(key=lambda c: _difference(cells, c))
     return [(n // c, c) for c in clear]
+
+
+def line_period(cells: Numbers) -> int | None:
+    """Return after how many lines they are alike again, more so than from one line to the next.
+
+    Rows of matrices are; frames are not, as each is most like the next one.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (lines, cells)
+
+    Returns
+    -------
+    int or None
+        None where no number of lines stands out.
+    """
+    n = len(cells)
+    if n < 2 * FEWEST_ROWS:
+        return None
+    cells = np.clip(np.nan_to_num(cells[:MOST_LINES]), -1e9, 1e9)
+    lags = np.arange(1, len(cells) // 2 + 2)
+    apart = np.array([np.mean(np.abs(cells[k:] - cells[:-k])) for k in lags])
+    best = int(np.argmin(apart[FEWEST_ROWS - 1 : -1])) + FEWEST_ROWS - 1
+    others = min(apart[0], apart[best - 1], apart[best + 1])
+    return int(lags[best]) if apart[best] < CLEAR * others else None
 
 
 def _difference(cells: Numbers, lag: int) -> float:

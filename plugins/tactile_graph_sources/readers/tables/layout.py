@@ -37,6 +37,8 @@ class Layout:
         Of a stacked matrix.
     blank_run : int
         Blank lines that end a matrix.
+    breaks : frozenset of str
+        Signatures of other lines that do.
     time_factor : float
         From the column of time to seconds.
     time_format : str
@@ -64,6 +66,7 @@ class Layout:
     places: tuple[int, ...] = ()
     rows: int = 0
     blank_run: int = 1
+    breaks: frozenset[str] = frozenset()
     time_factor: float = 1.0
     time_format: str = ""
     spacing: tuple[float, float] = (1.0, 1.0)

@@ -87,7 +87,8 @@ def sensors_of(names: Sequence[str]) -> Sensors:
 
 def _are_sensors(stems: Mapping[str, tuple[int, ...]]) -> bool:
     """Return whether names that begin so are those of sensors, not of rows or columns."""
-    words = {re.sub(r"[\W\d_]+$", "", stem).lower() for stem in stems}
+    # Z1S and Z2S are rows as much as Z1 and Z2 are, sensor1_t and sensor2_t are none.
+    words = {re.sub(r"[\W_]*\d[\W\d_]*[^\W\d_]*[\W_]*$|[\W_]+$", "", s).lower() for s in stems}
     if len(words) == 1:
         return words <= _WORDS
     letters = sorted(words)
