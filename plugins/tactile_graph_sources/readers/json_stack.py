@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,7 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
 NAME = "JSON of frames"
+_NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
 
@@ -144,7 +146,7 @@ def entries_of(where: str, content: Any) -> Entries:
         if not nested and _is_matrix(content):
             content = [content]
         return Entries(content, None, "", Described(), what)
-    objects = [_flattened(e) if isinstance(e, dict) else {} for e in content]
+    objects = [_with_rows(_flattened(e)) if isinstance(e, dict) else {} for e in content]
     first = objects[0]
     lists = [k for k, v in first.items() if isinstance(v, list)]
     if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
@@ -169,8 +171,25 @@ def _flattened(entry: dict[str, Any]) -> dict[str, Any]:
     return flat
 
 
+def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object in which lists that are numbered and alike are one: ``r0``, ``r1``, …."""
+    found = {
+        k: m for k, v in entry.items() if isinstance(v, list) and (m := _NUMBERED.fullmatch(k))
+    }
+    stems = {m[1].lower() for m in found.values()}
+    shapes = {a.shape if (a := _array(entry[k])) is not None else None for k in found}
+    if len(found) < 2 or len(stems) > 1 or None in shapes or len(shapes) > 1:
+        return entry
+    stem = stems.pop()
+    if stem and ROLES.get(stem.strip("_- ")) not in ("row", "frame"):
+        return entry
+    names = sorted(found, key=lambda k: int(found[k][2]))
+    rest = {k: v for k, v in entry.items() if k not in found}
+    return {**rest, f"{names[0]} to {names[-1]}": [entry[k] for k in names]}
+
+
 def _of_object(where: str, content: dict[str, Any]) -> Entries:
-    content = _flattened(content)
+    content = _with_rows(_flattened(content))
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)

@@ -41,6 +41,7 @@ _SHEETS = {
     "word/document.xml": "a Word document",
 }
 _HEXADECIMAL = re.compile(r"(?:0x[0-9a-f]+[\s,;]*){3,}", re.IGNORECASE)
+_WITH_UNITS = re.compile(r"(?:[-+]?\d+(?:\.\d+)?\s?[a-zA-Z%]+\s*[,;\t]\s*){2,}.*")
 _RAW = (
     "in Python, with the type and the shape of its values: numpy.save('out.npy', "
     "numpy.fromfile('FILE', '<u2').reshape(-1, ROWS, COLUMNS))"
@@ -54,11 +55,20 @@ def remedy_for(head: Head) -> str:
             return f"it is {what}: {remedy or _PICKLE}".replace("FILE", head.path.name)
     if _is_matlab_4(head.raw):
         return "it is a MATLAB file of version 4: save it anew, save('out.mat', '-v7')"
-    if head.raw and not head.lines:
-        return f"it is of numbers without a header? {_RAW}".replace("FILE", head.path.name)
+    if any("\u2212" in line for line in head.first(5)):
+        return "its minus signs are U+2212: write them as '-'"
+    if any(_WITH_UNITS.fullmatch(line.strip()) for line in head.first(5)):
+        return "a unit stands behind each of its numbers: leave them out"
     if any(_HEXADECIMAL.fullmatch(line.strip()) for line in head.first(5)):
         return "its numbers are hexadecimal: write them as decimal ones"
     return ""
+
+
+def remedy_without_header(head: Head) -> str:
+    """Return what to do with bytes that may be bare numbers; empty for a text."""
+    if not head.raw or head.lines:
+        return ""
+    return f"if it is bare numbers, {_RAW}; ".replace("FILE", head.path.name)
 
 
 def document_in(names: list[str]) -> str:

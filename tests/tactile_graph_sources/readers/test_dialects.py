@@ -20,6 +20,7 @@ from helpers_dialects import (
     mutated,
     picture,
 )
+from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
 from tactile_graph import load
 from tactile_graph.cli import cli
@@ -33,7 +34,7 @@ from tactile_graph_sources.readers.told import Told
 FILES = dialects()
 
 
-@pytest.mark.parametrize("dialect", FILES, ids=lambda d: d.name)
+@pytest.mark.parametrize("dialect", [*FILES, *more_dialects()], ids=lambda d: d.name)
 def test_a_file_is_read_right_or_refused_with_what_to_say(dialect: Dialect, tmp_path: Path) -> None:
     found = became(dialect, tmp_path)
     assert found.fits(dialect), found

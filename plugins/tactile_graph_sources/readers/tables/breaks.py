@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _ONE_NUMBER = re.compile(r"\W*([-+]?\d+(?:\.\d+)?)\s*([^\W\d_]*)\W*")
 _TIME_WORDS = "|".join(sorted((w for w, r in ROLES.items() if r == "time"), key=len, reverse=True))
 _TIMED = re.compile(
-    rf"(?<![^\W_])({_TIME_WORDS})[\s_]*[\[(]?([^\W\d_]*)[\])]?\s*[:=,;]+\s*"
+    rf"(?<![^\W_])({_TIME_WORDS})(?:[\s_]+([^\W\d_]+)|\s*[\[(]([^\W\d_]+)[\])])?\s*[:=,;]+\s*"
     r"\"?([-+\dT:./ ]*\d)\s*([^\W\d_]*)",
     re.IGNORECASE,
 )
@@ -92,13 +92,13 @@ def stamp_of(line: str) -> Stamp:
     timed = _TIMED.search(line)
     if timed is None:
         return Stamp(frame)
-    text = timed[3].strip()
+    text = timed[4].strip()
     clock = clock_s(text)
     if clock is not None:
         return Stamp(frame, clock, 1.0, is_clock=True)
     if not re.fullmatch(r"[-+]?\d+(?:\.\d+)?", text):
         return Stamp(frame)
-    units = (timed[2], timed[4], timed[1])
+    units = (timed[2] or timed[3] or "", timed[5], timed[1])
     unit_s = next((SECONDS[u.lower()] for u in units if u.lower() in SECONDS), None)
     return Stamp(frame, float(text), unit_s)
 

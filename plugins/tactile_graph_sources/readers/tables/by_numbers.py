@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph_sources.readers.tables.breaks import times_without_unit
 from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
+    is_one_row,
     line_period,
     row_length_clarity,
     row_lengths,
@@ -46,6 +47,9 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
     lead = bool(base.roles) and not (table.named.names and not index and len(base.roles) == 1)
     kind, rows, why = _decide(table, base, told, lead)
     if kind == "stacked":
+        if len(groups) < 2 and told.rows is None and told.columns is None:
+            note = f"{rows} lines of {width} values assumed to be the rows of one matrix"
+            base = replace(base, assumed=(*base.assumed, note))
         return replace(
             base,
             kind=kind,
@@ -53,6 +57,7 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
             blank_run=run if len(groups) > 1 else ENDLESS,
             roles={},
             breaks=table.breaks,
+            header_line=table.header_line,
             why=why,
             **_time_unit(base, table),
         )
@@ -146,7 +151,9 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
     square = _is_square(width)
     lengths = row_lengths(cells) if n > 1 else []
     framed = bool(lengths) and width >= LEAST_FRAMED
-    period = line_period(cells)
+    # Where cells of a line lie together as those of a frame do, it is one.
+    clear = square and row_length_clarity(cells, isqrt(width)) < CLEAR
+    period = None if clear else line_period(cells)
     long = max(n, width) > LONGEST_UNTOLD * min(n, width)
     matrix_like = n > 1 and not long and n <= MOST_LINES_UNTOLD and table.whole
     question = (
@@ -161,6 +168,16 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
             (
                 f"{n} lines of {width} values, of which each {period}th is alike: frames, or "
                 f"matrices of {period} rows and {width} columns; give rows and columns"
+            ),
+        )
+    if square and n > 1 and n != width and not lengths and is_one_row(cells, isqrt(width)):
+        side = isqrt(width)
+        return (
+            "unclear",
+            0,
+            (
+                f"{n} lines of {width} values: {side} x {side} cells each by their number, a row "
+                f"of {width} cells by which lie together; give rows and columns"
             ),
         )
     if n == width:

@@ -30,6 +30,7 @@ _GROUPED = {
 }
 """Numbers whose thousands are set apart, by what sets them apart."""
 _SURELY_GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
+_SURELY_DECIMAL = re.compile(r"[-+]?(?:0\d*|\d+),(?:\d{1,2}|\d{4,})")
 FEWEST_GROUPED = 5
 
 
@@ -111,7 +112,10 @@ class Dialect(NamedTuple):
         spaced = all(len(w) > 1 and all(map(_DECIMAL_COMMA.fullmatch, w)) for w in words)
         if spaced:
             return cls(None, True)
-        return cls(",", thousands="," if _are_grouped(lines) else "")
+        quoted = _quoted(lines)
+        grouped = len(quoted) >= FEWEST_GROUPED and all(map(_GROUPED[","].fullmatch, quoted))
+        decimal = not grouped and any(_SURELY_DECIMAL.fullmatch(f) for f in quoted)
+        return cls(",", decimal, thousands="," if grouped else "")
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
@@ -123,13 +127,15 @@ class Dialect(NamedTuple):
         if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
             # Of thousands, or decimal? Kept together it is told as no number, never as two.
             fields = next(csv.reader([line]))
+            if self.decimal_comma:
+                return [f.replace(",", ".") for f in fields]
             return [_ungrouped(f, ",") for f in fields] if self.thousands == "," else fields
         if '"' in line:
             line = line.replace('"', "")
         if self.thousands == ".":
             fields = [_ungrouped(f, ".") for f in line.split(self.separator)]
             return [f.replace(",", ".") for f in fields]
-        if self.decimal_comma:
+        if self.decimal_comma and self.separator != ",":
             line = line.replace(",", ".")
         return line.split(self.separator)
 
@@ -162,11 +168,10 @@ class Dialect(NamedTuple):
         return fields
 
 
-def _are_grouped(lines: Sequence[str]) -> bool:
-    """Return whether the commas within quotes all part thousands: decimals vary in number."""
+def _quoted(lines: Sequence[str]) -> list[str]:
+    """Return the fields with a comma in them, which stand within quotes."""
     quoted = [line for line in lines if _QUOTED_COMMA.search(line) is not None]
-    fields = [f.strip() for line in quoted for f in next(csv.reader([line])) if "," in f]
-    return len(fields) >= FEWEST_GROUPED and all(map(_GROUPED[","].fullmatch, fields))
+    return [f.strip() for line in quoted for f in next(csv.reader([line])) if "," in f]
 
 
 def _ungrouped(field: str, mark: str) -> str:

@@ -13,6 +13,9 @@ CLEAR = 0.85
 EVEN = 3.0
 MOST_CELLS, MOST_FRAMES = 1 << 14, 100
 MOST_LINES, FEWEST_ROWS = 400, 3
+FAR_APART = 0.7
+NEARLY, HALF_WAY = 1.1, 0.6
+"""How unlike lines may be that are alike again: times the next line, and the most unlike before."""
 
 
 def rises(column: Numbers) -> bool:
@@ -110,10 +113,22 @@ def row_lengths(cells: Numbers) -> list[tuple[int, int]]:
     return [(n // c, c) for c in clear]
 
 
-def line_period(cells: Numbers) -> int | None:
-    """Return after how many lines they are alike again, more so than from one line to the next.
+def is_one_row(cells: Numbers, columns: int) -> bool:
+    """Return whether cells of a line lie together as one row does, not as rows of ``columns``.
 
-    Rows of matrices are; frames are not, as each is most like the next one.
+    Then those ``columns`` apart differ much more than neighbours, and no less than those one more
+    or one less apart.
+    """
+    cells = _sound(cells)
+    clarity = _clarity(cells, columns)
+    return clarity > CLEAR and _difference(cells, 1) < FAR_APART * _difference(cells, columns)
+
+
+def line_period(cells: Numbers) -> int | None:
+    """Return after how many lines they are as alike again as one line is to the next.
+
+    Rows of matrices are, after lines that are unlike; frames are not, as each is most like the
+    next one.
 
     Parameters
     ----------
@@ -130,9 +145,15 @@ def line_period(cells: Numbers) -> int | None:
     cells = np.clip(np.nan_to_num(cells[:MOST_LINES]), -1e9, 1e9)
     lags = np.arange(1, len(cells) // 2 + 2)
     apart = np.array([np.mean(np.abs(cells[k:] - cells[:-k])) for k in lags])
-    best = int(np.argmin(apart[FEWEST_ROWS - 1 : -1])) + FEWEST_ROWS - 1
-    others = min(apart[0], apart[best - 1], apart[best + 1])
-    return int(lags[best]) if apart[best] < CLEAR * others else None
+    unlike = np.maximum.accumulate(apart)
+    again = (apart <= NEARLY * apart[0]) & (apart < HALF_WAY * unlike)
+    found = np.flatnonzero(again[FEWEST_ROWS - 1 : -1])
+    if not len(found):
+        return None
+    first = int(found[0]) + FEWEST_ROWS - 1
+    # The first dip's bottom: what lies twice as far is one of the next matrix.
+    bottom = first + int(np.argmin(apart[first : first + first // 2 + 1]))
+    return int(lags[bottom])
 
 
 def _difference(cells: Numbers, lag: int) -> float:

@@ -39,6 +39,8 @@ class Layout:
         Blank lines that end a matrix.
     breaks : frozenset of str
         Signatures of other lines that do.
+    header_line : str
+        The line that numbers the columns of a matrix; empty without one.
     time_factor : float
         From the column of time to seconds.
     time_format : str
@@ -67,6 +69,7 @@ class Layout:
     rows: int = 0
     blank_run: int = 1
     breaks: frozenset[str] = frozenset()
+    header_line: str = ""
     time_factor: float = 1.0
     time_format: str = ""
     spacing: tuple[float, float] = (1.0, 1.0)

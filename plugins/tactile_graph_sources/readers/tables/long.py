@@ -267,7 +267,7 @@ def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
         or any(line.count(separator) != layout.width - 1 for line in lines)
     ):
         return None
-    if layout.dialect.decimal_comma:
+    if layout.dialect.decimal_comma and separator != ",":
         text = text.replace(",", ".")
     try:
         numbers = np.array(list(map(float, text.split(separator))))

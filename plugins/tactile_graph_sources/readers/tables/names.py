@@ -28,12 +28,13 @@ _ROLES = {
     "packet bild bildnr image trame cuadro fotograma muestra quadro #",
     "time": "time t ts timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
     "datetime date_time clock zeit zeitstempel uhrzeit temps heure horodatage tiempo hora tempo "
-    "ora timestamps zeitpunkt instant momento",
-    "row": "row r y i rows row_index zeile reihe ligne rang fila riga line",
-    "column": "column col c x j columns col_index column_index spalte colonne columna colonna",
+    "ora timestamps zeitpunkt instant momento tijd tid czas",
+    "row": "row r y i rows row_index zeile reihe ligne rang fila riga line linha rij rad wiersz",
+    "column": "column col c x j columns col_index column_index spalte colonne columna colonna "
+    "coluna kolom kolumn kolumna",
     "value": "value v val values pressure reading force counts count raw adc z wert messwert druck "
     "kraft valeur pression valor presión presion fuerza valore pressione voltage volts signal "
-    "p intensity amplitude resistance spannung tension",
+    "p intensity amplitude resistance spannung tension pressão waarde druk värde wartość",
 }
 ROLES = {word: role for role, words in _ROLES.items() for word in words.split()}
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\]\d][^\]]*)\]|\(([^)\d][^)]*)\)|[_/ ]([^\W\d_]+\d?))$")

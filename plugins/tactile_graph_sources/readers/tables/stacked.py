@@ -105,7 +105,7 @@ class _Times:
 
 def _is_between(layout: Layout, line: str) -> bool:
     """Return whether a line stands between matrices and says something of the next one."""
-    if FRAME_LINE.fullmatch(line):
+    if FRAME_LINE.fullmatch(line) or (layout.header_line and line == layout.header_line):
         return True
     return bool(layout.breaks) and signature(line) in layout.breaks
 

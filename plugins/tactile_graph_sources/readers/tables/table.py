@@ -70,6 +70,8 @@ class Table:
         The same fields as written.
     whole : bool
         Whether the file has no more lines.
+    header_line : str
+        The line that numbers the columns, which may stand above each matrix; empty without one.
     """
 
     dialect: Dialect
@@ -81,6 +83,7 @@ class Table:
     rows: Numbers
     texts: tuple[tuple[str, ...], ...] = field(repr=False)
     whole: bool
+    header_line: str = ""
 
     @cached_property
     def n_rows(self) -> int:
@@ -89,7 +92,10 @@ class Table:
 
     @cached_property
     def _are_rows(self) -> tuple[bool, ...]:
-        return tuple(is_row(line) and not self._is_lone(line) for line in self.lines)
+        return tuple(
+            is_row(line) and not self._is_lone(line) and line != self.header_line
+            for line in self.lines
+        )
 
     def _is_lone(self, line: str) -> bool:
         """Return whether a line is a single number where rows hold several."""
@@ -156,6 +162,7 @@ class Table:
                 if (
                     blanks >= run
                     or FRAME_LINE.fullmatch(line)
+                    or line == self.header_line
                     or (opens_matrix(line) if one else signature(line) in self.breaks)
                 ):
                     groups.append(size)
@@ -205,11 +212,13 @@ def table_of(
     content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
     if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
         return None  # a text that holds a few numbers
+    header_line = ""
     header, unit = _header(dialect, lines[:start], width)
     if len(names) == width:
         header = tuple(names)
     if not header and len(full) > 1 and _is_numbered(full[0][1]):
-        header, full = tuple(full[0][1]), full[1:]
+        header, header_line = tuple(full[0][1]), lines[start]
+        full = [(k, f) for k, f in full if lines[k] != header_line]
         start = full[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     numbers = as_numbers([[_number(t) for t in f] for f in sample])
@@ -220,7 +229,18 @@ def table_of(
         said = replace(said, quantity=quantity, factor=factor)
     columns = as_told(named(header) if header else Named(), width, told)
     rest = tuple(lines[start:])
-    return Table(dialect, width, start + 1, rest, columns, said, numbers, tuple(sample), whole)
+    return Table(
+        dialect,
+        width,
+        start + 1,
+        rest,
+        columns,
+        said,
+        numbers,
+        tuple(sample),
+        whole,
+        header_line,
+    )
 
 
 def _number(text: str) -> float:
