@@ -12,8 +12,9 @@ import click
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from tactile_graph.errors import TactileGraphError
     from tactile_graph.wires.frame import Frame
     from tactile_graph_sources.inspection.look import Looked
 
@@ -38,7 +39,9 @@ class _Works(NamedTuple):
     help="A setting of the source 'recording', such as rows=12; can be repeated.",
 )
 @click.option("--picture", type=click.Path(path_type=Path), help="Draw it (.png, .svg, .pdf).")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a file, for programs.")
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print a JSON object a file and sensor, for programs."
+)
 def inspect(
     files: tuple[Path, ...], settings: tuple[str, ...], picture: Path | None, as_json: bool
 ) -> None:
@@ -46,38 +49,62 @@ def inspect(
 
     The format and how it was recognised, frames, grid, pitch, quantity, rate, range, noise,
     offset, broken cells, contacts; what of it is assumed; a picture; commands ready to paste.
+    Where a file holds several sensors, all this of each.
     """
     from tactile_graph.errors import TactileGraphError
     from tactile_graph_sources.commands.any_source import reader_settings
-    from tactile_graph_sources.inspection.look import look_into
+    from tactile_graph_sources.inspection.look import look_into_all
     from tactile_graph_sources.inspection.picture import save_picture
-    from tactile_graph_sources.inspection.words import data_of
 
     if picture is not None and len(files) > 1:
         raise click.UsageError("--picture draws one recording; give one FILE")
     told = reader_settings(settings)
-    failed: TactileGraphError | None = None
-    for k, path in enumerate(files):
+    n_failed = 0
+    for path in files:
         try:
-            looked = look_into(path, told)
+            found = look_into_all(path, told)
         except TactileGraphError as error:
             if len(files) == 1:
                 raise
-            failed = error
-            say(json.dumps({"file": str(path), "error": str(error)}) if as_json else error)
+            found = {"": error}
+        n_failed += _show(path, found, settings, as_json)
+        if picture is not None:
+            read = [one for one in found.values() if not isinstance(one, TactileGraphError)]
+            if read:
+                save_picture(read, picture)
+                say(f"picture: {picture}", err=as_json)
+    if n_failed:
+        click.get_current_context().exit(1)
+
+
+def _show(
+    path: Path,
+    found: Mapping[str, Looked | TactileGraphError],
+    settings: Sequence[str],
+    as_json: bool,
+) -> int:
+    """Print what was found of each sensor of a file; return how many could not be read."""
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph_sources.inspection.words import data_of
+
+    names = [name for name in found if name]
+    if names and not as_json:
+        say(f"{path}: {len(names)} sensors, each read alone: {', '.join(names)}")
+    for k, (name, looked) in enumerate(found.items()):
+        chosen = [*settings, f"sensor={name}"] if name else settings
+        if not as_json and (k or names):
+            say()
+        if isinstance(looked, TactileGraphError):
+            told = {"file": str(path), "sensor": name, "error": str(looked)}
+            say(json.dumps(told) if as_json else f"{name}: {looked}" if name else looked)
             continue
         works = _works(looked.sensors[0].frames[0])
         if as_json:
-            say(json.dumps({**data_of(looked), "commands": _commands(looked, works, settings)}))
+            commands = _commands(looked, works, chosen)
+            say(json.dumps({**data_of(looked), "sensor": name, "commands": commands}))
         else:
-            if k:
-                say()
-            _tell(looked, works, settings)
-        if picture is not None:
-            save_picture(looked, picture)
-            say(f"picture: {picture}", err=as_json)
-    if failed is not None:
-        click.get_current_context().exit(1)
+            _tell(looked, works, chosen)
+    return sum(isinstance(looked, TactileGraphError) for looked in found.values())
 
 
 def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
@@ -85,8 +112,9 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
 
     for line in lines_of(looked):
         say(line)
-    for line in shades_of(looked.sensors[0]):
-        say(line)
+    for sensor in looked.sensors:
+        for line in shades_of(sensor):
+            say(line)
     say("  takes it:")
     for command in _commands(looked, works, settings)[: MOST_SHOWN + 1]:
         say(f"    {command}")
@@ -94,6 +122,9 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
         say(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
     for reason, names in works.reasons.items():
         say(f"  not {names}: {reason}")
+    labels = [sensor.label for sensor in looked.sensors if sensor.label]
+    if len(labels) > 1:
+        say(f"  one sensor alone: add --with sensor={shlex.quote(labels[0])}")
     if looked.pitch_assumed:
         say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
 
@@ -103,7 +134,8 @@ def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[st
     told = "".join(f" --with {shlex.quote(s)}" for s in settings)
     path = shlex.quote(str(looked.path))
     runs = [f"tactile-graph run {name} {path}{told}" for name in works.names[:MOST_SHOWN]]
-    target = shlex.quote(looked.path.stem + ".zarr")
+    chosen = looked.chosen.replace("/", "-")
+    target = shlex.quote("-".join(filter(None, (looked.path.stem, chosen))) + ".zarr")
     return [*runs, f"tactile-graph convert {path} {target}{told}"]
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.layout import unit_of
@@ -38,7 +39,6 @@ class Held(NamedTuple):
     times : ndarray, shape (n,), optional
         None where there are none.
     times_name : str
-    origin_cm : (float, float), optional
     """
 
     values: NDArray[Any]
@@ -46,7 +46,6 @@ class Held(NamedTuple):
     said: Described
     times: NDArray[Any] | None = None
     times_name: str = ""
-    origin_cm: tuple[float, float] | None = None
 
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
@@ -64,7 +63,6 @@ def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
         yield reading.frame(
             matrix,
             pitch_cm=said.pitch_cm,
-            origin_cm=held.origin_cm,
             quantity=said.quantity,
             factor=said.factor,
             time_s=float(times[k]) * factor if times is not None and timed else None,
@@ -98,7 +96,8 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
     elif not stacks:
         raise DataError(where, f"no matrix or stack of matrices in it; its {word}s: {listed}")
     elif len(stacks) > 1:
-        raise DataError(where, f"several {word}s could be it ({listed}); name one with sensor")
+        told = f"several {word}s could be it ({listed}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
     name = asked or stacks[0]
     if int(np.prod(shapes[name])) > MOST_VALUES:
         raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")

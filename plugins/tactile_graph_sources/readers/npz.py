@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import QUANTITIES, Frame
 from tactile_graph_sources.readers import capcontact
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.datasets import (
     Held,
     frames_of,
@@ -160,7 +161,8 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
         return arrays.load(stacks[0]), f"array {stacks[0]!r}"
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
-        raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
+        told = f"several arrays could be it ({shapes}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")

@@ -24,7 +24,7 @@ from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.names import ColumnsTold, named
-from tactile_graph_sources.readers.tables.sensors import of_one_sensor
+from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.readers.units import length_unit
@@ -57,6 +57,8 @@ def layout_of(
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
     try:
         table, sensor = of_one_sensor(table, told)
+    except NoneNamedError as error:
+        return replace(base, trouble=str(error), sensors=error.names)
     except ValueError as error:
         return replace(base, trouble=str(error))
     base = replace(base, sensor=sensor)

@@ -56,6 +56,8 @@ class Layout:
     why, assumed : str, tuple of str
         How it was recognised, and what nobody said.
     trouble : str
+    sensors : tuple of str
+        Those of which one is to be named, where that is the trouble.
     """
 
     kind: str
@@ -79,6 +81,7 @@ class Layout:
     why: str = ""
     assumed: tuple[str, ...] = ()
     trouble: str = ""
+    sensors: tuple[str, ...] = ()
 
 
 def of_sensor(layout: Layout, line: str) -> bool:
