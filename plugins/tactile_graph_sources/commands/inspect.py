@@ -14,7 +14,9 @@ from tactile_graph.cli.say import say
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.errors import TactileGraphError
+    from tactile_graph.pipeline.graph import Node
     from tactile_graph.wires.frame import Frame
     from tactile_graph_sources.inspection.look import Looked
 
@@ -22,11 +24,24 @@ MOST_SHOWN = 6
 
 
 class _Works(NamedTuple):
-    """Which pipelines take a frame, and the first reason of those that do not."""
+    """Which pipelines take a frame, and the first reason of those that do not.
+
+    ``levels`` are the nodes of each that can find a level above the noise of a whole recording.
+    """
 
     names: tuple[str, ...]
     about: dict[str, str]
     reasons: dict[str, str]
+    levels: dict[str, str]
+
+
+class _Tried(NamedTuple):
+    """A pipeline, why it does not take a frame, and its node that finds a level, if any."""
+
+    name: str
+    about: str
+    trouble: str
+    level: str
 
 
 @click.command()
@@ -100,7 +115,8 @@ def _show(
             continue
         works = _works(looked.sensors[0].frames[0])
         if as_json:
-            commands = _commands(looked, works, chosen)
+            commands = [*_commands(looked, works, chosen), _levelled(looked, works, chosen)]
+            commands = [command for command in commands if command]
             say(json.dumps({**data_of(looked), "sensor": name, "commands": commands}))
         else:
             _tell(looked, works, chosen)
@@ -116,10 +132,14 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
         for line in shades_of(sensor):
             say(line)
     say("  takes it:")
-    for command in _commands(looked, works, settings)[: MOST_SHOWN + 1]:
+    for command in _commands(looked, works, settings):
         say(f"    {command}")
     if len(works.names) > MOST_SHOWN:
         say(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
+    levelled = _levelled(looked, works, settings)
+    if levelled:
+        say("  with one level for all frames, above the noise of the whole recording:")
+        say(f"    {levelled}")
     for reason, names in works.reasons.items():
         say(f"  not {names}: {reason}")
     labels = [sensor.label for sensor in looked.sensors if sensor.label]
@@ -139,23 +159,39 @@ def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[st
     return [*runs, f"tactile-graph convert {path} {target}{told}"]
 
 
+def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
+    """Return the command by which the plainest pipeline takes one level for all frames.
+
+    Empty where none does, or there is only one frame.
+    """
+    name = next((n for n in works.names if works.levels[n]), "")
+    if not name or looked.n_frames < 2:
+        return ""
+    path = str(looked.path)
+    source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
+    value = f"{{{source}}}" if settings else path
+    told = "".join(f" --with {shlex.quote(s)}" for s in settings)
+    setting = shlex.quote(f"{works.levels[name]}.noise_of={value}")
+    return f"tactile-graph run {name} {shlex.quote(path)}{told} --set {setting}"
+
+
 def _works(frame: Frame) -> _Works:
     """Return which of the installed pipelines take a frame such as this."""
-    names, about = [], {}
+    names, about, levels = [], {}, {}
     reasons: dict[str, list[str]] = {}
-    for name, text, trouble in _tried(frame):
-        about[name] = text
+    for name, text, trouble, level in _tried(frame):
+        about[name], levels[name] = text, level
         if trouble:
             reasons.setdefault(trouble, []).append(name)
         else:
             names.append(name)
     # The plainest first: what says of itself that it is for any recording.
     names.sort(key=lambda n: ("any" not in about[n], n))
-    return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()})
+    return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()}, levels)
 
 
-def _tried(frame: Frame) -> Iterator[tuple[str, str, str]]:
-    """Yield each pipeline's name, what it is about, and why it does not take the frame."""
+def _tried(frame: Frame) -> Iterator[_Tried]:
+    """Yield each pipeline, and why it does not take the frame."""
     from tactile_graph.api.pipeline import load
     from tactile_graph.engine.plan import make_plan
     from tactile_graph.engine.runner import check_frame
@@ -166,15 +202,27 @@ def _tried(frame: Frame) -> Iterator[tuple[str, str, str]]:
     for name in found.names("pipelines"):
         try:
             pipeline = load(name, found).with_source("recording", path="recording")
-            about = pipeline.about
+            about, level = pipeline.about, _level_node(pipeline)
         except TactileGraphError:
             continue  # what cannot be loaded says so wherever it is asked for
         try:
             check_frame(frame.image, make_plan(pipeline, tuple(pipeline.outputs)))
         except TactileGraphError as error:
-            yield name, about, _reason(str(error))
+            yield _Tried(name, about, _reason(str(error)), level)
         else:
-            yield name, about, ""
+            yield _Tried(name, about, "", level)
+
+
+def _level_node(pipeline: Pipeline) -> str:
+    """Return the node that finds a level above noise, and may do so for all frames; or empty."""
+    nodes = pipeline.nodes.items()
+    found = (n for n, node in nodes if node.settings.get("level") == "auto" and _takes_noise(node))
+    return next(found, "")
+
+
+def _takes_noise(node: Node) -> bool:
+    signature = node.signature
+    return signature is not None and any(s.name == "noise_of" for s in signature.settings)
 
 
 def _reason(text: str) -> str:
