@@ -12,6 +12,9 @@ from tactile_graph.pipeline.graph import Node
 from tactile_graph.pipeline.wiring import Ref
 
 
+VALUE = "value"
+
+
 class Settled(Protocol):
     """A plan and the outcomes that a frame came to."""
 
@@ -27,8 +30,8 @@ class Settled(Protocol):
 def notices(settled: Settled) -> dict[str, str]:
     """Return for each node that ran, and whose step may have something to say, what it says.
 
-    A step says so by an attribute ``notice``, a function of some of its ports: their names are
-    its parameters. It returns a text, empty where there is nothing to say. Nodes run for each item
+    A step says so by an attribute ``notice``, a function of some of its ports, and of ``value``,
+    what it gave: their names are its parameters. It returns a text, empty where there is nothing to say. Nodes run for each item
     of a list say nothing.
     """
     found = {}
@@ -36,9 +39,11 @@ def notices(settled: Settled) -> dict[str, str]:
         say = _notice_of(item.node)
         if item.node is None or say is None or settled.outcome(item.name).__class__ in NO_VALUE:
             continue
-        ports = _ports(item.node, settled, tuple(signature(say).parameters))
+        names = tuple(signature(say).parameters)
+        given = {VALUE: settled.outcome(item.name)} if VALUE in names else {}
+        ports = _ports(item.node, settled, tuple(n for n in names if n != VALUE))
         if ports is not None:
-            found[item.name] = say(**ports)
+            found[item.name] = say(**ports, **given)
     return found
 
 
