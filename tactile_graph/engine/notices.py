@@ -11,7 +11,6 @@ from tactile_graph.engine.plan import Plan
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.pipeline.wiring import Ref
 
-
 VALUE = "value"
 
 
@@ -31,8 +30,8 @@ def notices(settled: Settled) -> dict[str, str]:
     """Return for each node that ran, and whose step may have something to say, what it says.
 
     A step says so by an attribute ``notice``, a function of some of its ports, and of ``value``,
-    what it gave: their names are its parameters. It returns a text, empty where there is nothing to say. Nodes run for each item
-    of a list say nothing.
+    what it gave: their names are its parameters. It returns a text, empty where there is nothing
+    to say. Nodes run for each item of a list say nothing.
     """
     found = {}
     for item in settled.plan.nodes:
