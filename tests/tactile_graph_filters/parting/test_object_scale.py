@@ -72,6 +72,7 @@ def test_what_falls_apart_in_detail_is_whole_on_coarser_cells():
     assert min(counts(FINE, images[:1])) > 4
 
 
+@pytest.mark.slow  # parting is compiled
 def test_two_large_discs_that_touch_are_two_contacts_of_the_right_cells():
     both = discs(64, 64, (20, 20, 11), (36, 40, 14))
     for seed in range(8):
