@@ -62,6 +62,7 @@ def test_knowing_the_class_restores_better():
     assert error[5.0] < 0.5 * error[0.0]
 
 
+@pytest.mark.slow  # all kinds of moves are compiled
 def test_it_is_wired_into_a_restorer():
     text = """
 pipeline: p
