@@ -40,7 +40,9 @@ def read(reading: Reading) -> Iterator[Frame]:
     h5py = _h5py(reading)
     if _is_of_nodes(reading, h5py):
         with h5py.File(reading.path, "r") as file:
-            nodes = [name for name, held in file.items() if isinstance(held, h5py.Group)]
+            names: list[str] = []
+            file.visit(names.append)
+            nodes = [n for n in names if f"{n}/values" in names]
             yield from node_images.read_node(reading, file, nodes)
         return
     held = _held(reading, h5py)

@@ -48,7 +48,7 @@ def read_store(reading: Reading) -> Iterator[Frame]:
         ) from None
     try:
         group: Any = zarr.open_group(str(reading.path), mode="r")
-        names = [name for name, _ in group.groups()]
+        names = [n for n, _ in group.members(max_depth=None) if f"{n}/values" in group]
     except Exception as error:  # a damaged store makes Zarr raise a dozen kinds
         raise DataError(str(reading.path), f"is no Zarr store that opens: {error}") from error
     yield from read_node(reading, group, names)
@@ -64,7 +64,7 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
     reading : Reading
     group : h5py.File or zarr.Group
     names : list of str
-        The nodes.
+        The nodes that have images; those of embedded pipelines are called ``outer/inner``.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
 
 def _chosen(reading: Reading, group: Any, names: list[str]) -> str:
     where, asked = str(reading.path), reading.told.sensor.removesuffix("/values")
-    whole = sorted(name for name in names if "values" in group[name])
+    whole = sorted(names)
     if asked:
         if asked not in whole:
             near = did_you_mean(asked, whole)

@@ -78,6 +78,26 @@ def test_frames_without_a_value_are_left_out_and_counted(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("form", FORMS)
+def test_nodes_of_an_embedded_pipeline_go_by_their_own_names(
+    form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip(FORMS[form], reason="the extra is not installed")
+    monkeypatch.chdir(tmp_path)
+    Path("outer.yaml").write_text(
+        "pipeline: outer\nabout: x\nsource: {step: sample, with: {name: discs}}\nnodes:\n"
+        "  disc: {use: circle-3, in: frame}\noutputs: [disc]\n"
+    )
+    only = ["--only", "disc/eroded", "--only", "disc/footprint"]
+    done = call("run", "outer.yaml", *only, "-o", f"kept.{form}")
+    assert done.exit_code == 0, done.output
+    path = Path(f"kept.{form}")
+    assert len(frames_of(path, sensor="disc/eroded")[0]) == 6
+    with pytest.raises(DataError, match="several nodes: disc/eroded, disc/footprint"):
+        frames_of(path)
+
+
+@pytest.mark.slow
 def test_a_damaged_one_says_so(kept: Path) -> None:
     if kept.is_dir():
         shutil.rmtree(kept / "frame" / "outcome")
