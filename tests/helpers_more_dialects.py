@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from helpers_dialects import Array, Dialect, film, npy, npz
+from helpers_dialects import Array, Dialect, film, npy, npz, picture
 
 SQUARE, OBLONG, TALL = film(20, 8, 8, 1), film(14, 5, 7, 1), film(12, 7, 9, 1)
 MAT, LARGE = film(10, 16, 16, 1), 7.0 * film(9, 6, 5, 1)
@@ -113,6 +113,12 @@ def _sheets() -> Iterator[Dialect]:
     head = "," + ",".join(str(c) for c in range(1, 8))
     blocks = ["\n".join([head, *pivot[5 * k : 5 * k + 5]]) for k in range(14)]
     yield _text("numbers of columns above each matrix", "\n\n".join(blocks) + "\n", OBLONG)
+    sheet = "".join(f"| {r + 1} | {_line(x, ' | ')} |\n" for r, x in enumerate(OBLONG[0]))
+    yield _text("a table of Markdown", f"| | {' | '.join('ABCDEFG')} |\n{'|---' * 8}|\n{sheet}",
+                OBLONG[:1])  # fmt: skip
+    numbered = "".join(f"{0.05 * k:.2f},{i},{v:.0f}\n" for k, f in enumerate(SQUARE)
+                       for i, v in enumerate(f.ravel()))  # fmt: skip
+    yield _refused("a cell a line, by its number", f"time,cell,value\n{numbered}", "pivot(")
     cells = "".join(
         f"S{r + 1}-{c + 1}," + _line(OBLONG[:, r, c]) + "\n" for r in range(5) for c in range(7)
     )
@@ -231,6 +237,9 @@ def _stacks() -> Iterator[Dialect]:
         for k, f in enumerate(OBLONG)), OBLONG, times_s=T[14])  # fmt: skip
     keyed = {str(k): f.tolist() for k, f in enumerate(OBLONG)}
     yield _text("JSON, a key a frame", json.dumps(keyed), OBLONG)
+    tall = film(1, 12, 8, 1)
+    sized = {"width": 8, "height": 12, "data": tall[0].ravel().tolist()}
+    yield _text("JSON, width and height", json.dumps(sized), tall)
     yield _refused(
         "JSON, an object a cell",
         json.dumps([{"row": r, "col": c, "value": v} for (r, c), v in np.ndenumerate(OBLONG[0])]),
@@ -251,6 +260,14 @@ def _stacks() -> Iterator[Dialect]:
                    values=_slow(40, 10, 7), told={"rows": 10, "columns": 7})  # fmt: skip
     fields = np.zeros(3, dtype=[("t", "f8"), ("p", "u2", (8, 8))])
     yield _refused("NumPy, an array of fields", npy(fields), "array['p']")
+    yield _refused("NumPy, channels along the last axis", npy(np.zeros((5, 8, 8, 2))), "[..., 0]")
+    yield _refused("NumPy, cells down a column", npy(SQUARE.reshape(20, 64).T),
+                   "20 frames of 8 x 8 with their cells in a column",
+                   told={"rows": 8, "columns": 8})  # fmt: skip
+    rows = film(30, 12, 8, 1)
+    yield _refused("NumPy, cells in a row, no square", npy(rows.reshape(30, 96)),
+                   "30 frames of 12 x 8 with their cells in a row", values=rows,
+                   told={"rows": 12, "columns": 8})  # fmt: skip
     yield _refused("NumPy, four axes", npy(np.zeros((2, 5, 8, 8))), "reshape(-1, 8, 8)")
     yield _refused("packed", gzip.compress(_block(SQUARE[0]).encode(), mtime=0), "gunzip")
     yield _refused("a pickle", pickle.dumps(SQUARE), "may run any program")
@@ -283,6 +300,8 @@ def _hdf5() -> Iterator[Dialect]:
     yield Dialect("HDF5, one matrix", packed(map=OBLONG[0]), OBLONG[:1])
     yield Dialect("HDF5, a dataset a frame",
                   packed(**{f"scan{k}": f for k, f in enumerate(OBLONG)}), OBLONG)  # fmt: skip
+    grouped = {f"frames__{k:03d}__data": f for k, f in enumerate(OBLONG)}
+    yield Dialect("HDF5, a group a frame", packed(**grouped), OBLONG)
     slow = _slow(40, 10, 7)
     yield _refused("HDF5, frames along the last axis", packed(data=np.moveaxis(slow, 0, -1)),
                    "along the last axis", values=slow,
@@ -294,7 +313,14 @@ def _hdf5() -> Iterator[Dialect]:
         told={"sensor": "observations/tactile", "rows": 5, "columns": 7})  # fmt: skip
 
 
+def _pictures() -> Iterator[Dialect]:
+    grey = SQUARE[0].clip(0, 255).astype(np.uint8)
+    both = np.stack([grey, np.full_like(grey, 255)], axis=-1)
+    yield Dialect("PNG of grey and how much shines through", picture(both, "png"),
+                  grey[None].astype(float))  # fmt: skip
+
+
 def more_dialects(hdf5: bool = True) -> list[Dialect]:
-    """Return all files; those of HDF5 take h5py."""
-    parts = [_sheets, _logs, _instruments, _stacks, *([_hdf5] if hdf5 else [])]
+    """Return all files; those of HDF5 take h5py, those of pictures imageio."""
+    parts = [_sheets, _logs, _instruments, _stacks, _pictures, *([_hdf5] if hdf5 else [])]
     return [d for part in parts for d in part()]

@@ -19,7 +19,7 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described
 
 MOST_VALUES = 500_000_000
-_NUMBERED = re.compile(r"(.*?)(\d{1,9})")
+_NUMBERED = re.compile(r"(.*?)(\d{1,9})(/\D*)?")
 _FRAME_WORDS = {w for w, role in ROLES.items() if role == "frame" and len(w) > 2}
 _FRAME_WORDS |= {"arr", "img", "matrix", "map", "t"}
 """What numbered matrices are called that are frames, not sensors."""
@@ -119,12 +119,12 @@ def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
     anything else could be a stack as well.
     """
     found = {n: _NUMBERED.fullmatch(n) for n, s in shapes.items() if is_stack(s)}
-    stems = {m[1].lower() if m else None for m in found.values()}
+    stems = {(m[1].lower(), m[3]) if m else None for m in found.values()}
     one_shape = len({shapes[n] for n in found}) == 1
     if len(found) < 2 or len(stems) > 1 or None in stems or not one_shape:
         return []
-    stem = str(next(iter(stems)))
-    word = re.split(r"[\W_]+", stem.strip("/_-. "))[-1]
+    stem = next((m[1].lower() for m in found.values() if m), "")
+    word = re.split(r"[\W_]+", stem.strip("/_-. "))[-1].removesuffix("s")
     if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
         return []
     return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)

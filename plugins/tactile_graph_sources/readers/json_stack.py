@@ -221,6 +221,8 @@ def _is_time(key: str) -> bool:
 
 
 def _said(content: dict[str, Any]) -> Described:
+    if {"width", "height"} <= content.keys():
+        content = {**content, "columns": content["width"], "rows": content["height"]}
     return described(
         f"{k.rpartition('.')[2]}: {v}"
         for k, v in content.items()

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.evidence import row_lengths
 
-SMALLEST_SURE_SQUARE = 36
+SMALLEST_SURE_SQUARE, LEAST_FRAMED = 36, 16
 LONGEST_UNTOLD = 4
+MOST_CHANNELS = 4
 FEWEST_ALONG, MOST_ALONG = 4, 100
 ALIKE, UNLIKE = 2.5, 4.0
 """Times the difference of neighbours along one axis that those along another are, at most where
@@ -28,7 +30,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     ----------
     reading : Reading
         Its settings ``rows`` and ``columns`` decide where the axes could be read two ways: an
-        (N, rows x columns) array is N frames and a (rows, columns, N) one is turned.
+        (N, rows x columns) array is N frames, in the ``order`` that is told, and one of
+        (rows x columns, N) or (rows, columns, N) is turned.
     array : ndarray
         Numbers on 2 or 3 axes.
     name : str
@@ -46,8 +49,12 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.ndim > 3:
         array = without_single_axes(array)
     if rows is not None and columns is not None:
-        if array.ndim == 2 and array.shape != (rows, columns) and array.shape[1] == rows * columns:
-            array = array.reshape(-1, rows, columns)
+        n_cells = rows * columns
+        if array.ndim == 2 and array.shape != (rows, columns) and n_cells in array.shape:
+            lines = array if array.shape[1] == n_cells else array.T
+            by_column = reading.told.order == "columns"
+            array = lines.reshape(-1, *((columns, rows) if by_column else (rows, columns)))
+            array = array.transpose(0, 2, 1) if by_column else array
         elif array.ndim == 3 and array.shape[:2] == (rows, columns) != array.shape[1:]:
             array = np.moveaxis(array, -1, 0)
     if array.ndim in (2, 3) and 0 in array.shape:
@@ -56,8 +63,7 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
         raise DataError(
             where,
             f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read: "
-            f"save it as array.reshape(-1, {array.shape[-2] if array.ndim > 3 else 'rows'}, "
-            f"{array.shape[-1] if array.ndim > 3 else 'columns'}), or each sensor alone",
+            f"save it as {_as_matrices(array.shape)}",
         )
     if rows is None or columns is None:
         _refuse_two_readings(where, array, name)
@@ -66,6 +72,15 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     array = array[None] if array.ndim == 2 else array
     reading.told.agree(where, array.shape[1], array.shape[2])
     return array
+
+
+def _as_matrices(shape: tuple[int, ...]) -> str:
+    """Return how an array of one axis, or of more than three, becomes matrices."""
+    if len(shape) < 4:
+        return "array.reshape(-1, rows, columns)"
+    if shape[-1] <= MOST_CHANNELS:
+        return "array[..., 0], or another of its last axis"
+    return f"array.reshape(-1, {shape[-2]}, {shape[-1]}), or each sensor alone"
 
 
 def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
@@ -98,6 +113,15 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
         side = isqrt(cells)
         square = side * side == cells and lines not in (1, cells)
         long = max(shape) > LONGEST_UNTOLD * min(shape)
+        for what, in_a_row in (("row", array), ("column", array.T)):
+            lengths = row_lengths(in_a_row[:MOST_ALONG].astype(np.float64)) if lines > 1 else []
+            if lengths and in_a_row.shape[1] >= LEAST_FRAMED:
+                (n, m), each = lengths[0], in_a_row.shape[0]
+                raise DataError(
+                    where,
+                    f"{name} has shape {shape}: one matrix, or {each} frames of {n} x {m} with "
+                    f"their cells in a {what}, as they lie together; give rows and columns",
+                )
         if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
             as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
             raise DataError(

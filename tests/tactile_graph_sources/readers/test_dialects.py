@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -29,9 +30,10 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.told import Told
 
 FILES = dialects()
+MORE = more_dialects(hdf5=find_spec("h5py") is not None)
 
 
-@pytest.mark.parametrize("dialect", [*FILES, *more_dialects()], ids=lambda d: d.name)
+@pytest.mark.parametrize("dialect", [*FILES, *MORE], ids=lambda d: d.name)
 def test_a_file_is_read_right_or_refused_with_what_to_say(dialect: Dialect, tmp_path: Path) -> None:
     found = became(dialect, tmp_path)
     assert found.fits(dialect), found

@@ -27,12 +27,16 @@ SMALLEST_SURE_SQUARE = 64
 MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 LEAST_FRAMED = 16
 """Values of a line that may be a frame by how they lie together."""
+FEWEST_NAMED, CELL_AND_VALUE = 4, 2
 LONGEST_UNTOLD = 4
 """Times its breadth: a matrix longer than that is more likely many frames."""
 
 
 def unplaced(base: Layout, table: Table, told: Told) -> Layout:
     """Return the layout of a table that does not say where each cell lies."""
+    if len(base.cells) == CELL_AND_VALUE and table.named.names and _is_listed(table, base):
+        names = [table.named.names[k] for k in base.cells]
+        return replace(base, trouble=_by_cell_question(names))
     by_row = _by_row_numbers(base, table, told)
     if by_row is not None:
         return by_row
@@ -207,6 +211,24 @@ def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layou
         shape=found.shape,
         places=_ordered(base, table, found.shape),
         assumed=(*base.assumed, *found.assumed),
+    )
+
+
+def _is_listed(table: Table, base: Layout) -> bool:
+    """Return whether of two columns the first numbers cells again and again."""
+    numbers = table.rows[:, base.cells[0]]
+    if not np.isfinite(numbers).all() or (numbers % 1 != 0).any():
+        return False
+    again = np.flatnonzero(numbers == numbers[0])
+    return len(again) > 1 and len(np.unique(np.diff(again))) == 1 and again[1] > FEWEST_NAMED
+
+
+def _by_cell_question(names: list[str]) -> str:
+    cell, value = names
+    return (
+        f"each line looks like one cell, by its number ({cell!r}), and its value ({value!r}); "
+        "make a line of each frame, in Python: pandas.read_csv(…).pivot(index=…, "
+        f"columns={cell!r}, values={value!r}).to_csv('out.csv')"
     )
 
 

@@ -34,6 +34,11 @@ _SURELY_DECIMAL = re.compile(r"[-+]?(?:0\d*|\d+),(?:\d{1,2}|\d{4,})")
 FEWEST_GROUPED = 5
 
 
+def without_rules(line: str) -> str:
+    """Return a line of a table without the bars at its ends."""
+    return line.strip().removeprefix("|").removesuffix("|")
+
+
 def unquoted(text: str) -> str:
     """Return a field without quotes and blanks around it."""
     return text.strip().strip("\"'").strip()
@@ -124,6 +129,8 @@ class Dialect(NamedTuple):
             return [stamp.strip(), *self._replace(arrow=False).fields(rest)]
         if self.brackets:
             line = line.translate(_BRACKETS)
+        if self.separator == "|":
+            line = without_rules(line)
         if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
             # Of thousands, or decimal? Kept together it is told as no number, never as two.
             fields = next(csv.reader([line]))

@@ -17,7 +17,13 @@ from tactile_graph_sources.readers.tables.breaks import (
     opens_matrix,
     signature,
 )
-from tactile_graph_sources.readers.tables.dialect import MISSING, Dialect, clock_s, is_row
+from tactile_graph_sources.readers.tables.dialect import (
+    MISSING,
+    Dialect,
+    clock_s,
+    is_row,
+    without_rules,
+)
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
 from tactile_graph_sources.readers.tables.names import (
     SECONDS,
@@ -29,7 +35,7 @@ from tactile_graph_sources.readers.tables.names import (
 from tactile_graph_sources.readers.tables.preamble import Described, described
 from tactile_graph_sources.readers.units import value_unit
 
-_BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*")
+_BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
 _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
@@ -290,7 +296,8 @@ def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ..
     separator = dialect.separator
     if separator is None or separator not in text:
         separator = next((s for s in (";", "\t", "|", ",") if s in text), None)
-    names = tuple(n.strip() for n in text.strip("\r\n").split(separator))
+    text = without_rules(text) if separator == "|" else text.strip("\r\n")
+    names = tuple(n.strip() for n in text.split(separator))
     while len(names) > width and not names[-1]:
         names = names[:-1]
     return names if len(names) == width else ()
