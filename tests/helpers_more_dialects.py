@@ -1,4 +1,4 @@
-"""More small recordings, written before anyone looked at how the readers decide."""
+"""More small recordings, in dialects that the readers had not seen when these were written."""
 
 from __future__ import annotations
 
