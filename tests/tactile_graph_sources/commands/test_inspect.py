@@ -173,7 +173,7 @@ def test_of_several_sensors_each_is_shown_with_commands_that_choose_it(
         command = next(c for c in one["commands"] if " run contacts " in c)
         assert command.endswith(f" --with sensor={one['sensor']}")
         levelled = one["commands"][-1]
-        assert f"footprint.noise_of={{path: \"{pair}\", sensor: {one['sensor']}}}" in levelled
+        assert f'footprint.noise_of={{path: "{pair}", sensor: {one["sensor"]}}}' in levelled
         for each in (command, levelled):
             done = CliRunner().invoke(cli, shlex.split(each)[1:])
             assert done.exit_code == 0, done.output
