@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import spearmanr
+
 from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
 from tactile_graph_thesis.items.block_diagram import block_diagram
@@ -23,6 +27,9 @@ from tactile_graph_thesis.work import Work
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Array = NDArray[np.float64]
+FALLING = -0.5
+"""Rank correlation with the difference in weight up to which an error decreases."""
 PADS = 3
 """Simulated pads over which the curves are averaged."""
 QUICK = Trials(differences_g=(0, 200, 500, 1000, 1250, 2000), n_test=25)
@@ -57,17 +64,33 @@ def _figure(number: str) -> Callable[[Work], Made]:
                 f"largest error there {_worst(curve):.1f} %",
                 _worst(curve) < limit,
             ),
-            Finding(
-                "the error decreases with the difference in weight",
-                f"{error[0]:.0f} % at {curve.differences_g[0]:g} g, {error[-1]:.1f} % at "
-                f"{curve.differences_g[-1]:g} g",
-                bool(error[-1] < error[0] or error[0] == 0),
-            ),
+            *decreases(curve.differences_g, error),
             *_about(number, work),
         )
         return Made((compared,), findings, _table(curve), _plot(curve, limit))
 
     return make
+
+
+def decreases(differences_g: Array, error_percent: Array) -> tuple[Finding, ...]:
+    """Return whether errors fall as weights part; nothing where there are none to fall.
+
+    Parameters
+    ----------
+    differences_g, error_percent : ndarray, shape (n,)
+    """
+    if not (error_percent > 0.0).any():
+        return ()
+    rank = float(spearmanr(differences_g, error_percent).statistic)
+    return (
+        Finding(
+            "the error decreases with the difference in weight",
+            f"{error_percent[0]:.0f} % at {differences_g[0]:g} g, {error_percent[-1]:.1f} % at "
+            f"{differences_g[-1]:g} g, rank correlation {rank:.2f}; refuted above {FALLING:g}, or "
+            "where the last error is not below the first",
+            bool(rank <= FALLING and error_percent[-1] < error_percent[0]),
+        ),
+    )
 
 
 def _mean_error(work: Work, number: str) -> float:
@@ -140,7 +163,7 @@ _MORE = {
 ITEMS = (
     block_diagram(
         "4.37",
-        "identify-locate",
+        "thesis-identify",
         "Blocks of identification and localisation",
         "The thesis leaves open which features index the objects; weight and area are taken.",
     ),
