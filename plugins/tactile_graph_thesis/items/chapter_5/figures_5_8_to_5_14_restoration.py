@@ -220,8 +220,8 @@ _SAMPLED = (
 _READ = (
     "A simulated reading of the same object, by thesis-smooth and thesis-lines; below it on a "
     "logarithmic scale, by bayes-smooth and bayes-lines. The thesis set its two parameters anew "
-    "for each object and does not give them: ours are the same for all, such that lines are free at "
-    "its start temperature."
+    "for each object and does not give them: ours are the same for all, such that lines are free "
+    "at its start temperature."
 )
 ITEMS = (
     Item(

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph_thesis.items.chapter_4.figures_4_37_to_4_43_identification import decreases
+from tactile_graph_thesis.items.chapter_4.figures_4_37_to_4_43_identification import (
+    decreases,
+    falling,
+)
 from tactile_graph_thesis.items.chapter_4.table_4_9_identification import (
     all_identified,
     betters_the_printed,
@@ -43,10 +46,12 @@ GRAMS = np.array([0.0, 100.0, 200.0, 500.0, 1000.0, 2000.0])
     ("error", "holds"),
     [
         ([50.0, 30.0, 20.0, 5.0, 0.0, 0.0], True),
-        ([50.0, 50.0, 50.0, 50.0, 50.0, 49.0], True),
+        ([50.0, 7.0, 2.0, 0.0, 2.0, 3.0], True),
         ([0.0, 1.0, 2.0, 3.0, 5.0, 8.0], False),
         ([10.0, 50.0, 40.0, 30.0, 20.0, 10.0], False),
         ([30.0, 0.0, 40.0, 0.0, 45.0, 29.0], False),
+        ([50.0, 5.0, 5.0, 5.0, 30.0, 45.0], False),
+        ([8.0, 8.0, 8.0, 8.0, 8.0, 8.0], False),
     ],
 )
 def test_an_error_that_rises_or_comes_and_goes_does_not_decrease(
@@ -54,6 +59,13 @@ def test_an_error_that_rises_or_comes_and_goes_does_not_decrease(
 ) -> None:
     (finding,) = decreases(GRAMS, np.array(error))
     assert finding.holds == holds
+
+
+def test_the_nearest_falling_curve_is_that_of_least_squares() -> None:
+    values = np.array([3.0, 1.0, 2.0, 2.0, 5.0, 0.0])
+    found = falling(values)
+    np.testing.assert_allclose(found, [3.0, 2.5, 2.5, 2.5, 2.5, 0.0])
+    np.testing.assert_allclose(falling(found), found)
 
 
 def test_where_there_is_no_error_nothing_is_concluded() -> None:
