@@ -197,3 +197,36 @@ def test_each_step_of_identification_errs_less_up_to_none() -> None:
     assert wrong["thesis-identify"] > 0.15
     assert wrong["thesis-identify"] > wrong["identify-decoupled"] > 0.02
     assert wrong["identify-footprint"] == wrong["identify-locate"] == 0.0
+
+
+CHAPTER_4: dict[str, dict[str, dict[str, Any]]] = {
+    "circle-1": {
+        "footprint": {"level_v": 0.01}, "eroded": {"element": "cross3"},
+        "dilated": {"element": "cross3"},
+    },
+    "circle-2": {
+        "footprint": {"level_v": 0.01}, "fine": {"factor": 2}, "eroded": {"element": "disc5"},
+        "dilated": {"element": "disc5"},
+    },
+    "circle-3": {
+        "footprint": {"level_v": 0.01}, "fine": {"factor": 2}, "eroded": {"element": "disc5"},
+        "dilated": {"element": "disc5"},
+    },
+    "rectangle-1": {
+        "footprint": {"level_v": 0.01}, "smooth": {"size": 3}, "clean": {"level": 0.3},
+        "rectangle": {"inside_cm": 0.35},
+    },
+    "rectangle-2": {
+        "footprint": {"level_v": 0.01}, "smooth": {"size": 3}, "clean": {"level": 0.3},
+        "fine": {"factor": 10}, "filled": {"element": "cross3", "times": 8},
+        "opened": {"element": "square21"}, "rectangle": {"inside_cm": -0.05},
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CHAPTER_4)
+def test_localisers_of_chapter_4_have_these_settings(name: str) -> None:
+    pipeline = load(name)
+    for node, told in CHAPTER_4[name].items():
+        settings = given(pipeline, node)
+        assert {k: settings[k] for k in told} == told, node
