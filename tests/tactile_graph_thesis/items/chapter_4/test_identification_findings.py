@@ -68,5 +68,7 @@ def test_the_nearest_falling_curve_is_that_of_least_squares() -> None:
     np.testing.assert_allclose(falling(found), found)
 
 
-def test_where_there_is_no_error_nothing_is_concluded() -> None:
+def test_where_too_few_err_to_tell_nothing_is_concluded() -> None:
     assert decreases(GRAMS, np.zeros(6)) == ()
+    assert decreases(GRAMS, np.array([1.0, 0.0, 1.3, 0.0, 0.3, 0.0])) == ()
+    assert len(decreases(GRAMS, np.array([2.1, 0.0, 0.0, 0.0, 0.0, 0.0]))) == 1
