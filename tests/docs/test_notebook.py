@@ -85,7 +85,7 @@ def test_the_refusal_the_page_quotes_is_the_one_that_inspect_gives(
 def test_the_page_becomes_a_notebook_with_the_same_code_and_words(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    script = PAGE.parents[1] / "examples" / "notebook.py"
+    script = PAGE.with_suffix(".py")
     monkeypatch.setattr(sys, "argv", [str(script), str(PAGE), str(tmp_path / "press.ipynb")])
     runpy.run_path(str(script), run_name="__main__")
     made = json.loads((tmp_path / "press.ipynb").read_text("utf-8"))

@@ -1,6 +1,6 @@
 """Make a Jupyter notebook of a page of the docs: its code to run, its words between.
 
-python examples/notebook.py docs/notebook.md press.ipynb
+python docs/notebook.py docs/notebook.md press.ipynb
 """
 
 from __future__ import annotations
