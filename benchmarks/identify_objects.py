@@ -42,14 +42,13 @@ from tactile_graph_classifiers.database.text import FORMAT, VERSION
 from tactile_graph_classifiers.distances.choosing import Examples, choose
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_model import Learned
-from tactile_graph_classifiers.distances.identity import Identity
 from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
 from tactile_graph_classifiers.measuring.describe import NAMES
 from tactile_graph_classifiers.measuring.features import NAMES as FEATURES
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 Rows = list[Measurements]
-Namer = Callable[[Rows], Identity]
+Ratios = list[tuple[float, str]]
 SESSIONS, PRESSES = 5, 5
 LOST = (0.01, 0.025, 0.036, 0.05, 0.08, 0.1, 0.15, 0.2)
 PAIR = ["weight", "area_cm2"]
@@ -60,30 +59,28 @@ class Way(NamedTuple):
 
     step: Callable[..., Any]
     settings: dict[str, Any]
-    presses: int = 1
+    presses: tuple[int, ...] = (1,)
 
-    def namer(self, database: dict[str, Any]) -> Namer:
-        """Return what names so many readings."""
-        step = self.step(database=database, **self.settings)
-        return step.together if self.presses > 1 else lambda rows: step(rows[0])
-
-    def groups(self, rows: Rows) -> list[Rows]:
-        """Return readings in groups, each within a session."""
-        sessions = [rows[at : at + PRESSES] for at in range(0, len(rows), PRESSES)]
-        return [
-            some[at : at + self.presses]
-            for some in sessions
-            for at in range(0, len(some) - self.presses + 1, self.presses)
-        ]
+    def rows(self, name: str) -> list[str]:
+        """Return what the rows of its numbers are called."""
+        return [name if n == 1 else f"the same, {n} presses" for n in self.presses]
 
 
 WAYS = {
     "weight and area, Mahalanobis": Way(Mahalanobis, {"features": PAIR}),
     "18 features, Mahalanobis": Way(Mahalanobis, {"features": list(FEATURES)}),
-    "all, discriminant": Way(CanonicalDiscriminant, {}),
-    "the same, 3 presses": Way(CanonicalDiscriminant, {}, 3),
-    "the same, 5 presses": Way(CanonicalDiscriminant, {}, 5),
+    "all, discriminant": Way(CanonicalDiscriminant, {}, (1, 3, 5)),
 }
+
+
+def groups(rows: Rows, presses: int) -> list[Rows]:
+    """Return readings in groups of so many, each within a session."""
+    sessions = [rows[at : at + PRESSES] for at in range(0, len(rows), PRESSES)]
+    return [
+        some[at : at + presses]
+        for some in sessions
+        for at in range(0, len(some) - presses + 1, presses)
+    ]
 
 
 class Readings(NamedTuple):
@@ -155,21 +152,38 @@ class Distances(NamedTuple):
         return " ".join(f"{100 * share:9.1f}" for share in shares)
 
 
-def tried(way: Way, all_of: Readings) -> Distances:
-    """Return what one way makes of the readings."""
-    ratios = lambda name, rows: [(i.distance / i.limit, i.nearest)  # noqa: E731
-                                 for i in map(name, way.groups(rows))]  # fmt: skip
-    name_of = way.namer(database(all_of.learned))
-    known = [
-        (r, n == true) for true, rows in all_of.tested.items() for r, n in ratios(name_of, rows)
-    ]
-    foreign = [r for rows in all_of.foreign.values() for r, _ in ratios(name_of, rows)]
-    strangers: list[float] = []
-    for true, rows in all_of.tested.items():
-        others = way.namer(database(all_of.learned, true))
-        strangers += [r for r, _ in ratios(others, rows)]
-    far, right = zip(*known, strict=True)
-    return Distances(np.array(far), np.array(right), np.array(strangers), np.array(foreign))
+def tried(way: Way, all_of: Readings) -> list[Distances]:
+    """Return what one way makes of the readings, for each number of presses."""
+    step = lambda without="": way.step(  # noqa: E731
+        database=database(all_of.learned, without), **way.settings
+    )
+    everything = step()
+    known = [[_ratios(everything, rows, n) for rows in all_of.tested.values()]
+             for n in way.presses]  # fmt: skip
+    foreign = [[_ratios(everything, rows, n) for rows in all_of.foreign.values()]
+               for n in way.presses]  # fmt: skip
+    strangers: list[list[Ratios]] = [[] for _ in way.presses]
+    for name, rows in all_of.tested.items():
+        others = step(name)
+        for found, n in zip(strangers, way.presses, strict=True):
+            found.append(_ratios(others, rows, n))
+    return [
+        Distances(
+            np.array([r for some in known[i] for r, _ in some]),
+            np.array([nearest == name for name, some in zip(all_of.tested, known[i], strict=True)
+                      for _, nearest in some]),
+            np.array([r for some in strangers[i] for r, _ in some]),
+            np.array([r for some in foreign[i] for r, _ in some]),
+        )
+        for i in range(len(way.presses))
+    ]  # fmt: skip
+
+
+def _ratios(step: Any, rows: Rows, presses: int) -> Ratios:
+    """Return each group's distance over the limit, and what it is nearest to."""
+    found = [step(some[0]) if presses == 1 else step.together(some)
+             for some in groups(rows, presses)]  # fmt: skip
+    return [(one.distance / one.limit, one.nearest) for one in found]
 
 
 def oracle(all_of: Readings) -> NDArray[np.float64]:
@@ -216,30 +230,32 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for pad in args.pads:
         sets = [readings_of(pad, seed) for seed in args.seeds]
         print(f"\n{pad}, catalogues {args.seeds}\n{head}")
-        here = {}
+        here: dict[str, list[Distances]] = {}
         for way in args.ways:
-            here[way] = [tried(WAYS[way], one) for one in sets]
-            print(f"{way:<31} {joined(here[way]).line()}", flush=True)
-            every.setdefault(way, []).extend(here[way])
+            found = [tried(WAYS[way], one) for one in sets]
+            for row, some in zip(WAYS[way].rows(way), zip(*found, strict=True), strict=True):
+                here[row] = list(some)
+                print(f"{row:<31} {joined(some).line()}", flush=True)
+                every.setdefault(row, []).extend(some)
         if args.curve:
             bounds += [oracle(one) for one in sets]
             curve(here, bounds[-len(sets) :])
     print(f"\nall of them\n{head}")
-    for way, found in every.items():
-        print(f"{way:<31} {joined(found).line()}")
+    for row, distances in every.items():
+        print(f"{row:<31} {joined(distances).line()}")
     if args.curve:
         curve(every, bounds)
 
 
-def curve(ways: dict[str, list[Distances]], bounds: list[NDArray[np.float64]]) -> None:
+def curve(rows: dict[str, list[Distances]], bounds: list[NDArray[np.float64]]) -> None:
     """Print what more strangers found cost in known objects lost."""
     print(f"\n{'strangers found, % of known lost':<34}" + "".join(f"{100 * a:7.1f}" for a in LOST))
-    for way, found in ways.items():
+    for row, found in rows.items():
         together = joined(found)
         limits = [np.quantile(together.known, 1.0 - lost) for lost in LOST]
         for which, far in (("", together.strangers), (", foreign", together.foreign)):
             shares = "".join(f"{100 * (far > limit).mean():7.1f}" for limit in limits)
-            print(f"{way + which:<34.34}{shares}")
+            print(f"{row + which:<34.34}{shares}")
     shares = "".join(f"{100 * share:7.1f}" for share in np.concatenate(bounds).mean(axis=0))
     print(f"{'one press, told the stranger':<34}{shares}", flush=True)
 

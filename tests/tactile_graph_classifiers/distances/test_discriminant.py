@@ -128,6 +128,44 @@ def test_a_reading_at_or_below_0_is_borne_where_all_learned_ones_are_above():
     assert not one(reading(-5.0, 0.0)).known
 
 
+def test_several_presses_find_a_stranger_that_one_does_not():
+    objects = many(8, seed=4, n=45, apart=1.2)
+    strange = objects.pop("object 0")
+    learned, tested = split(objects, 25)
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    fives = [[measured(row) for row in strange[at : at + 5]] for at in range(0, 45, 5)]
+    alone = np.mean([not one(press).known for five in fives for press in five])
+    together = np.mean([not one.together(five).known for five in fives])
+    assert alone < 0.4
+    assert together > alone + 0.4
+    own = [one.together([measured(row) for row in rows[at : at + 5]])
+           for rows in tested.values() for at in range(0, 20, 5)]  # fmt: skip
+    right = [o.nearest == name for o, name in zip(own, np.repeat(list(tested), 4), strict=True)]
+    assert np.mean([o.known for o in own]) > 0.85
+    assert np.mean(right) > 0.95
+
+
+def test_presses_are_named_by_their_mean_whatever_their_order():
+    learned, tested = split(many(6, seed=5, n=30), 25)
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    presses = [measured(row) for row in tested["object 2"]]
+    found, turned = one.together(presses), one.together(presses[::-1])
+    assert found.n_presses == turned.n_presses == 5
+    assert (found.name, turned.name) == ("object 2", "object 2")
+    assert found.distance == pytest.approx(turned.distance)
+    assert one.together(presses[:1]) == one(presses[0])
+    assert one(presses[0]).n_presses == 1
+
+
+def test_of_more_presses_than_were_learned_from_the_limit_is_that_of_fewer():
+    learned, tested = split(many(6, seed=5, n=40), 8)  # 8 readings: 2 may be left out
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    presses = [measured(row) for row in tested["object 2"]]
+    two, many_more = one.together(presses[:2]), one.together(presses)
+    assert two.limit == many_more.limit != one(presses[0]).limit
+    assert many_more.name == "object 2"
+
+
 def test_the_order_of_objects_changes_no_answer():
     objects = many(6, seed=9)
     other = dict(reversed(objects.items()))
@@ -203,6 +241,11 @@ def test_scores_are_those_of_the_gaussian_densities():
         assert scores.unlikeliness[0, k] == pytest.approx(wanted)
         beside = (at[k] @ at[k] - off @ off) / (1.0 + 1.0 / 25.0)
         assert scores.beside[0, k] == pytest.approx(beside, abs=1e-6)
+        less = (1.0 / 4.0 + 1.0 / 25.0) / (1.0 + 1.0 / 25.0)  # a mean of four varies so much less
+        assert it(row, 4).squares[0, k] == pytest.approx(square / less)
+        assert it(row, 4).unlikeliness[0, k] == pytest.approx(
+            square / less + np.linalg.slogdet(less * covariance)[1]
+        )
 
 
 def test_runs_of_successive_readings_are_left_out_together():
@@ -210,6 +253,8 @@ def test_runs_of_successive_readings_are_left_out_together():
                      "b": [[1.0, 2.0]]}, ("weight", "area_cm2"))  # fmt: skip
     assert some.runs.tolist() == [*np.repeat(np.arange(10), 2), -1]
     assert len(left_out_squares(some, Manner(0.1, 8, 16.0))) == 20
+    # 20 readings make 6 runs of 3 or 4, and each run one mean of three
+    assert len(left_out_squares(some, Manner(0.1, 8, 16.0), 3)) == 6
 
 
 def test_a_choice_says_how_well_it_did():
