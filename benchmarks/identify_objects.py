@@ -9,7 +9,8 @@ and gains having drifted, as often and named. Every way learns from the same fra
 
 - weight and area, Mahalanobis: `identify`, the thesis' two features
 - 18 features, Mahalanobis: all that `features` measures
-- all, discriminant: `identify-any`; of 3 and 5 presses `identify --together`
+- all, discriminant: `identify-any`; of 3 and 5 presses
+  `identify --together recording`
 
 "Right" is the share of readings that are given their own name, "lost" that of known objects called
 unknown. A stranger is each object in turn, its test readings shown to what learned the 21 others
@@ -17,8 +18,8 @@ unknown. A stranger is each object in turn, its test readings shown to what lear
 apart); "foreign" are 22 objects of another catalogue on the same pad. Of several presses, all of
 one session and named together, each group counts once. With --curve strangers found where so many
 known are lost, and beside them what an oracle finds: the same discriminant told 25 presses of the
-stranger as a further object, its limit such that no known object loses more than that share. No
-rejection that is not told the stranger can be expected to do better by these features.
+stranger as a further object, its limit such that no known object loses more than that share. Who is
+not told the stranger can hardly find more by the same means.
 
 Settings were chosen on the pads capacitive and strip with seeds 1 to 3; reported are others. That
 several presses find the strangers that one does not is refuted if five of them, on other seeds,

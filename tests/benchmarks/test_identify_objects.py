@@ -30,14 +30,14 @@ def test_shares_are_those_of_all_catalogues_together():
 
 @pytest.fixture(scope="module")
 def readings():
-    """Return those of eight objects, two of them the like of another, on the resistive pad."""
-    names = ("coin", "larger coin", "tape", "box", "longer box", "cube", "stool", "palm")
+    """Return those of six objects, one of them the like of another, on the strip."""
+    names = ("coin", "larger coin", "tape", "box", "cube", "stool")
     catalogue = identify_objects.catalogue
     identify_objects.catalogue = lambda *some: [  # type: ignore[assignment]
         thing for thing in catalogue(*some) if thing.name.removeprefix("foreign ") in names
     ]
     try:
-        yield identify_objects.readings_of("resistive", 31)
+        yield identify_objects.readings_of("strip", 31)
     finally:
         identify_objects.catalogue = catalogue
 
@@ -45,7 +45,7 @@ def readings():
 @pytest.mark.slow
 def test_several_presses_find_strangers_that_one_does_not(readings):
     one, _, five = tried(WAYS["all, discriminant"], readings)
-    assert (len(one.known), len(five.known), len(five.strangers)) == (200, 40, 40)
+    assert (len(one.known), len(five.known), len(five.strangers)) == (150, 30, 30)
     assert one.right.mean() >= 0.93
     assert five.right.mean() >= 0.97
     assert (five.known > 1.0).mean() <= 0.1
@@ -59,7 +59,7 @@ def test_several_presses_find_strangers_that_one_does_not(readings):
 @pytest.mark.slow
 def test_it_prints_a_row_a_way_and_what_strangers_cost(readings, capsys, monkeypatch):
     monkeypatch.setattr(identify_objects, "readings_of", lambda *_: readings)
-    identify_objects.main(["--pads", "resistive", "--seeds", "31", "--curve",
+    identify_objects.main(["--pads", "strip", "--seeds", "31", "--curve",
                            "--ways", "weight and area, Mahalanobis"])  # fmt: skip
     out = capsys.readouterr().out
     assert out.count("weight and area, Mahalanobis  ") == 4

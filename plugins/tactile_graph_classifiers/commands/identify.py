@@ -31,9 +31,9 @@ HEAD = ("object", "distance", "runner-up", "margin", "")
               help="Which pipeline identifies: a name or a YAML file.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
-@click.option("--together", is_flag=True,
-              help="Each recording is of one object, pressed several times: name it once, by all"
-                   " frames.")  # fmt: skip
+@click.option("--together", type=click.Choice(("recording", "all")),
+              help="The frames of each recording, or of all, are presses of one object: name it"
+                   " once, by all of them.")  # fmt: skip
 def identify(
     recordings: tuple[str, ...],
     source: str | None,
@@ -45,7 +45,7 @@ def identify(
     timeout_s: float,
     pipeline: str,
     span: Span,
-    together: bool,
+    together: str | None,
 ) -> None:
     """Say for each frame of the recordings which known object it is, and which comes next.
 
@@ -64,7 +64,7 @@ def identify(
     opened = opened.with_settings({f"{node}.database": str(database)})
     report = Report()
     runner = opened.runner([node], seed)
-    lines = _Together(opened, node) if together else _Lines(node)
+    lines = _Together(opened, node, together) if together else _Lines(node)
     for frame in span.of(opened.frames(seed, report)):
         lines.add(runner(frame))
     for where, what in report.troubles:
@@ -185,9 +185,9 @@ class _Pressed:
 
 
 class _Together(_Lines):
-    """A line a recording, in closing."""
+    """A line for each recording, or one for all, in closing."""
 
-    def __init__(self, pipeline: Pipeline, node: str) -> None:
+    def __init__(self, pipeline: Pipeline, node: str, which: str) -> None:
         super().__init__(node)
         it = pipeline.nodes[node]
         self._step: Any = it.callable
@@ -197,6 +197,7 @@ class _Together(_Lines):
                 " 'discriminant' (pipeline identify-any) names several together"
             )
         self._measured = it.inputs[0].refs[0]
+        self._in_all = which == "all"
         self._recordings: dict[str, _Pressed] = {}
         self._left_out: Counter[str] = Counter()
 
@@ -216,7 +217,8 @@ class _Together(_Lines):
             self.n_failed += isinstance(outcome, Failed)
             self._left_out[outcome.reason.partition(" (")[0]] += 1
             return
-        of = self._recordings.setdefault(result.frame.label or "recording", _Pressed())
+        label = "all" if self._in_all else result.frame.label or "recording"
+        of = self._recordings.setdefault(label, _Pressed())
         of.presses.append(result.outcome_at(self._measured))
         of.alone[outcome.nearest] += 1
         of.true.add(true_name(result.frame))
@@ -239,7 +241,7 @@ class _Together(_Lines):
             if len(of.true) > 1:
                 raise UsageError(
                     f"--together: {label} holds several objects: {', '.join(sorted(of.true))};"
-                    " name one object a recording, or frame by frame"
+                    " name one object at a time, or frame by frame"
                 )
             identity, n = self._step.together(of.presses), len(of.presses)
             most = of.alone[identity.nearest]

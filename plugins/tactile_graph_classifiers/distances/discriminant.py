@@ -73,6 +73,7 @@ class CanonicalDiscriminant:
         self._confidence = confidence if reject else None
         self._most_presses = examples.most_presses()
         self._limits: dict[int, float | None] = {}
+        self._median = 0.0
         self._limit(1)
 
     def __call__(self, features: Measurements) -> Identity:
@@ -117,12 +118,21 @@ class CanonicalDiscriminant:
         return replace(found, n_presses=len(presses))
 
     def _limit(self, n_presses: int) -> float | None:
-        """Return the largest squared distance at which so many presses are accepted."""
+        """Return the largest squared distance at which so many presses are accepted.
+
+        A mean of presses has no longer tail than one press has. Where few were left out together
+        to tell, one odd press among them must not widen the limit: it is at most that of one
+        press, over the median of one press times theirs.
+        """
         if n_presses not in self._limits:
             limit = None
             if self._confidence is not None:
                 squares = left_out_squares(self._examples, self._manner, n_presses)
                 limit = largest_accepted(squares, self._confidence)
+                if n_presses == 1:
+                    self._median = float(np.median(squares)) if squares.size else 0.0
+                elif self._median > 0.0 and (one := self._limits[1]) is not None:
+                    limit = min(limit, one * float(np.median(squares)) / self._median)
             self._limits[n_presses] = limit
         return self._limits[n_presses]
 

@@ -11,6 +11,7 @@ from tactile_graph.errors import DataError
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_presses import DiscriminantOfPresses
 
+pytestmark = pytest.mark.slow
 PRESSES = [reading(505, 41), reading(493, 37), reading(508, 44), reading(498, 40)]
 
 
