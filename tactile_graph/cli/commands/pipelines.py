@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tactile_graph.cli.listing import complete, file_text
+from tactile_graph.cli.pages.listing import complete, file_text
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
@@ -80,7 +80,7 @@ def _show_hits(found: registry.Registry, words: Sequence[str]) -> None:
     """
     from rich.text import Text
 
-    from tactile_graph.cli.search import Entry, best_first
+    from tactile_graph.cli.pages.search import Entry, best_first
     from tactile_graph.cli.terminal import console
 
     hits = best_first(words, (Entry(h.name, h.about, dict.fromkeys(h.uses, ""))

@@ -13,7 +13,7 @@ from tactile_graph.plugins import registry
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from tactile_graph.cli.search import Entry, Hit
+    from tactile_graph.cli.pages.search import Entry, Hit
 
 
 def complete_step(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
@@ -37,7 +37,7 @@ def steps(words: tuple[str, ...], search: bool) -> None:
     if not words:
         out.print(_list(found))
     elif len(words) == 1 and not search and found.has("steps", words[0]):
-        from tactile_graph.cli.step_page import step_page
+        from tactile_graph.cli.pages.step_page import step_page
 
         for part in step_page(found, words[0]):
             out.print(part)
@@ -81,7 +81,7 @@ def _hits(found: registry.Registry, words: Sequence[str]) -> RenderableType:
     UsageError
         If there is none; says which names are near.
     """
-    from tactile_graph.cli.search import best_first
+    from tactile_graph.cli.pages.search import best_first
 
     hits = best_first(words, (_entry(found, name) for name in found.names("steps")))
     if not hits:
@@ -109,7 +109,7 @@ def _hit_table(hits: Sequence[Hit]) -> RenderableType:
 
 def _entry(found: registry.Registry, name: str) -> Entry:
     """Return what to search of a step: its settings are known once it is imported."""
-    from tactile_graph.cli.search import Entry
+    from tactile_graph.cli.pages.search import Entry
     from tactile_graph.docstring import parameters
     from tactile_graph.plugins.outline import outline
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from helpers_cli import call
-from tactile_graph.cli import parquet
+from tactile_graph.cli.output import parquet
 
 FILE = """
 pipeline: many

@@ -9,7 +9,7 @@ import pytest
 from annotated_types import Ge, Len, MultipleOf
 
 from helpers_cli import call, install
-from tactile_graph.cli.step_page import made_up_use, ranges
+from tactile_graph.cli.pages.step_page import made_up_use, ranges
 from tactile_graph.steps.signature import read_signature
 
 LATER = '''

@@ -81,11 +81,11 @@ class Output:
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""
         if self.form == "parquet":
-            from tactile_graph.cli.parquet import pyarrow
+            from tactile_graph.cli.output.parquet import pyarrow
 
             pyarrow()
         if self.form == "zarr" and self.name != "-":
-            from tactile_graph.cli.node_images import check_store
+            from tactile_graph.cli.output.node_images import check_store
 
             check_store("-o", self.name)
         elif self.name != "-":
@@ -94,11 +94,11 @@ class Output:
     def writer(self, pipeline: Pipeline, asked: tuple[str, ...]) -> tuple[Writer, Table | None]:
         """Return who writes it, and the table it is, if it is one."""
         if self.form == "jsonl":
-            from tactile_graph.cli.writers import JsonLines, LineFile
+            from tactile_graph.cli.output.writers import JsonLines, LineFile
 
             return LineFile(self.name, JsonLines(self.full)), None
         if self.form in STACKS:
-            from tactile_graph.cli.node_images import ImageStore, check_nodes
+            from tactile_graph.cli.output.node_images import ImageStore, check_nodes
 
             check_nodes(pipeline, asked)
             return ImageStore(self.name, self.form, pipeline, asked), None
@@ -107,11 +107,11 @@ class Output:
         table = make_table(pipeline, asked, self.long)
         made: Any
         if self.form == "csv":
-            from tactile_graph.cli.writers import Csv, LineFile
+            from tactile_graph.cli.output.writers import Csv, LineFile
 
             made = LineFile(self.name, Csv(table))
         else:
-            from tactile_graph.cli.parquet import ParquetFile
+            from tactile_graph.cli.output.parquet import ParquetFile
 
             made = ParquetFile(self.name, table)
         return made, table

@@ -88,7 +88,7 @@ class _Film:
     def save(self, stderr: Console) -> bool:
         if not self._film.n:
             return False
-        from tactile_graph.cli.progress import Bar
+        from tactile_graph.cli.output.progress import Bar
 
         bar = Bar(stderr, "film")
         try:

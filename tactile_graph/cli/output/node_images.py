@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tactile_graph.api.result import Result
-from tactile_graph.cli.array_files import Cells, Container, Growing, Hdf5, Zarr, put_in_place
+from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5, Zarr, put_in_place
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of

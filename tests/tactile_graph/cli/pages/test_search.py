@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from helpers_cli import LOADS, call, install
-from tactile_graph.cli.search import Entry, best_first
+from tactile_graph.cli.pages.search import Entry, best_first
 
 
 def names(*words: str, entries: list[Entry]) -> list[str]:

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image as Pillow
 
 from helpers_cli import call
-from tactile_graph.cli import plot
+from tactile_graph.cli.output import plot
 from tactile_graph.draw import film as films
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from helpers_cli import call, install
 from tactile_graph import Frame, Image, Mask
-from tactile_graph.cli import array_files, node_images
+from tactile_graph.cli.output import array_files, node_images
 from tactile_graph.errors import Skip
 
 FORMS = ("out.h5", "out.zarr")

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.text import Text
 
 from tactile_graph.api.result import Result
-from tactile_graph.cli.live_table import shown
+from tactile_graph.cli.output.live_table import shown
 from tactile_graph.engine.columns import OutputColumns, values_of
 from tactile_graph.engine.notices import notices
 from tactile_graph.engine.outcome import Failed, Skipped, item_words

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from helpers_cli import DISCS, install
 from tactile_graph.cli.app import cli
-from tactile_graph.cli.prepare import FRAMES, prepared
+from tactile_graph.cli.commands.prepare import FRAMES, prepared
 from tactile_graph.wires import Mask
 
 PLAIN = """\

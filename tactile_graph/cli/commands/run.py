@@ -21,15 +21,15 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.outputs import FORMATS, Output
-from tactile_graph.cli.plot import IN_A_STRIP, Plot, check_plot, plot_of
+from tactile_graph.cli.output.outputs import FORMATS, Output
+from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
-    from tactile_graph.cli.outputs import Writer
+    from tactile_graph.cli.output.outputs import Writer
     from tactile_graph.engine.table import Table
 
 LONG_RUN = 200
@@ -139,8 +139,8 @@ class _Run:
 
     def go(self) -> None:
         from tactile_graph.cli.interrupt import Interrupts
-        from tactile_graph.cli.progress import Bar
-        from tactile_graph.cli.tally import Tally
+        from tactile_graph.cli.output.progress import Bar
+        from tactile_graph.cli.output.tally import Tally
         from tactile_graph.cli.terminal import console, stdout_for_programs
         from tactile_graph.engine.columns import columns_of
         from tactile_graph.steps.injected import Report
@@ -225,7 +225,7 @@ class _Run:
 
     def _row(self, result: Result) -> None:
         if self.table is None:
-            from tactile_graph.cli.live_table import LiveTable
+            from tactile_graph.cli.output.live_table import LiveTable
 
             self.people.print(self._heading(result), soft_wrap=True)
             self.table = LiveTable(self.people, self.columns, result)

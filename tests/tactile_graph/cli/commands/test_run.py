@@ -20,7 +20,7 @@ from rich.console import Console
 
 from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, load
-from tactile_graph.cli.live_table import LiveTable
+from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.columns import columns_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
@@ -470,5 +470,5 @@ def test_a_reader_that_goes_away_ends_the_run_quietly(to):
 def test_troubles_are_told_at_once_while_no_frame_comes(monkeypatch, tmp_path):
     (tmp_path / "a.txt").write_text("1\nbad\n2\n")
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 1
-    monkeypatch.setattr("tactile_graph.cli.run.STALLED_S", -1.0)
+    monkeypatch.setattr("tactile_graph.cli.commands.run.STALLED_S", -1.0)
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 2

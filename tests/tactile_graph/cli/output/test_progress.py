@@ -7,8 +7,8 @@ import io
 import pytest
 from rich.console import Console
 
-from tactile_graph.cli import progress
-from tactile_graph.cli.progress import Bar
+from tactile_graph.cli.output import progress
+from tactile_graph.cli.output.progress import Bar
 
 
 def drawn(terminal: bool, shown: bool = True, total: int | None = 50) -> str:

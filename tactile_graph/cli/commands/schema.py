@@ -15,7 +15,7 @@ from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
-    from tactile_graph.cli.key_tables import KeyTable
+    from tactile_graph.cli.pages.key_tables import KeyTable
 
 
 def complete_kind(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
@@ -65,7 +65,7 @@ def _made(kind: str) -> dict[str, Any]:
 
 
 def _show_keys(kind: str) -> None:
-    from tactile_graph.cli.key_tables import key_tables
+    from tactile_graph.cli.pages.key_tables import key_tables
     from tactile_graph.cli.terminal import console
 
     if kind == PIPELINE:
