@@ -108,7 +108,7 @@ def _pressed(
 ) -> NDArray[np.float64]:
     """Return the load of a soft disc, in cells: 1 within, down to 0 over a cell at the rim."""
     y, x = np.mgrid[: shape[0], : shape[1]] + 0.5
-    return np.clip(radius + 0.5 - np.hypot(x - column, y - row), 0.0, 1.0)
+    return np.asarray(np.clip(radius + 0.5 - np.hypot(x - column, y - row), 0.0, 1.0))
 
 
 def _outline(rng: np.random.Generator) -> NDArray[np.float64]:
@@ -179,6 +179,7 @@ def _pitches(usual: Case) -> Iterator[Case]:
     for name, x_cm, y_cm in (
         ("an unequal pitch", 0.5, 1.7),
         ("a very unequal pitch", 0.02, 50.0),
+        ("a pitch of 1e-6 by 1e6 cm", 1e-6, 1e6),
         ("a tiny pitch of 1e-6 cm", 1e-6, 1e-6),
         ("a huge pitch of 1e6 cm", 1e6, 1e6),
     ):

@@ -15,19 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.promises import misfit
+from tactile_graph.engine.promises import broken_rule, misfit
 from tactile_graph.engine.watched import Kept
-from tactile_graph.errors import PluginError, TactileGraphError, UsageError, text_of
+from tactile_graph.errors import TactileGraphError, UsageError, text_of
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.checks import check_signature
 from tactile_graph.steps.settings import spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature, read_signature
-from tactile_graph.testing.cases import ORDINARY, RANGES, Case, cases
+from tactile_graph.testing.cases import ORDINARY, Case, cases
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
-from tactile_graph.testing.rules import broken_rule
 from tactile_graph.testing.same import same
-from tactile_graph.testing.trial import LEAST_S, TIMES, Trial, attempt
+from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
 
 SEED = 7
 QUANTITIES_TRIED = ("volt", "gram", "counts", "siemens", "raw", "level", "binary", "kilopascal")
@@ -154,7 +153,7 @@ class _Subject:
     signature: Signature
     settings: Mapping[str, Any]
 
-    def call(self) -> Callable[..., Any]:
+    def call(self) -> _Bound:
         """Return the step, ready for its ports; new state, the same random numbers each time.
 
         Raises
@@ -203,7 +202,7 @@ class _Examination:
 
     subject: _Subject
     makers: Mapping[str, Maker]
-    limit_s: float = LEAST_S
+    limit_s: float = FIRST_S
     found: dict[str, list[str]] = field(default_factory=dict)
     n_cases: int = 0
     n_values: int = 0
@@ -233,60 +232,47 @@ class _Examination:
 def _examined(subject: _Subject, makers: Makers) -> StepReport:
     usual, *others = cases()
     try:
-        quantity, ports = _ports(subject, makers, usual)
+        ports = _ports(subject, makers, usual)
     except Unmakeable:
         raise
     except Exception as error:  # the step's own __init__
-        what = f"cannot be made with its settings: {type(error).__name__}: {text_of(error)}"
-        return subject.report(broken=[Broken(("its settings",), what)])
+        return subject.report(untried=f"it refuses these settings: {text_of(error)}")
     found = _Examination(subject, ports)
-    first = _looked_at(found, usual)
+    first = _looked_at(found, usual, found.inputs(usual))
     found.limit_s = max(LEAST_S, TIMES * first.seconds)
     _copies(found, usual, first)
-    seen = {_fingerprint(found, usual)}
+    seen = {pickle.dumps(found.inputs(usual))}
     for case in others:
-        mark = _fingerprint(found, case)
-        if mark is not None and mark not in seen:
+        try:
+            inputs = found.inputs(case)
+        except Unmakeable:
+            continue
+        mark = pickle.dumps(inputs)
+        if mark not in seen:  # many cases differ in what this step does not take
             seen.add(mark)
-            _looked_at(found, case)
+            _looked_at(found, case, inputs)
     _again(found, usual, first)
     broken = [Broken(tuple(names), what) for what, names in found.found.items()]
     return subject.report(broken=broken, n_cases=found.n_cases, n_values=found.n_values)
 
 
-def _ports(subject: _Subject, makers: Makers, usual: Case) -> tuple[str, dict[str, Maker]]:
-    """Return the first quantity for which the step gives a value, and what makes its inputs."""
-    first: tuple[str, dict[str, Maker]] | None = None
+def _ports(subject: _Subject, makers: Makers, usual: Case) -> dict[str, Maker]:
+    """Return what makes its inputs, images in the first quantity that it gives a value for."""
+    first: dict[str, Maker] | None = None
     for quantity in QUANTITIES_TRIED:
         name = subject.signature.name
         ports = {
             p.name: makers.maker(p, quantity, name) for p in subject.signature.ports if p.required
         }
-        first = first or (quantity, ports)
-        trial = _Examination(subject, ports).tried(usual)
-        if trial.answered:
-            return quantity, ports
-        if not _looks_at_quantity(subject):
-            break
+        first = first or ports
+        if _Examination(subject, ports).tried(usual).answered:
+            return ports
     assert first is not None
     return first
 
 
-def _looks_at_quantity(subject: _Subject) -> bool:
-    return any("Image" in str(p.type) or "Frame" in str(p.type) for p in subject.signature.ports)
-
-
-def _fingerprint(found: _Examination, case: Case) -> bytes | None:
-    """Return the inputs of a case as bytes, to try none twice; None where there are none."""
-    try:
-        return pickle.dumps(found.inputs(case))
-    except Unmakeable:
-        return None
-
-
-def _looked_at(found: _Examination, case: Case) -> Trial:
+def _looked_at(found: _Examination, case: Case, inputs: dict[str, Any]) -> Trial:
     """Try a case, and note every promise that is broken in it."""
-    inputs = found.inputs(case)
     subject = found.subject
     kept = Kept(inputs)
     found.n_cases += 1
@@ -308,7 +294,7 @@ def _misfit(subject: _Subject, inputs: Mapping[str, Any], value: Any) -> str:
         is_sink = signature.output in (None, type(None))
         return "" if is_sink else "returns None; raise Degenerate or Skip with the reason"
     wrong = misfit(value, signature.output) or broken_rule(
-        signature, subject.settings, inputs, value
+        signature, subject.settings, inputs.get, value
     )
     if wrong:
         return wrong
@@ -332,6 +318,8 @@ def _copies(found: _Examination, usual: Case, first: Trial) -> None:
     for what, made in _pickled_and_copied(call):
         if isinstance(made, Exception):
             found.tell(ORDINARY, f"the step cannot be {what}: {_told(made)}")
+        elif made.target is call.target:
+            continue  # a function is found by its name again
         elif not same(found.tried(usual, made).value, first.value):
             found.tell(ORDINARY, f"the step {what} gives another answer")
     if not first.answered:
@@ -344,12 +332,13 @@ def _copies(found: _Examination, usual: Case, first: Trial) -> None:
 
 
 def _pickled_and_copied(value: Any) -> Iterator[tuple[str, Any]]:
-    for what, make in (
-        ("pickled", lambda: pickle.loads(pickle.dumps(value))),
-        ("copied", lambda: copy.deepcopy(value)),
-    ):
+    ways: tuple[tuple[str, Callable[[Any], Any]], ...] = (
+        ("pickled", lambda it: pickle.loads(pickle.dumps(it))),
+        ("copied", copy.deepcopy),
+    )
+    for what, way in ways:
         try:
-            yield what, make()
+            yield what, way(value)
         except Exception as error:
             yield what, error
 

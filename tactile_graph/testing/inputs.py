@@ -92,7 +92,7 @@ class Makers:
         if found is None and item is not None:
             kinds = [a for a in arms(item) if a is not type(None)]
             one = self._of(Circle if kinds[0] is Any else kinds[0], quantity, but)
-            found = None if one is None else (lambda case, one=one: (one(case),))  # type: ignore[misc]
+            found = None if one is None else (lambda case, one=one: (one(case),))
         return found
 
     def _given_by_a_step(self, kind: Any, quantity: str, but: tuple[str, ...]) -> Maker | None:
@@ -172,7 +172,10 @@ def spoiled(value: Any, number: float | None) -> Any:
     """Return a record with all its floats another number; other values as they are."""
     if number is None:
         return value
-    if isinstance(value, tuple | list) and not hasattr(value, "_fields"):
+    if hasattr(value, "_replace"):
+        floats = [n for n in value._fields if isinstance(getattr(value, n), float)]
+        return value._replace(**dict.fromkeys(floats, number))
+    if isinstance(value, tuple | list):
         return tuple(spoiled(v, number) for v in value)
     if not is_dataclass(value) or isinstance(value, type):
         return value

@@ -19,7 +19,7 @@ def same(one: Any, other: Any) -> bool:
         alike = one.shape == other.shape and one.dtype == other.dtype
         if one.dtype.hasobject:
             return alike and all(map(same, one.ravel().tolist(), other.ravel().tolist()))
-        return alike and one.tobytes() == other.tobytes()
+        return bool(alike and one.tobytes() == other.tobytes())
     if isinstance(one, Mapping):
         return list(one) == list(other) and all(same(one[k], other[k]) for k in one)
     if isinstance(one, list | tuple):
@@ -35,7 +35,7 @@ def same(one: Any, other: Any) -> bool:
 def _content(value: Any) -> list[str]:
     """Return the names of all that makes up a record; none where it must say itself."""
     if is_dataclass(value):
-        return [f.name for f in fields(value) if f.compare or not type(value).__eq__]
+        return [f.name for f in fields(value)]
     slots = [s for kind in type(value).__mro__ for s in getattr(kind, "__slots__", ())]
     # Masks count themselves when somebody asks: what is derived is not compared.
     return [s for s in slots if not s.startswith("_")]

@@ -17,6 +17,8 @@ import numpy as np
 from tactile_graph.engine.freeze import freeze
 from tactile_graph.errors import TactileGraphError, text_of
 
+FIRST_S = 60.0
+"""How long an ordinary frame may take."""
 LEAST_S = 5.0
 """No step takes too long that takes less."""
 TIMES = 30.0
