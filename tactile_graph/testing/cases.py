@@ -90,7 +90,7 @@ def ordinary() -> Case:
     return Case(ORDINARY, values, values > 0.3, _outline(rng))
 
 
-def cases() -> Iterator[Case]:
+def all_cases() -> Iterator[Case]:
     """Yield every case, the ordinary one first."""
     usual = ordinary()
     yield usual
