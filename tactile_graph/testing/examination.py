@@ -145,10 +145,10 @@ class Examination:
             if isinstance(made, Exception):
                 self._tell(ORDINARY, f"the step cannot be {what}: {_told(made)}")
                 break
-            if made.target is not call.target:  # a function is found by its name again
+            if what == "pickled" and made.target is not call.target:  # and found by its name again
                 again = self._try(made, self._inputs(usual))
                 if not _same_end(again, first):
-                    self._tell(ORDINARY, f"the step {what} gives another answer")
+                    self._tell(ORDINARY, "the step pickled gives another answer")
         for what, made in _copies(first.value) if first.answered else ():
             if isinstance(made, Exception):
                 self._tell(ORDINARY, f"its answer cannot be {what}: {_told(made)}")

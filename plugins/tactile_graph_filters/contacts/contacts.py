@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from annotated_types import Ge
@@ -80,6 +80,9 @@ class Contact:
         return part.with_values(np.where(self.mask.values, part.values, 0.0))
 
 
+SomeContact = TypeVar("SomeContact", bound=Contact)
+
+
 class Contacts(NamedTuple):
     """The contacts of a footprint."""
 
@@ -88,7 +91,13 @@ class Contacts(NamedTuple):
 
 
 def contacts_of(found: Iterable[Contact]) -> Contacts:
-    """Return contacts as a step gives them.
+    """Return contacts as a step gives them; errors as of `all_placed`."""
+    kept = all_placed(found)
+    return Contacts(kept, len(kept))
+
+
+def all_placed(found: Iterable[SomeContact]) -> tuple[SomeContact, ...]:
+    """Return contacts whose area and places are numbers.
 
     Parameters
     ----------
@@ -97,7 +106,7 @@ def contacts_of(found: Iterable[Contact]) -> Contacts:
     Raises
     ------
     DataError
-        If the area or a place of one is no finite number.
+        If the area or a place of one is not finite.
     """
     kept = tuple(found)
     for c in kept:
@@ -109,7 +118,7 @@ def contacts_of(found: Iterable[Contact]) -> Contacts:
                 f"({c.x_cm:g}, {c.y_cm:g}) cm, cells at ({c.centroid_x_cm:g}, "
                 f"{c.centroid_y_cm:g}) cm",
             )
-    return Contacts(kept, len(kept))
+    return kept
 
 
 def contacts(

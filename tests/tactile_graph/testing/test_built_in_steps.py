@@ -19,7 +19,7 @@ from tactile_graph_pads.learning.place import PlaceCorrection, write_place
 FAMILIES = sorted({p.name for p in installed().plugins if p.offers.get("steps")})
 FEW_LEVELS = {"model": {"n_levels": 6}}
 ROUGH = {"precision": 1.0, "pressure": "even"}
-FEW_OBJECTS = {"kinds": ["disc"], "most": 2}
+ONE_DISC = {"kinds": ["disc"], "most": 1}
 SETTINGS: dict[str, dict[str, Any]] = {
     # What has no default.
     "gain": {"rows": [1.0] * SHAPE[0]},
@@ -32,9 +32,19 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "trw": {"model": {"n_levels": 6, "lines": "marginal"}, "n_sweeps": 3},
     "posterior": {**FEW_LEVELS, "n_burn": 5, "n_samples": 8},
     **dict.fromkeys(
-        ("choose_shape", "identify_footprint", "footprint_rectangle", "footprint_ellipse"), ROUGH
+        (
+            "choose_shape",
+            "fit_footprint",
+            "follow_footprint",
+            "footprint_disc",
+            "footprint_ellipse",
+            "footprint_rectangle",
+            "identify_footprint",
+        ),
+        ROUGH,
     ),
-    **dict.fromkeys(("fit_footprints", "locate_objects"), FEW_OBJECTS),
+    "footprint_by_order": {"precision": 1.0},
+    **dict.fromkeys(("fit_footprints", "locate_objects"), ONE_DISC),
 }
 QUICK = ("above_noise", "erode", "fit_circle", "hull", "contacts", "force", "tare")
 NEEDS_A_PAD = ("correct_place", "correct_readings", "threshold_learned")
@@ -74,7 +84,7 @@ def test_a_sample_of_them_does(name: str) -> None:
 def test_every_step_of_a_family_does(family: str, pad: str) -> None:
     registry = isolated()
     (plugin,) = (p for p in registry.plugins if p.name == family)
-    settings = {**SETTINGS, **dict.fromkeys(NEEDS_A_PAD, {"pad": pad})}
+    settings = {**SETTINGS, **{name: {"pad": pad} for name in NEEDS_A_PAD}}
     broken, untried = [], []
     for name in plugin.offers["steps"]:
         report = examine_step(name, settings=settings.get(name), registry=registry)
