@@ -57,7 +57,8 @@ def _show(out: Console, report: PluginReport) -> None:
     n, plugin = len(report.broken), report.plugin
     head = f"{plugin.name} ({plugin.package} {plugin.version})"
     if not n:
-        words = Text.assemble((f"{head}: right", "bold green"), f"  {report.n_offers} offers")
+        offers = f"  {report.n_offers} offer{'s' if report.n_offers != 1 else ''}"
+        words = Text.assemble((f"{head}: right", "bold green"), offers)
     else:
         words = Text.assemble((f"{head}: {n} broken", "bold red"))
     out.print(words, soft_wrap=True)

@@ -46,7 +46,7 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "footprint_by_order": {"precision": 1.0},
     **dict.fromkeys(("fit_footprints", "locate_objects"), ONE_DISC),
 }
-QUICK = ("above_noise", "erode", "fit_circle", "hull", "contacts", "force", "tare")
+QUICK = ("erode", "fit_circle", "hull", "contacts", "force", "tare")
 NEEDS_A_PAD = ("correct_place", "correct_readings", "threshold_learned")
 
 
