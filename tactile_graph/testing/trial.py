@@ -23,6 +23,8 @@ LEAST_S = 5.0
 """No step takes too long that takes less."""
 TIMES = 30.0
 """How many times the time of an ordinary frame any other of its size may take."""
+IDLE = 10.0
+"""How many times its seconds of the processor a step may take by the clock: the rest is others'."""
 LONGEST_LINE = 400
 
 
@@ -43,6 +45,7 @@ class Trial:
     where : str
         File and line it was raised at.
     seconds : float
+        Of the processor.
     late : bool
         Whether it was stopped because it took too long.
     """
@@ -61,7 +64,7 @@ class Trial:
     def trouble(self) -> str:
         """Return what is wrong with how the call ended, in words; "" where nothing is."""
         if self.late:
-            return f"was stopped after {self.seconds:.0f} s"
+            return f"was stopped after {self.seconds:.1f} s of the processor"
         if self.error is None:
             return ""
         text = text_of(self.error)
@@ -92,25 +95,25 @@ def attempt(
     call : callable
     arguments : dict
     limit_s : float
-        After so many seconds it is stopped, on the main thread of systems with alarms; elsewhere
-        it is only told.
+        After so many seconds of the processor, or `IDLE` times as many by the clock, it is stopped,
+        on the main thread of systems with alarms; elsewhere it is only told.
     package : str
         Whose lines errors are told by, rather than those of what it calls.
     """
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"), _limited(limit_s):
             warnings.simplefilter("ignore")
             value = freeze(call(**arguments))
     except _TooLong:
-        return Trial(seconds=time.perf_counter() - start, late=True)
+        return Trial(seconds=time.process_time() - start, late=True)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit and whatever else a step may raise
-        spent = time.perf_counter() - start
+        spent = time.process_time() - start
         where = _place(error, package)
         return Trial(None, error.with_traceback(None), where, spent)
-    spent = time.perf_counter() - start
+    spent = time.process_time() - start
     return Trial(value, seconds=spent, late=spent > limit_s)
 
 
@@ -132,8 +135,13 @@ def _limited(seconds: float) -> Iterator[None]:
         yield
         return
 
+    start, start_s = time.process_time(), time.perf_counter()
+
     def stop(number: int, frame: FrameType | None) -> None:
-        raise _TooLong
+        left_s = seconds - (time.process_time() - start)
+        if left_s <= 0.0 or time.perf_counter() - start_s > IDLE * seconds:
+            raise _TooLong
+        signal.setitimer(signal.ITIMER_REAL, left_s)
 
     before = signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, seconds)
