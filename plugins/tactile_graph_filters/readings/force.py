@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.errors import RuleError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_nan
@@ -161,14 +162,14 @@ class Force:
 
         Raises
         ------
-        ValueError
+        RuleError
             If a force law is asked to read anything but siemens, or a calibration anything but
             what it was made of.
         """
         if self._quantity not in ("", image.quantity):
-            raise ValueError(f"the calibration reads {self._quantity}, got {image.quantity}")
+            raise RuleError(f"the calibration reads {self._quantity}, got {image.quantity}")
         if self._law is not None and image.quantity != "siemens":
-            raise ValueError(
+            raise RuleError(
                 f"a force law reads siemens, got {image.quantity}; decouple the image first,"
                 " or give curve or polynomial"
             )

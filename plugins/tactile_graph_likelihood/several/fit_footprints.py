@@ -133,7 +133,7 @@ class FitFootprints:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not square.
         Degenerate
             If nothing is touched, or no such outlines explain what is.

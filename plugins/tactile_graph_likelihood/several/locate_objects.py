@@ -112,7 +112,7 @@ class LocateObjects:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or no such outlines explain what does.

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
@@ -142,6 +143,8 @@ def posteriors_of(part: Found) -> list[Posterior]:
     out = []
     for k, kinds in enumerate(every):
         some = scene.sampled(found, k)
+        if some.log_evidence == -math.inf:
+            raise Degenerate("no outline near the likeliest one is possible: none can be told")
         n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
         alone = np.asarray(np.linalg.inv(matrix[here, here]), dtype=np.float64)
@@ -190,6 +193,8 @@ def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
         else:
             fits.append(scene.as_kind(kind, own, beside))
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
+    if not fits:
+        raise Degenerate("an outline is possible as none of the kinds: none can be told")
     logs = np.array([fit.log_evidence for fit in fits]) / (TEMPER * scene.shared)
     chances = np.exp(logs - logs.max())
     return Kinds(fits, fits[int(logs.argmax())], chances / chances.sum())

@@ -49,7 +49,7 @@ def test_invalid_cells_stay_invalid():
 
 
 def test_a_law_reads_nothing_but_siemens():
-    with pytest.raises(ValueError, match="a force law reads siemens, got volt; decouple"):
+    with pytest.raises(RuleError, match="a force law reads siemens, got volt; decouple"):
         Force()(image_of([[1.0]]))
 
 
