@@ -95,6 +95,20 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     return min(found, MOST_STRAYS)
 
 
+def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:
+    """Return whether an outline reaches more than half a pitch beyond the pad's edge.
+
+    Then nobody knows where on it its pressure is measured. A disc's rim says where it ends.
+    """
+    if kind == DISC:
+        return False
+    left, top, pitch = readings.grid[:3].tolist()
+    (x, y), (wide, high) = p[:2].tolist(), _half_extents(kind, p)
+    width, height = readings.size_cm
+    across = min(x - left, left + width - x) - wide
+    return min(across, min(y - top, top + height - y) - high) < -0.5 * pitch
+
+
 def _half_extents(kind: int, p: Values) -> tuple[float, float]:
     """Return half the width and height of an outline: no kernel, which would take a second more."""
     if kind == DISC:

@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
+    is_partly_hidden,
     learned,
     scatter_of_covered,
     strays_beyond,
@@ -158,7 +159,8 @@ class AnyPad:
             even = its._fits[EVEN].likeliest_near(readings, point)
             even = its._fits[EVEN].likeliest(readings, before=even)
         found = {EVEN: even}
-        for part in [] if large else asked_by(even.fit):
+        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
+        for part in [] if large or hidden else asked_by(even.fit):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
