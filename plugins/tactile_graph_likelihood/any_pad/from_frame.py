@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
+from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
 
 LAW = 0.35
@@ -19,9 +18,6 @@ LAW = 0.35
 
 FITTED = 3.0
 """Numbers of an outline, by which fewer residuals than readings are free."""
-
-NORMAL = 1.4826
-"""Standard deviation over the median distance from the median."""
 
 FEWEST = 6
 """Readings, for sigma to be taken from them."""
@@ -64,21 +60,6 @@ def learned(told: Noise, scatter: Values, touched: int, strays: float, law: floa
     voids = 1.0 / (1.0 + math.exp(-scatter[1]))
     contrast = 1.0 + law * math.log(sigma / told.sigma)
     return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
-
-
-def scatter_of_covered(model: Model, readings: Readings, p: Values) -> Values:
-    """Return ln sigma and the voids' log odds of the elements that an outline covers whole."""
-    rows, columns = readings.states.shape
-    box = window.call(model.kind, model.corners, p, readings.grid, rows, columns, 0.0)
-    whole = covered.call(model.kind, model.corners, p, readings.grid, box) >= 1.0
-    part = slice(box[0], box[0] + box[2]), slice(box[1], box[1] + box[3])
-    states, logs = readings.states[part][whole], readings.logs[part][whole]
-    shown, known = logs[states == ON], int(np.count_nonzero(states != UNKNOWN))
-    sigma = model.noise.sigma
-    if len(shown) >= FEWEST:
-        sigma = max(NORMAL * float(np.median(np.abs(shown - np.median(shown)))), LEAST_SIGMA)
-    voids = (known - len(shown) + model.noise.voids) / (known + 1.0)
-    return np.array([math.log(sigma), math.log(voids / (1.0 - voids))])
 
 
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:

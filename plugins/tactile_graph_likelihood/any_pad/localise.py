@@ -14,7 +14,6 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
     is_partly_hidden,
     learned,
-    scatter_of_covered,
     strays_beyond,
     variance_inflation,
 )
@@ -78,10 +77,10 @@ class AnyPad:
     Notes
     -----
     The outline is fitted with sigma and voids; also under each pressure that an even face leaves a
-    pattern of. On a pad of more than 1024 elements sigma and voids are those of what it covers
-    whole, and a pattern only widens the posterior. The likeliest of these fits is sampled with the
-    noise that it has found, an even face with the law's exponent; the others stand for themselves
-    as normal distributions, by their evidence over what neighbouring elements share.
+    pattern of. On a pad of more than 1024 elements a pattern only widens the posterior. The
+    likeliest of these fits is sampled with the noise that it has found, an even face with the law's
+    exponent; the others stand for themselves as normal distributions, by their evidence over what
+    neighbouring elements share.
     """
 
     told: Model
@@ -145,19 +144,21 @@ class AnyPad:
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
         large = readings.states.size > LARGE_PAD
-        model = self._search(self.told.noise) if large else self._fits[EVEN]
-        its, even = self, model.likeliest(readings, start=start)
-        if even.unsure:
+        its, model = self, self._fits[EVEN]
+        even = model.likeliest(readings, start=start)
+        if even.unsure and not large:
             even = model.likeliest(readings, before=even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
-        if strays > MANY * self.told.noise.strays and not large:
+        if strays > MANY * self.told.noise.strays:
             noise = replace(self.told.noise, strays=strays)
             its = replace(self, told=replace(self.told, noise=noise))
-            even = its._fits[EVEN].likeliest_near(readings, point)
-            even = its._fits[EVEN].likeliest(readings, before=even)
+            model = its._fits[EVEN]
+            even = model.likeliest_near(readings, point)
+        if even.unsure if large else its is not self:
+            even = model.likeliest(readings, before=even)
         found = {EVEN: even}
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
         for part in [] if large or hidden else asked_by(even.fit):
@@ -223,9 +224,8 @@ class AnyPad:
         """Return the posterior under a pressure, with the noise that its fit has found."""
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
-        scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, scatter, readings.touched, strays, self.law)
+        noise = learned(self.told.noise, point[-2:], readings.touched, strays, self.law)
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
