@@ -19,6 +19,9 @@ LAW = 0.35
 FITTED = 3.0
 """Numbers of an outline, by which fewer residuals than readings are free."""
 
+NORMAL = 1.4826
+"""Standard deviation over the median distance from the median."""
+
 FEWEST = 6
 """Readings, for sigma to be taken from them."""
 
@@ -86,8 +89,9 @@ def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:
     left, top, pitch = readings.grid[:3].tolist()
     (x, y), (wide, high) = p[:2].tolist(), _half_extents(kind, p)
     width, height = readings.size_cm
-    across = min(x - left, left + width - x) - wide
-    return min(across, min(y - top, top + height - y) - high) < -0.5 * pitch
+    room_x = min(x - left, left + width - x) - wide
+    room_y = min(y - top, top + height - y) - high
+    return bool(min(room_x, room_y) < -0.5 * pitch)
 
 
 def _half_extents(kind: int, p: Values) -> tuple[float, float]:

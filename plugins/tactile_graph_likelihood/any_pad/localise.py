@@ -209,7 +209,7 @@ class AnyPad:
 
         That has nine unknowns and more, for which few points are worse than none. Nor is a sample
         taken whose points are worth fewer than there are unknowns, as where strays explain all
-        there is: it would promise far too much.
+        there is, unless it promises less than a normal distribution around the top.
         """
         if part == EVEN or self.told.kind == DISC:
             try:
@@ -218,6 +218,7 @@ class AnyPad:
                 return self._normal(part, top)
             if found.equal_points > self._count:
                 return found
+            return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
         return self._normal(part, top)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
