@@ -160,7 +160,7 @@ def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, fl
     bare = (its.share <= 0.0) & (problem.states != UNKNOWN)
     count = np.count_nonzero(bare & on) + TOLD_STRAYS * told.strays
     strays = min(float(count / (np.count_nonzero(bare) + TOLD_STRAYS)), MOST_STRAYS)
-    noise = learned(told, scatter_of(its, told), MANY, strays)
+    noise = learned(told, scatter_of(its, told), MANY, strays, 0.0)
     vector, n = noise.vector(float(problem.grid[2])), found.outlines.count
     _, alike = goodness_of_load.call(its._replace(noise=vector), NUMBERS * n)
     touched = int(np.count_nonzero(on))
