@@ -18,9 +18,10 @@ from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     add_outline,
 )
+from tactile_graph_likelihood.several.ladder import LEAST_PIECE
 from tactile_graph_likelihood.several.partings import components
 from tactile_graph_likelihood.several.scene import Configuration, joined
-from tactile_graph_likelihood.several.search import LEAST_PIECE, Search
+from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import LIGHT_EDGE
@@ -201,7 +202,7 @@ def likeliest(
     begins = split(starts, scenes) if starts else [None] * len(scenes)
     every = [s.divisions(expected.most, b) for s, b in zip(scenes, begins, strict=True)]
     worths = [
-        {n: scene.worth(found) for n, found in divisions.items()}
+        {n: scene.of_number(found) for n, found in divisions.items()}
         for scene, divisions in zip(scenes, every, strict=True)
     ]
     logs, choice = chosen(worths, expected.most)

@@ -21,7 +21,7 @@ ANGLES = 12
 OWN = 1.0 / 12.0  # variance of an element's own extent, in pitches
 HALF_AXIS = 1.87  # half axis of a sketch over the standard deviation along it
 THINNEST = 0.05  # variance across a sketch over the mean one
-CLIMBED = 8  # cuts, of 24, that are climbed from
+CLIMBED = 7  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
 SAME = 0.6
 """Distance, in pitches, of the centres of sketches that are the same."""
 
@@ -170,7 +170,7 @@ def partings(
                 sketch_of(sums[n] - sums[k], problem.grid, starts[s, 1])
                 area[s] = spread(sums[k]) + spread(sums[n] - sums[k])
     worth = np.full(2 * ANGLES, -math.inf)
-    for _ in range(CLIMBED):
+    for _ in range(CLIMBED + evidence.shape[0]):
         fullest = 0
         for s in range(2 * ANGLES):
             if area[s] < area[fullest]:

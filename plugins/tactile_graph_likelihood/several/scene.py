@@ -77,6 +77,12 @@ class Configuration:
         keep = [k for k in range(self.count) if k not in left_out]
         return Configuration(self.kinds[keep], self.corners[keep], self.points[keep], 0.0)
 
+    def log_sizes_and_loads(self) -> tuple[Values, Values]:
+        """Return the logarithms of the roots of areas, and of loads."""
+        sizes = [0.5 * math.log(area_of(self, k)) for k in range(self.count)]
+        at = [unknowns.call(int(k), int(n)) for k, n in zip(self.kinds, self.corners, strict=True)]
+        return np.array(sizes), self.points[np.arange(self.count), at]
+
     def with_one(self, k: int, other: Configuration) -> Configuration:
         """Return them with another outline in the place of one."""
         kinds, corners, points = self.kinds.copy(), self.corners.copy(), self.points.copy()
@@ -212,6 +218,16 @@ def like(kind: tuple[int, int], other: Configuration) -> list[Values]:
         return [_row(p[0], p[1], corner, angle + k * turn, p[n]) for k in range(TURNS)]
     scale = 1.0 / ROUND if kind[0] == RECTANGLE else 1.0
     return [_row(p[0], p[1], scale * first, scale * second, angle, p[n])]
+
+
+def area_of(found: Configuration, k: int = 0) -> float:
+    """Return the area of one outline, in cm2."""
+    kind, n, p = int(found.kinds[k]), int(found.corners[k]), found.points[k]
+    if kind == REGULAR:
+        return float(p[2] * p[2] * _filled(n))
+    if kind == RECTANGLE:
+        return float(4.0 * p[2] * p[3])
+    return float(math.pi * p[2] * (p[2] if kind == DISC else p[3]))
 
 
 def _filled(corners: int) -> float:
