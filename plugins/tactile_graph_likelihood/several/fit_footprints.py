@@ -101,7 +101,7 @@ class FitFootprints:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "rectangle", "ellipse", "triangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 3.0,
+        more: float = 2.5,
         settings: Annotated[
             SeveralSettings,
             Spread(

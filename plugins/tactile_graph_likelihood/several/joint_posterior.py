@@ -15,6 +15,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
+from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
@@ -30,7 +31,7 @@ from tactile_graph_likelihood.single.information import (
     score_of,
     steps_of,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, is_plain, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -165,8 +166,11 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    expected = problem.load[r0:r1, c0:c1].copy()
-    total = problem.share[r0:r1, c0:c1].copy()
+    expected, total = np.empty((r1 - r0, c1 - c0)), np.empty((r1 - r0, c1 - c0))
+    for i in range(r1 - r0):
+        for j in range(c1 - c0):
+            expected[i, j] = problem.load[r0 + i, c0 + j]
+            total[i, j] = problem.share[r0 + i, c0 + j]
     before = terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total)
     for k in range(kinds.shape[0]):
         kind, n = kinds[k], corners[k]
@@ -183,6 +187,23 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
 
 
 @compiled_as_is
+def likeliest_of(problem: JointProblem, outlines: Outlines) -> int:
+    """Return which of some outlines, each by itself beside others, is the likeliest."""
+    best, top = 0, -math.inf
+    one = Outlines(np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, WIDTH)))
+    for k in range(outlines.kinds.shape[0]):
+        one.kinds[0], one.corners[0] = outlines.kinds[k], outlines.corners[k]
+        for m in range(WIDTH):
+            one.points[0, m] = outlines.points[k, m]
+        log = log_rest_of(problem, one)
+        if log > -math.inf:
+            log += gain(problem, one)
+        if log > top:
+            best, top = k, log
+    return best
+
+
+@compiled_as_is
 def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N).
 
@@ -196,9 +217,11 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     expected, total = problem.load.copy(), problem.share.copy()
     own = np.zeros((count, rows, cols))
     rise = np.zeros((count * WIDTH, rows, cols))
-    out.slope[:] = 0.0
-    out.matrix[:] = 0.0
-    at = np.empty(WIDTH)
+    at, size = np.empty(WIDTH), count * WIDTH
+    for x in range(size):
+        out.slope[x] = 0.0
+        for y in range(size):
+            out.matrix[x, y] = 0.0
     for k in range(count):
         kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
         for m in range(first + 1, WIDTH):
@@ -207,7 +230,21 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        here = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
+        its = np.zeros((first, box[2], box[3]))
+        if has_slopes(kind) and is_plain(noise):
+            here = covered_with_slopes(kind, points[k], grid, box, its)
+        else:
+            here, steps = its[0], steps_of(kind, n, points[k], grid)
+            for m in range(-1, first):  # at first where it lies: one call, which is compiled once
+                for x in range(WIDTH):
+                    at[x] = points[k, x] + (steps[m] if x == m else 0.0)
+                moved = shares_of(kind, n, at, grid, noise, box, rows, cols)
+                if m < 0:
+                    here = moved
+                    continue
+                for i in range(box[2]):
+                    for j in range(box[3]):
+                        its[m, i, j] = (moved[i, j] - here[i, j]) / steps[m]
         scale = math.exp(points[k, first])
         r, c = box[0], box[1]
         for i in range(box[2]):
@@ -215,15 +252,8 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
                 own[k, r + i, c + j] = here[i, j]
                 expected[r + i, c + j] += scale * here[i, j]
                 total[r + i, c + j] += here[i, j]
-        steps = steps_of(kind, n, points[k], grid)
-        at[:] = points[k]
-        for m in range(first):
-            at[m] += steps[m]
-            moved = shares_of(kind, n, at, grid, noise, box, rows, cols)
-            at[m] = points[k, m]
-            for i in range(box[2]):
-                for j in range(box[3]):
-                    rise[k * WIDTH + m, r + i, c + j] = (moved[i, j] - here[i, j]) / steps[m]
+                for m in range(first):
+                    rise[k * WIDTH + m, r + i, c + j] = its[m, i, j]
     _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 
