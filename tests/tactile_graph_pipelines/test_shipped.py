@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tactile_graph import load
-from tactile_graph.cli.writers import json_row
+from tactile_graph.cli.output.writers import json_row
 from tactile_graph.engine.outcome import Failed
 from tactile_graph.plugins.registry import installed
 
