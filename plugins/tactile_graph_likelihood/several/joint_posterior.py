@@ -15,7 +15,6 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
-from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
@@ -31,7 +30,7 @@ from tactile_graph_likelihood.single.information import (
     score_of,
     steps_of,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, is_plain, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -187,23 +186,6 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
 
 
 @compiled_as_is
-def likeliest_of(problem: JointProblem, outlines: Outlines) -> int:
-    """Return which of some outlines, each by itself beside others, is the likeliest."""
-    best, top = 0, -math.inf
-    one = Outlines(np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, WIDTH)))
-    for k in range(outlines.kinds.shape[0]):
-        one.kinds[0], one.corners[0] = outlines.kinds[k], outlines.corners[k]
-        for m in range(WIDTH):
-            one.points[0, m] = outlines.points[k, m]
-        log = log_rest_of(problem, one)
-        if log > -math.inf:
-            log += gain(problem, one)
-        if log > top:
-            best, top = k, log
-    return best
-
-
-@compiled_as_is
 def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N).
 
@@ -230,30 +212,21 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        its = np.zeros((first, box[2], box[3]))
-        if has_slopes(kind) and is_plain(noise):
-            here = covered_with_slopes(kind, points[k], grid, box, its)
-        else:
-            here, steps = its[0], steps_of(kind, n, points[k], grid)
-            for m in range(-1, first):  # at first where it lies: one call, which is compiled once
-                for x in range(WIDTH):
-                    at[x] = points[k, x] + (steps[m] if x == m else 0.0)
-                moved = shares_of(kind, n, at, grid, noise, box, rows, cols)
-                if m < 0:
-                    here = moved
-                    continue
-                for i in range(box[2]):
-                    for j in range(box[3]):
-                        its[m, i, j] = (moved[i, j] - here[i, j]) / steps[m]
-        scale = math.exp(points[k, first])
+        steps, scale = steps_of(kind, n, points[k], grid), math.exp(points[k, first])
         r, c = box[0], box[1]
-        for i in range(box[2]):
-            for j in range(box[3]):
-                own[k, r + i, c + j] = here[i, j]
-                expected[r + i, c + j] += scale * here[i, j]
-                total[r + i, c + j] += here[i, j]
-                for m in range(first):
-                    rise[k * WIDTH + m, r + i, c + j] = its[m, i, j]
+        for m in range(-1, first):  # at first where it lies: one call, which is compiled once
+            for x in range(WIDTH):
+                at[x] = points[k, x] + (steps[m] if x == m else 0.0)
+            here = shares_of(kind, n, at, grid, noise, box, rows, cols)
+            for i in range(box[2]):
+                for j in range(box[3]):
+                    if m >= 0:
+                        moved = here[i, j] - own[k, r + i, c + j]
+                        rise[k * WIDTH + m, r + i, c + j] = moved / steps[m]
+                        continue
+                    own[k, r + i, c + j] = here[i, j]
+                    expected[r + i, c + j] += scale * here[i, j]
+                    total[r + i, c + j] += here[i, j]
     _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 

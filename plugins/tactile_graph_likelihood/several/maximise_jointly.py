@@ -31,6 +31,8 @@ LOOSE, GAP = 0.01, 6.0
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft search
 NO_STRAYS = 1e-12
+POSTERIOR = -1
+"""Rounds of a climb that is none: only the log posterior is asked for."""
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -180,13 +182,16 @@ def settle(
 ) -> float:
     """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
 
-    With no rounds they stay where they are. At first the problem is `softened`, for ``soft``
-    rounds. The information is written to ``matrix``.
+    With no rounds they stay where they are; with `POSTERIOR` as ``most`` it is the log posterior
+    that is returned. At first the problem is `softened`, for ``soft`` rounds. The information is
+    written to ``matrix``.
     """
     now, stages = -math.inf, (softened(problem), problem)
     for stage in range(0 if soft > 0 else 1, 2):  # one call, which is compiled once
         rounds, least = (soft, 0.5) if stage == 0 else (most, enough)
         now = maximise_jointly(stages[stage], outlines, rounds, least)
+    if most == POSTERIOR:
+        return now
     return laplace_evidence(problem, outlines, now, matrix)
 
 

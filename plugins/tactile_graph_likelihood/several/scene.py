@@ -21,9 +21,8 @@ from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     Outlines,
     add_outline,
-    likeliest_of,
 )
-from tactile_graph_likelihood.several.maximise_jointly import settle
+from tactile_graph_likelihood.several.maximise_jointly import POSTERIOR, settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.even_points import even_points
@@ -165,10 +164,13 @@ class Scene:
             around = np.zeros((tries, WIDTH))
             around[:, :n] = AROUND[:n] * _table(n)[:tries]
             starts += [start + off for start in starts[:1] for off in around]
-        kinds, corners = np.full(len(starts), kind[0]), np.full(len(starts), kind[1])
-        begun = Configuration(kinds, corners, np.array(starts), 0.0)
-        best = likeliest_of.call(beside, begun.outlines) if begun.count > 1 else 0
-        return self.settled(begun.only(best), beside, ROUNDS, soft)[0]
+        begun = [
+            Configuration(np.array([kind[0]]), np.array([kind[1]]), start[None], 0.0)
+            for start in starts
+        ]
+        if len(begun) > 1:
+            begun.sort(key=lambda it: -self.settled(it, beside, POSTERIOR)[0].log_evidence)
+        return self.settled(begun[0], beside, ROUNDS, soft)[0]
 
     def worth(self, found: Configuration) -> float:
         """Return what outlines add to the log probability of a scene."""
