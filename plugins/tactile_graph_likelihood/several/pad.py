@@ -33,8 +33,11 @@ MARGIN = 2
 """Cells around a part that are looked at with it."""
 
 TEMPER = 2.0
-"""How many times less evidence between kinds, numbers of outlines and other outlines is worth: none
-of them is quite what lies there."""
+"""How many times less evidence between kinds and other outlines is worth: none of them is quite
+what lies there."""
+
+DOUBT = 4.0
+"""The same between numbers of outlines, for the probability that is stated: searches miss some."""
 
 LOADS = 1.5
 """Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
@@ -129,7 +132,7 @@ class OnPad:
     def count_probability(self) -> float:
         """Return the probability of this number among all that the search came upon."""
         here = self.counts[self.outlines.count]
-        odds = [math.exp(min((log - here) / TEMPER, 50.0)) for log in self.counts.values()]
+        odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in self.counts.values()]
         return 1.0 / sum(odds)
 
     def under(self, noise: Values, shared: float) -> OnPad:
