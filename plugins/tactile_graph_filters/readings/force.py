@@ -64,6 +64,21 @@ def load_calibrated(path: Path) -> Calibrated:
     return points, settings.get("polynomial"), settings.get("up_to"), calibration.reading
 
 
+def beyond_range(image: Image, value: Image) -> str:
+    """Return what to say of cells that read more than what gave their grams covers."""
+    if value.valid is None:
+        return ""
+    read = ~value.valid if image.valid is None else image.valid & ~value.valid
+    n = int(np.count_nonzero(read))
+    if not n:
+        return ""
+    cells = "1 cell reads" if n == 1 else f"{n} cells read"
+    return (
+        f"{cells} more than the law, curve or polynomial covers, and what is summed leaves out "
+        "their load: it is a lower bound"
+    )
+
+
 class Force:
     """Return the grams on each element.
 
@@ -99,6 +114,7 @@ class Force:
     """
 
     stateless = True
+    notice = staticmethod(beyond_range)
 
     def __init__(
         self,
