@@ -10,10 +10,10 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
+from tactile_graph_likelihood.geometry.outlines import Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
-from tactile_graph_likelihood.several.scene import Configuration
+from tactile_graph_likelihood.several.scene import Configuration, area_of
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
@@ -227,19 +227,9 @@ def _off(found: Configuration, one: Configuration, n: int) -> Values:
     """Return how far an outline lies off another, in the other's numbers, all sizes alike."""
     off, own = np.zeros(n), sizes.call(int(one.kinds[0]))
     off[:2] = found.points[0, :2] - one.points[0, :2]
-    ratio = math.sqrt(_area(found) / _area(one))
+    ratio = math.sqrt(area_of(found) / area_of(one))
     off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
     return off
-
-
-def _area(found: Configuration) -> float:
-    """Return the area of one outline, in cm2."""
-    kind, n, p = int(found.kinds[0]), int(found.corners[0]), found.points[0]
-    if kind == REGULAR:
-        return float(0.5 * n * p[2] * p[2] * math.sin(2.0 * math.pi / n))
-    if kind == RECTANGLE:
-        return float(4.0 * p[2] * p[3])
-    return float(math.pi * p[2] * (p[2] if kind == DISC else p[3]))
 
 
 def _wider(alone: Values, together: Values) -> Values:
