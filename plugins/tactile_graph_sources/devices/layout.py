@@ -176,14 +176,18 @@ class Layout:
         return np.asarray(np.count_nonzero(ups, axis=1) >= low.shape[1] - 3)
 
     def count_of_headers(self, array: NDArray[np.uint8]) -> int:
-        """Return how often the header's last three bytes occur, or as many as it has."""
-        tail = self.anchor[-3:]
-        n = len(array) - len(tail) + 1
-        skip = len(self.anchor) - len(tail)
-        fits = array[skip:n] == tail[0]
-        for i in range(1, len(tail)):
-            fits &= array[skip + i : n + i] == tail[i]
-        return int(np.count_nonzero(fits))
+        """Return how often the header occurs."""
+        n = len(array) - len(self.anchor) + 1
+        last = len(self.anchor) - 1
+        fits = array[last : last + n] == self.anchor[last]
+        if last:
+            fits &= array[last - 1 : last - 1 + n] == self.anchor[last - 1]
+        if last < 2:
+            return int(np.count_nonzero(fits))
+        places = np.flatnonzero(fits)
+        for i in range(last - 1):
+            places = places[array[places + i] == self.anchor[i]]
+        return len(places)
 
     def beginnings(self, array: NDArray[np.uint8], start: int, stop: int) -> NDArray[np.int64]:
         """Return the places from ``start`` to ``stop`` of a stream that look like beginnings."""

@@ -56,7 +56,7 @@ class Likeness:
         self._n_recent = 0
         self._n = 0
         self._expected: Expectation | None = None
-        self._spread = 0.0
+        self._spread = self._typical = 0.0
 
     def remember(self, units: NDArray[np.uint8], n: int) -> None:
         """Take note of ``n`` good units; of the last of these, shape (k, size), in their order."""
@@ -83,11 +83,14 @@ class Likeness:
         """How often what is expected was worked out anew."""
         return self._n // RENEW_AFTER
 
-    @property
-    def decides_nats(self) -> float:
-        """How many nats one phase must be ahead of another to be taken for certain."""
+    def decides(self, best: float, rest: float) -> bool:
+        """Return whether a unit's nats make its phase certain over one whose unit has ``rest``.
+
+        They must be those of a good unit, too, and ahead by what chance does not bring.
+        """
         self._expectation()
-        return DECIDES_NATS + DECIDES_SPREADS * self._spread
+        enough = DECIDES_NATS + DECIDES_SPREADS * self._spread
+        return best - rest >= enough and best >= self._typical - enough
 
     def log_likelihood(self, units: NDArray[np.uint8]) -> NDArray[np.float64]:
         """Return how likely each unit is after the last good one, in nats; 0 if none is known."""
@@ -103,7 +106,9 @@ class Likeness:
             units = self.units.astype(np.int16)
             self._expected = _expectation(units)
             past = self._expected.nats(units[1:], units[:-1])
-            self._spread = float(np.sqrt(past.var(axis=0).sum()))
+            each = past.sum(axis=1)
+            self._spread = float(np.sqrt(max(past.var(axis=0).sum(), each.var())))
+            self._typical = float(each.mean())
         return self._expected
 
 

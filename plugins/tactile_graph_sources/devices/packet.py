@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.likeness import KEPT, Likeness
-from tactile_graph_sources.devices.search import Found, Phases
+from tactile_graph_sources.devices.search import Found, Phases, Verdict
 from tactile_graph_sources.devices.units import Units
 
 RECENT = 8192
@@ -156,6 +156,7 @@ class PacketFramer:
         rows = array[at : at + n * size].reshape(n, size)
         if not self._rivalled and whole and not self._may_hold_rivals(array, rows, at):
             self.likeness.remember(rows[-KEPT:], n)
+            self.phases.last_seen = frozenset()
             self._probation = PROBATION
             return Judged(n, doubtful, False)
         rivals = self.phases.rivals(array, at, len(array) - ahead + 1)
@@ -169,6 +170,7 @@ class PacketFramer:
                 until = min(n, int(min(near[near >= i], default=n)))
                 rows = array[at + i * size : at + until * size].reshape(-1, size)
                 self.likeness.remember(rows[-KEPT:], len(rows))
+                self.phases.last_seen = frozenset()
                 self._probation = PROBATION
                 i = until
             if i >= n:
@@ -177,11 +179,11 @@ class PacketFramer:
             if i >= n_told:  # what comes next must be here to be weighed
                 break
             self._alone = 0 if i + 1 in held else self._alone + 1
-            offsets = lasting.get(i + 1, [])
+            offsets, began_in_doubt = lasting.get(i + 1, []), self._doubt
             if self._jumped(array, at + (i + 1) * size, offsets):
                 return Judged(i, doubtful[:i], True)
-            doubtful[i] = self._doubt
-            self._learn(array, at + i * size)
+            doubtful[i] = began_in_doubt or self._doubt
+            self._learn(array, at + i * size, rivals[rivals // size == i] % size)
             self._rivalled = self._doubt or bool(offsets)
             i += 1
         return Judged(i, doubtful[:i], False)
@@ -203,12 +205,11 @@ class PacketFramer:
             self._doubt = (self._doubt or self._wary) and self._alone < ALONE_FOR
             return False
         units = np.stack([array[at + o : at + o + size] for o in [0, *real]])
-        ahead_by = self.phases.ahead_by(units, real + [o for o in offsets if o not in real])
-        enough = self.likeness.decides_nats
-        self._doubt = ahead_by < enough
-        # Where no header stood among the values before, one came with the scene: that a cut of
-        # just this length came with it is unlikelier than any scene.
-        return ahead_by <= -enough and self._wary
+        verdict = self.phases.verdict(units, real + [o for o in offsets if o not in real])
+        if verdict is Verdict.EITHER and not self._doubt:
+            self._probation = 0
+        self._doubt = verdict is not Verdict.HOLDS
+        return verdict is Verdict.LOST
 
     @property
     def _wary(self) -> bool:
@@ -218,11 +219,12 @@ class PacketFramer:
     def _possible(self, array: NDArray[np.uint8], at: int) -> bool:
         return bool(self.phases.possible(array[None, at : at + self.layout.size])[0])
 
-    def _learn(self, array: NDArray[np.uint8], at: int) -> None:
+    def _learn(self, array: NDArray[np.uint8], at: int, rivals: NDArray[np.int64]) -> None:
         """Remember the unit at ``at`` if it is a good one, or was begun with good ones."""
         self._probation = self._probation - 1 if self._doubt else PROBATION
         if self._probation >= 0:
             self.likeness.remember(array[at : at + self.layout.size][None, :], 1)
+            self.phases.last_seen = frozenset(rivals.tolist())
 
     def _emit(
         self, rows: NDArray[np.uint8], at: int, doubtful: NDArray[np.bool_], out: list[Units]
@@ -260,7 +262,7 @@ class PacketFramer:
         if not found.locked:
             return found.at
         self._locked = True
-        self._doubt, self._alone = found.doubtful or self._wary, 0
+        self._doubt, self._alone = found.doubtful or self._wary or self._doubt, 0
         self._probation = 0 if found.doubtful else PROBATION
         self._rivalled = self._doubt
         self.counts.resyncs += self._ever

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +31,15 @@ class Found(NamedTuple):
     doubtful: bool = False
 
 
+class Verdict(Enum):
+    """What rivals mean for a phase."""
+
+    HOLDS = auto()
+    NEW = auto()  # a header that comes to stand among the values
+    EITHER = auto()  # the same is seen from each, and nothing else tells
+    LOST = auto()
+
+
 class Phases:
     """Finds where units start after a loss, or at first.
 
@@ -45,6 +55,7 @@ class Phases:
         self.n_lock = 2 if layout.in_pieces else max(RUN, layout.n_follow + 1)
         self.fewest = self.n_lock + (1 if layout.in_pieces else 2)
         self._standing: tuple[int, frozenset[int]] = (-1, frozenset())
+        self.last_seen: frozenset[int] = frozenset()
         self.forget()
 
     def forget(self) -> None:
@@ -74,8 +85,12 @@ class Phases:
         """Return which units hold what they must, values in the allowed range included."""
         return self.layout.ok(units) & self.layout.in_range(units)
 
-    def ahead_by(self, units: NDArray[np.uint8], offsets: list[int]) -> float:
-        """Return by how many nats the first unit's phase is ahead of the others'.
+    def verdict(self, units: NDArray[np.uint8], offsets: list[int]) -> Verdict:
+        """Weigh the phase of the first unit against others that have beginnings there, too.
+
+        Where false headers stood decides first, as it survives a change of what the pad shows.
+        Likeness alone takes the phase from none: a pad that shows something else, with a header
+        in it, is likelier than a cut of just the length that leads from header to header.
 
         Parameters
         ----------
@@ -84,21 +99,22 @@ class Phases:
         offsets : list of int
             Where, counted from the first unit, all the rivals are; those of ``units`` first.
         """
-        nats = self.likeness.log_likelihood(units)
         places = [0, *offsets]
         mine = self._stands(0, places)
-        margins = []
-        for i in range(1, len(units)):
-            theirs = self._stands(offsets[i - 1], places)
-            differ = mine - theirs
-            margins.append(differ * np.inf if differ else float(nats[0] - nats[i]))
-        return min(margins)
+        theirs = np.array([self._stands(o, places) for o in offsets[: len(units) - 1]])
+        if (mine > theirs).all():
+            return Verdict.HOLDS
+        if (theirs > mine).any():
+            return Verdict.LOST
+        nats = self.likeness.log_likelihood(units[np.append(True, theirs == mine)])
+        if self.likeness.decides(float(nats[0]), float(nats[1:].max())):
+            return Verdict.HOLDS
+        return Verdict.EITHER if mine else Verdict.NEW
 
-    def _stands(self, origin: int, places: list[int]) -> int:
+    def _stands(self, origin: int, places: list[int]) -> bool:
         """Return whether, seen from ``origin``, false headers are where they stood so far."""
         seen = {(p - origin) % self.layout.size for p in places}
-        standing = self.standing
-        return int(bool(standing) and standing <= seen)
+        return any(stood and stood <= seen for stood in (self.last_seen, self.standing))
 
     @property
     def standing(self) -> frozenset[int]:
@@ -164,10 +180,10 @@ class Phases:
         size = self.layout.size
         nats = np.array([self._nats(array, at + p, table[:-1, p]) for p in phases.tolist()])
         stands = np.array([self._stands(p, phases.tolist()) for p in phases.tolist()])
-        order = np.lexsort((-nats, -stands))
+        order = np.lexsort((-nats, ~stands))
         best = int(phases[order[0]])
         sure = len(phases) == 1 or bool(stands[order[0]] > stands[order[1]])
-        sure = sure or nats[order[0]] - nats[order[1]] >= self.likeness.decides_nats
+        sure = sure or self.likeness.decides(float(nats[order[0]]), float(nats[order[1]]))
         if sure and first[best] >= 0:
             self.forget()
             begin = int(first[best])
@@ -194,12 +210,11 @@ class Phases:
         cut at the wrong place, and the one in which it happened is so in part.
         """
         size = self.layout.size
-        enough = self.likeness.decides_nats
         for unit in range(len(table) - 1):
             offsets = [int(p) - best for p in phases.tolist() if p != best and table[unit, p]]
             starts = [at + unit * size + best + o for o in [0, *offsets]]
             rows = np.stack([array[s : s + size] for s in starts])
-            if table[unit, best] and (not offsets or self.ahead_by(rows, offsets) >= enough):
+            if table[unit, best] and (not offsets or self.verdict(rows, offsets) is Verdict.HOLDS):
                 return unit + 1
         return len(table) - 1
 
