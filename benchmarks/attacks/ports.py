@@ -277,8 +277,9 @@ def feed(kit: Kit, decoder: Decoder, sent: Sent, chunk: int) -> list[Decoded]:
 class Judge:
     """Holds what comes out against what was sent."""
 
-    def __init__(self, place: int) -> None:
+    def __init__(self, kit: Kit) -> None:
         self.row = Row()
+        self.preset = kit.preset
         self.pads: list[Pad] = []
         self.raw: list[bytes] = []
         self.ends = np.zeros(0, np.int64)
@@ -286,7 +287,7 @@ class Judge:
         self.hits: dict[str, list[int]] = {"relock": [], "sure": []}
         self.last = {"relock": -1, "sure": -1}
         self.first = 0
-        self.place = place
+        self.place = len(kit.lead_in)
         self.told: list[str] = []
 
     def send(self, sent: Sent) -> None:
@@ -338,8 +339,19 @@ class Judge:
         if min(np.count_nonzero(d.values != self.pads[k]) for k in near) <= let_off:
             return "right"
         around = [self.pads[k] for k in range(max(0, at - 8), min(len(self.pads), at + 8))]
-        strange = np.all([d.values != p for p in around], axis=0)
-        return "torn" if np.count_nonzero(strange) <= let_off else "wrong"
+        strange = np.flatnonzero(np.all([d.values != p for p in around], axis=0))
+        mixed = len(strange) == 1 and self._is_mixed(d, around, int(strange[0]))
+        return "torn" if len(strange) <= let_off + mixed else "wrong"
+
+    def _is_mixed(self, d: Decoded, around: list[Pad], cell: int) -> bool:
+        """Return whether the bytes of a cell are the first ones of one pad, the last of another."""
+        dtype = np.dtype(MARKS.get(self.preset, (">u2", b""))[0])
+        got = d.values.reshape(-1)[cell].astype(dtype).tobytes()
+        sent = [p.reshape(-1)[cell].astype(dtype).tobytes() for p in around]
+        return any(
+            any(s[:i] == got[:i] for s in sent) and any(s[i:] == got[i:] for s in sent)
+            for i in range(1, dtype.itemsize)
+        )
 
     def _tell(self, d: Decoded, at: int, verdict: str) -> None:
         setattr(self.row, verdict, getattr(self.row, verdict) + 1)
@@ -359,7 +371,7 @@ class Judge:
 def attack(kit: Kit, damage: str, kind: str, args: argparse.Namespace) -> Judge:
     """Return what comes of a kit under a damage on a kind of pad."""
     rng = np.random.default_rng([args.seed, zlib.crc32(f"{kit.preset} {damage} {kind}".encode())])
-    decoder, judge = Decoder(load_preset(kit.preset)), Judge(len(kit.lead_in))
+    decoder, judge = Decoder(load_preset(kit.preset)), Judge(kit)
     decoder.feed(kit.lead_in)
     tape = Tape(kit, kind, rng)
 

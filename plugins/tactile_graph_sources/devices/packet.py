@@ -106,7 +106,7 @@ class PacketFramer:
         rows = array[at : at + k * layout.size].reshape(k, layout.size)
         fits = layout.ok(rows)
         if layout.ahead:
-            good = fits & self._followed(array, at, k)
+            good = fits & self._followed(array, at, rows)
         else:
             good = fits & layout.checksum_ok(rows)
         n = k if good.all() else int(np.argmin(good))
@@ -119,16 +119,18 @@ class PacketFramer:
             self.counts.discarded_bytes += 1
         return at
 
-    def _followed(self, array: NDArray[np.uint8], at: int, k: int) -> NDArray[np.bool_]:
-        """Return which units have the beginnings of others right behind them."""
-        layout = self.layout
+    def _followed(
+        self, array: NDArray[np.uint8], at: int, rows: NDArray[np.uint8]
+    ) -> NDArray[np.bool_]:
+        """Return which of the units at ``at`` have the beginnings of others right behind them."""
+        layout, k = self.layout, len(rows)
         size, n = layout.size, k + layout.n_follow - 1
         following = np.ndarray((n, layout.ahead), np.uint8, array, at + size, (size, 1))
         heads = layout.ahead_ok(following)
         good = heads[:k]
         for i in range(1, layout.n_follow):
             good = good & heads[i : k + i]
-        return good
+        return good & layout.in_order(rows, following[:k])
 
     def _may_hold_rivals(self, array: NDArray[np.uint8], rows: NDArray[np.uint8], at: int) -> bool:
         """Return quickly whether good units, or what must follow them, may hold a rival."""
