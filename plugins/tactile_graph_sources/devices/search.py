@@ -20,6 +20,8 @@ Pieces of a frame must come in order besides, and take but two."""
 STANDS_FOR = 12
 """Units in most of which a header among the values must be to count as standing there."""
 MOST_CONTENDERS = 8
+SHORT_LOSS = 8
+"""Bytes that are lost often: from a header so near another one a loss leads to that one."""
 LOOKS_AHEAD = 4096
 """Bytes in which the next beginning is looked for at once."""
 
@@ -112,8 +114,9 @@ class Phases:
 
         Where false headers stood decides first, as it survives a change of what the pad shows.
         Likeness alone takes the phase from none: a pad that shows something else, with a header
-        in it, is likelier than a cut of just the length that leads from header to header.
-        After a loss (``strict``) a place must be seen on units that are like the last good ones.
+        in it, is likelier than a cut of just the length that leads from header to header; but
+        not than the loss of a byte or a few. After a loss (``strict``) a place must be seen on
+        units that are like the last good ones.
         """
         places = [0, *offsets]
         mine = bool(offsets) and self._stands(0, places)
@@ -133,7 +136,8 @@ class Phases:
         nats = self.likeness.log_likelihood(units)
         if self.likeness.decides(float(nats[0]), float(nats[1:].max())):
             return Verdict.HOLDS
-        return Verdict.EITHER if mine else Verdict.NEW
+        close = any(min(o % size, -o % size) <= SHORT_LOSS for o in standing or real)
+        return Verdict.EITHER if mine or close else Verdict.NEW
 
     def _is_typical(self, array: NDArray[np.uint8], at: int) -> bool:
         unit = array[None, at : at + self.layout.size]
