@@ -202,7 +202,7 @@ class PacketFramer:
             if high == low:
                 continue
             end = self._place + at + high * self.layout.size
-            units = self.layout.units(rows[low:high].copy(), end, self._broken)
+            units = self.layout.units(rows[low:high], end, self._broken)
             units.doubtful = bool(doubtful[low])
             self._broken = False
             out.append(units)
