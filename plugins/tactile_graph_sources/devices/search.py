@@ -121,13 +121,13 @@ class Phases:
         places = [0, *offsets]
         mine = bool(offsets) and self._stands(0, places)
         theirs = [o for o in offsets if self._stands(o, places)]
-        if strict and mine and not self._is_typical(array, at):
-            return Verdict.NEW
-        if mine and not theirs:
+        if mine and not theirs and not strict:
             return Verdict.HOLDS
         real = [o for o in offsets if self._may_start(array, at + o)]
         if not real:
             return Verdict.ALONE
+        if strict and not (mine and self._is_typical(array, at)):
+            return Verdict.NEW
         standing = [o for o in real if o in theirs]
         if bool(standing) is not mine:
             return Verdict.LOST if standing else Verdict.HOLDS
@@ -228,7 +228,9 @@ class Phases:
             first_nats, next_nats = nats[order[:2]].tolist()
             placed = bool(stands[order[0]] and not stands[order[1]])
             like = self.likeness.is_typical(float(each[order[0]].max()))
-            sure = (placed and like) or self.likeness.decides(first_nats, next_nats)
+            # Where none stands as before, the scene has changed: likeness to it says nothing.
+            both = bool(stands[order[:2]].all())
+            sure = (placed and like) or (both and self.likeness.decides(first_nats, next_nats))
         if (sure or placed or alone) and first[best] >= 0:
             self.forget()
             begin = int(first[best]) if alone else self._surely(array, at, table, best, phases)
