@@ -254,6 +254,29 @@ def test_a_header_that_moves_with_the_scene_takes_the_phase_from_none(
         assert sum(d.doubtful for d in got) <= 8
 
 
+def circling(i: int) -> Pad:
+    y, x = np.mgrid[:12, :32]
+    away = (y - 6 - 3 * np.sin(i / 8)) ** 2 + (x - 16 - 9 * np.cos(i / 8)) ** 2
+    return np.asarray(200 * np.exp(-away / 8)).astype(np.int64)
+
+
+@pytest.mark.parametrize("seed", [9, 10, 13, 16, 22])
+def test_a_scene_that_changes_in_a_burst_is_not_told_by_what_it_is_like(seed: int) -> None:
+    """The header stands elsewhere after it: the wrong phase may be more like the last frames."""
+    kit, rng = BY_NAME["flexitac-12x32"], np.random.default_rng(seed)
+    first, second = rng.integers(20, 360, 2).tolist()
+    moved = int(rng.integers(40))
+    pads = [circling(i) for i in range(20)]
+    pads += [with_header(circling(i), first) for i in range(60)]
+    pads += [with_header(circling(i + moved), second) for i in range(40)]
+    frames = [kit.encode(p, i) for i, p in enumerate(pads)]
+    frames[80] = rng.bytes(900) + frames[80][int(rng.integers(380)) :]
+    got = send(decoder_of(kit), kit, frames, 4096)
+    sent = {p.astype(np.float64).tobytes() for p in pads}
+    assert all(d.values.tobytes() in sent for d in got if not d.doubtful)
+    assert len(got) > 110
+
+
 def test_an_overwritten_frame_makes_those_after_it_no_strangers() -> None:
     """The last good frame may be damaged itself; what follows is like the ones before it."""
     kit, rng = BY_NAME["flexitac-12x32"], np.random.default_rng(0)
