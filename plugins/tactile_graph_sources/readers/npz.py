@@ -14,9 +14,19 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import QUANTITIES, Frame
 from tactile_graph_sources.readers import capcontact
+from tactile_graph_sources.readers.choice import SeveralSensorsError
+from tactile_graph_sources.readers.datasets import (
+    Held,
+    frames_of,
+    is_stack,
+    numbered,
+    time_among,
+)
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.others import document_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
+from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.truth import Truth, truth_from_json
 
 MOST_MEMBERS = 1000
@@ -45,10 +55,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     elif "values" in arrays.names:
         yield from _ours(reading, arrays)
     else:
-        values = stack_of(reading, *_only(reading, arrays))
-        reading.report.expect(len(values))
-        for matrix in values:
-            yield reading.frame(matrix)
+        yield from frames_of(reading, _foreign(reading, arrays))
 
 
 class Archive:
@@ -63,6 +70,9 @@ class Archive:
             raise DataError(self.where, f"the archive is damaged: {error}") from error
         if len(members) > MOST_MEMBERS:
             raise DataError(self.where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
+        document = document_in([m.filename for m in members])
+        if document:
+            raise DataError(self.where, document)
         arrays = [m for m in members if m.filename.endswith(".npy")]
         self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
 
@@ -123,6 +133,17 @@ class Archive:
         return array
 
 
+def _foreign(reading: Reading, arrays: Archive) -> Held:
+    """Return the only stack of another's archive, its times beside it."""
+    values, what = _only(reading, arrays)
+    outlines = {name: arrays.outline(name) for name in arrays.names}
+    stamps = {
+        n for n, (s, t) in outlines.items() if s[:1] == values.shape[:1] == s and t.kind in "iuf"
+    }
+    time = time_among(stamps)
+    return Held(values, what, Described(), arrays.load(time) if time else None, time)
+
+
 def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     where, asked = str(reading.path), reading.told.sensor
     if asked:
@@ -132,12 +153,16 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
         reading.sensors[asked] = None
         return arrays.load(asked), f"array {asked!r}"
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    stacks = [n for n, (s, t) in outlines.items() if len(s) in (2, 3) and t.kind in "buif"]
+    shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
+    stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
+    if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
+        return np.stack([arrays.load(n) for n in frames]), f"arrays {frames[0]!r} to {frames[-1]!r}"
     if len(stacks) == 1:
         return arrays.load(stacks[0]), f"array {stacks[0]!r}"
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
-        raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
+        told = f"several arrays could be it ({shapes}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
