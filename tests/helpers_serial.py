@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import binascii
 import os
 import select
 import struct
@@ -15,16 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Pad = NDArray[np.int64]
-
-
-def _crc_ccitt_false(data: bytes) -> int:
-    crc = 0xFFFF
-    for byte in data:
-        crc ^= byte << 8
-        for _ in range(8):
-            crc = (crc << 1) ^ 0x1021 if crc & 0x8000 else crc << 1
-            crc &= 0xFFFF
-    return crc
 
 
 def _zero_runs(pad: Pad) -> bytes:
@@ -46,7 +37,7 @@ def _zero_runs(pad: Pad) -> bytes:
 
 def _fabric(pad: Pad, i: int) -> bytes:
     body = b"\x01" + struct.pack(">H", 512) + struct.pack(">256H", *pad.ravel()) + bytes([i % 256])
-    return b"\xaa" + body + struct.pack(">H", _crc_ccitt_false(body)) + b"\xcc"
+    return b"\xaa" + body + struct.pack(">H", binascii.crc_hqx(body, 0xFFFF)) + b"\xcc"
 
 
 def _bare(pad: Pad, i: int) -> bytes:

@@ -56,7 +56,7 @@ def serial(
     n_frames : int, optional
         End after so many frames.
     seconds : float, optional
-        End after so long, whether frames came or not.
+        Take the frames that come in so long; end then, whether any came or not.
     queue_size : int
         Frames that may wait to be taken.
     report : Report
@@ -136,16 +136,16 @@ def _opened(
 
 
 def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) -> Arrived | None:
-    """Return the next frame, or None if none came before ``end``."""
+    """Return the next frame that came before ``end``, if it was taken later too; or None."""
     start = time.monotonic()
     while True:
         teller.tell()
         left = end - time.monotonic()
+        arrived = reader.inbox.get(max(0.0, min(REPORT_EVERY_S, left)))
+        if arrived is not None:
+            return arrived if arrived.time_s <= end else None
         if left <= 0:
             return None
-        arrived = reader.inbox.get(min(REPORT_EVERY_S, left))
-        if arrived is not None:
-            return arrived
         if give_up_s is not None and time.monotonic() - start > give_up_s:
             teller.tell(force=True)
             raise DataError(reader.url, f"no frame for {give_up_s:g} s ({reader.state})")

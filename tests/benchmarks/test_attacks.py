@@ -37,3 +37,8 @@ def test_signals_leave_whole_files() -> None:
 @pytest.mark.slow
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
     attacked("plugins.py", "--mixtures", "2")
+
+
+@pytest.mark.slow
+def test_no_port_gives_a_misaligned_frame_as_good_and_all_lock_again() -> None:
+    attacked("ports.py", "--frames", "256")

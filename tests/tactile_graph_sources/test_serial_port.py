@@ -134,6 +134,28 @@ def test_500_frames_a_second_unplugged_and_replugged(pad: FakePad, opened: threa
     assert [what.split()[0] for _, what in report.troubles] == ["lost", "back"]
 
 
+@pytest.mark.slow
+def test_frames_that_came_in_time_are_given_however_late_they_are_taken(
+    pad: FakePad, opened: threading.Event
+) -> None:
+    """A pipeline that compiles for seconds at its first frame loses none of those after it."""
+    frames = encoded(FLEXITAC, 30)
+    source = source_of(pad, FLEXITAC.preset, Report(), seconds=0.2)
+    sent = threading.Event()
+
+    def play() -> None:
+        pad.send(b"".join(frames))
+        sent.set()
+
+    with played(opened, play):
+        first = next(source)
+        assert sent.wait(20.0)
+        time.sleep(0.3)
+        rest = list(source)
+    values = [int(f.image.values[0, 0]) for f in (first, *rest)]
+    assert values == list(range(30 - HELD))
+
+
 def test_a_slow_viewer_gets_the_newest_frame(pad: FakePad, opened: threading.Event) -> None:
     report = Report()
     source = source_of(pad, FLEXITAC.preset, report, newest=True)

@@ -78,6 +78,7 @@ class Layout:
         # From the last on: tags of later rows are rarer among values than the first row's, 0.
         self.at_ahead = self.at[self.at < self.ahead][::-1]
         self.in_pieces = preset.assembler != "full"
+        self.starts_ahead = self._starts_ahead()
         self.n_follow = self._n_follow()
         self.valid_range = preset.geometry.valid_range
 
@@ -137,6 +138,25 @@ class Layout:
         bits = int(np.unpackbits(self.mask[self.at_ahead]).sum())
         return -(-ENOUGH_BITS // bits)
 
+    def _starts_ahead(self) -> Place | None:
+        """Where the number of the next piece is in what is looked at of it, if it is there."""
+        start = self.places.get("start")
+        if not self.in_pieces or start is None:
+            return None
+        return start if start.offset + start.dtype.itemsize <= self.ahead else None
+
+    def in_order(self, units: NDArray[np.uint8], heads: NDArray[np.uint8]) -> NDArray[np.bool_]:
+        """Return which pieces, shape (k, size), have the next one's beginning behind them.
+
+        A cut from the middle of a frame's last piece to that of another one leaves no other trace.
+        """
+        if self.starts_ahead is None:
+            return np.ones(len(units), dtype=np.bool_)
+        step = self.cells.count or 1
+        here = self.starts_ahead.read(units).astype(np.int64) - self.starts_ahead.value.first
+        there = self.starts_ahead.read(heads).astype(np.int64) - self.starts_ahead.value.first
+        return np.asarray(there == (here + step) % self.n_starts)
+
     def ok(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Return which units, shape (k, size), hold what they must, checksum apart."""
         if len(self.at) == 0:
@@ -176,14 +196,18 @@ class Layout:
         return np.asarray(np.count_nonzero(ups, axis=1) >= low.shape[1] - 3)
 
     def count_of_headers(self, array: NDArray[np.uint8]) -> int:
-        """Return how often the header's last three bytes occur, or as many as it has."""
-        tail = self.anchor[-3:]
-        n = len(array) - len(tail) + 1
-        skip = len(self.anchor) - len(tail)
-        fits = array[skip:n] == tail[0]
-        for i in range(1, len(tail)):
-            fits &= array[skip + i : n + i] == tail[i]
-        return int(np.count_nonzero(fits))
+        """Return how often the header occurs."""
+        n = len(array) - len(self.anchor) + 1
+        last = len(self.anchor) - 1
+        fits = array[last : last + n] == self.anchor[last]
+        if last:
+            fits &= array[last - 1 : last - 1 + n] == self.anchor[last - 1]
+        if last < 2:
+            return int(np.count_nonzero(fits))
+        places = np.flatnonzero(fits)
+        for i in range(last - 1):
+            places = places[array[places + i] == self.anchor[i]]
+        return len(places)
 
     def beginnings(self, array: NDArray[np.uint8], start: int, stop: int) -> NDArray[np.int64]:
         """Return the places from ``start`` to ``stop`` of a stream that look like beginnings."""

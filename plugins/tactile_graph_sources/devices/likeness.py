@@ -16,6 +16,11 @@ DECIDES_SPREADS = 6.0
 """By how many standard deviations of what good units came to the odds must be above that."""
 RENEW_AFTER = 8
 """Units after which what is expected is worked out anew."""
+TOLD = 8
+"""Of the units kept, the last ones, which are told from the others."""
+AFTER = 3
+"""Of the last units the one that suits best goes before: what was overwritten is like nothing."""
+SPREADS_PER_MAD = 1.4826
 STRAY = 0.02
 """Share of bytes near their last value that may after all be anything."""
 LEAST_STEP = 0.5
@@ -56,7 +61,7 @@ class Likeness:
         self._n_recent = 0
         self._n = 0
         self._expected: Expectation | None = None
-        self._spread = 0.0
+        self._spread = self._least = 0.0
 
     def remember(self, units: NDArray[np.uint8], n: int) -> None:
         """Take note of ``n`` good units; of the last of these, shape (k, size), in their order."""
@@ -83,20 +88,29 @@ class Likeness:
         """How often what is expected was worked out anew."""
         return self._n // RENEW_AFTER
 
-    @property
-    def decides_nats(self) -> float:
-        """How many nats one phase must be ahead of another to be taken for certain."""
+    def decides(self, best: float, rest: float) -> bool:
+        """Return whether a unit's nats make its phase certain over one whose unit has ``rest``.
+
+        They must be those of a good unit, too, and ahead by what chance does not bring.
+        """
         self._expectation()
-        return DECIDES_NATS + DECIDES_SPREADS * self._spread
+        enough = DECIDES_NATS + DECIDES_SPREADS * self._spread
+        return best - rest >= enough and self.is_typical(best)
+
+    def is_typical(self, nats: float) -> bool:
+        """Return whether so many nats are those of a good unit, as far as any are known."""
+        self._expectation()
+        return nats >= self._least
 
     def log_likelihood(self, units: NDArray[np.uint8]) -> NDArray[np.float64]:
-        """Return how likely each unit is after the last good one, in nats; 0 if none is known."""
+        """Return how likely each unit is after the last good ones, in nats; 0 if none is known."""
         expected = self._expectation()
         if expected is None:
             return np.zeros(len(units))
-        last = self._recent[-1][-1].astype(np.int16)
-        total: NDArray[np.float64] = expected.nats(units.astype(np.int16), last).sum(axis=1)
-        return total
+        wide = units.astype(np.int16)
+        last = self.units[-AFTER:].astype(np.int16)
+        nats = [expected.nats(wide, one).sum(axis=1) for one in last]
+        return np.asarray(np.max(nats, axis=0))
 
     def _expectation(self) -> Expectation | None:
         if self._expected is None and self._n_recent > 1:
@@ -104,7 +118,34 @@ class Likeness:
             self._expected = _expectation(units)
             past = self._expected.nats(units[1:], units[:-1])
             self._spread = float(np.sqrt(past.var(axis=0).sum()))
+            told = [past[-TOLD:].sum(axis=1), _told_ahead(units)]
+            self._least = min(_least(nats) for nats in told)
         return self._expected
+
+
+def _told_ahead(units: NDArray[np.int16]) -> NDArray[np.float64]:
+    """Return the nats of the last units as told from those before them.
+
+    So what comes next will be told, too: a contact that moves is where it never was.
+    """
+    n = max(2, len(units) - TOLD)
+    if len(units) <= n:
+        return np.full(1, -np.inf)
+    return np.asarray(_expectation(units[:n]).nats(units[n:], units[n - 1 : -1]).sum(axis=1))
+
+
+def _least(nats: NDArray[np.float64]) -> float:
+    """Return from how many nats on a unit is like those of ``nats``; a stray one counts little."""
+    middle = _median(nats)
+    if middle == -np.inf:
+        return middle
+    spread = SPREADS_PER_MAD * _median(np.abs(nats - middle))
+    return middle - DECIDES_NATS - DECIDES_SPREADS * spread
+
+
+def _median(values: NDArray[np.float64]) -> float:
+    ordered = np.sort(values)  # NumPy's own imports a megabyte of masked arrays, while a pad sends
+    return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
 
 
 def _expectation(units: NDArray[np.int16]) -> Expectation:

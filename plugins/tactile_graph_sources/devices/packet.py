@@ -12,16 +12,12 @@ from numpy.typing import NDArray
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.likeness import KEPT, Likeness
-from tactile_graph_sources.devices.search import Found, Phases
+from tactile_graph_sources.devices.search import Found, Phases, Rivals
+from tactile_graph_sources.devices.trust import Trust, Verdict
 from tactile_graph_sources.devices.units import Units
 
 RECENT = 8192
 """Bytes kept for a hint while no frame is found."""
-ALONE_FOR = 8
-"""Units without a rival after which a doubt is over: flips may hide a header now and then."""
-PROBATION = 16
-"""Units remembered although they are in doubt, after some that were not: only so can a header
-that has just come to stand among the values be learned."""
 
 
 class Judged(NamedTuple):
@@ -52,10 +48,8 @@ class PacketFramer:
         self._locked = False
         self._ever = False
         self._broken = False
-        self._doubt = False
-        self._alone = 0  # units since the last rival
+        self.trust = Trust()
         self._rivalled = False
-        self._probation = 0
         self._since_boundary = 0
         self.recent = b""
         self.near_miss: NDArray[np.uint8] | None = None
@@ -112,7 +106,7 @@ class PacketFramer:
         rows = array[at : at + k * layout.size].reshape(k, layout.size)
         fits = layout.ok(rows)
         if layout.ahead:
-            good = fits & self._followed(array, at, k)
+            good = fits & self._followed(array, at, rows)
         else:
             good = fits & layout.checksum_ok(rows)
         n = k if good.all() else int(np.argmin(good))
@@ -125,16 +119,18 @@ class PacketFramer:
             self.counts.discarded_bytes += 1
         return at
 
-    def _followed(self, array: NDArray[np.uint8], at: int, k: int) -> NDArray[np.bool_]:
-        """Return which units have the beginnings of others right behind them."""
-        layout = self.layout
+    def _followed(
+        self, array: NDArray[np.uint8], at: int, rows: NDArray[np.uint8]
+    ) -> NDArray[np.bool_]:
+        """Return which of the units at ``at`` have the beginnings of others right behind them."""
+        layout, k = self.layout, len(rows)
         size, n = layout.size, k + layout.n_follow - 1
         following = np.ndarray((n, layout.ahead), np.uint8, array, at + size, (size, 1))
         heads = layout.ahead_ok(following)
         good = heads[:k]
         for i in range(1, layout.n_follow):
             good = good & heads[i : k + i]
-        return good
+        return good & layout.in_order(rows, following[:k])
 
     def _may_hold_rivals(self, array: NDArray[np.uint8], rows: NDArray[np.uint8], at: int) -> bool:
         """Return quickly whether good units, or what must follow them, may hold a rival."""
@@ -149,80 +145,51 @@ class PacketFramer:
 
         ``whole`` tells that these are all the units that are there.
         """
-        size, ahead = self.layout.size, self.layout.ahead
-        doubtful = np.zeros(n, np.bool_)
-        if not ahead or self.layout.in_pieces:  # pieces must come in order, which rivals do not
-            return Judged(n, doubtful, False)
+        size = self.layout.size
         rows = array[at : at + n * size].reshape(n, size)
+        doubtful = np.zeros(n, np.bool_)
+        if not self.layout.ahead or self.layout.in_pieces:
+            return Judged(n, doubtful, False)  # pieces must come in order, which rivals do not
         if not self._rivalled and whole and not self._may_hold_rivals(array, rows, at):
-            self.likeness.remember(rows[-KEPT:], n)
-            self._probation = PROBATION
+            self._pass_clear(rows)
             return Judged(n, doubtful, False)
-        rivals = self.phases.rivals(array, at, len(array) - ahead + 1)
-        held = np.unique(rivals // size)
-        near = np.unique(held[:, None] - np.arange(self.layout.n_follow))
-        lasting = self._lasting(rivals)
-        n_told = (len(array) - at - ahead) // size - 2
+        rivals = self.phases.rivals_by_unit(array, at)
+        n_told = (len(array) - at - self.layout.ahead) // size - 2
         i = 0
         while i < n:
             if not self._rivalled:
-                until = min(n, int(min(near[near >= i], default=n)))
-                rows = array[at + i * size : at + until * size].reshape(-1, size)
-                self.likeness.remember(rows[-KEPT:], len(rows))
-                self._probation = PROBATION
+                until = rivals.next_near(i, n)
+                self._pass_clear(rows[i:until])
                 i = until
-            if i >= n:
+            self._rivalled |= i < n
+            if i >= min(n, n_told):  # what comes next must be here to be weighed
                 break
-            self._rivalled = True
-            if i >= n_told:  # what comes next must be here to be weighed
-                break
-            self._alone = 0 if i + 1 in held else self._alone + 1
-            offsets = lasting.get(i + 1, [])
-            if self._jumped(array, at + (i + 1) * size, offsets):
+            began_in_doubt = self.trust.doubt
+            if self._jumped(array, at, i, rivals):
                 return Judged(i, doubtful[:i], True)
-            doubtful[i] = self._doubt
-            self._learn(array, at + i * size)
-            self._rivalled = self._doubt or bool(offsets)
+            doubtful[i] = began_in_doubt or self.trust.doubt
             i += 1
         return Judged(i, doubtful[:i], False)
 
-    def _lasting(self, rivals: NDArray[np.int64]) -> dict[int, list[int]]:
-        """Return for each unit where within it a rival is that is there one unit later, too."""
-        size = self.layout.size
-        here = np.intersect1d(rivals, rivals - size, assume_unique=True)
-        out: dict[int, list[int]] = {}
-        for place in here.tolist():
-            out.setdefault(place // size, []).append(place % size)
-        return out
+    def _pass_clear(self, rows: NDArray[np.uint8]) -> None:
+        """Remember units near which no rival is."""
+        self.likeness.remember(rows[-KEPT:], len(rows))
+        self.phases.last_seen = frozenset()
+        self.trust.pass_clear(len(rows))
 
-    def _jumped(self, array: NDArray[np.uint8], at: int, offsets: list[int]) -> bool:
-        """Weigh the unit at ``at`` against those at offsets; set the doubt, say if it lost."""
-        size = self.layout.size
-        real = [o for o in offsets if self._possible(array, at + o)]
-        if not real:
-            self._doubt = (self._doubt or self._wary) and self._alone < ALONE_FOR
-            return False
-        units = np.stack([array[at + o : at + o + size] for o in [0, *real]])
-        ahead_by = self.phases.ahead_by(units, real + [o for o in offsets if o not in real])
-        enough = self.likeness.decides_nats
-        self._doubt = ahead_by < enough
-        # Where no header stood among the values before, one came with the scene: that a cut of
-        # just this length came with it is unlikelier than any scene.
-        return ahead_by <= -enough and self._wary
-
-    @property
-    def _wary(self) -> bool:
-        """Whether a rival has stood so far: where it is not seen, that may be a flip's doing."""
-        return bool(self.phases.standing)
-
-    def _possible(self, array: NDArray[np.uint8], at: int) -> bool:
-        return bool(self.phases.possible(array[None, at : at + self.layout.size])[0])
-
-    def _learn(self, array: NDArray[np.uint8], at: int) -> None:
-        """Remember the unit at ``at`` if it is a good one, or was begun with good ones."""
-        self._probation = self._probation - 1 if self._doubt else PROBATION
-        if self._probation >= 0:
-            self.likeness.remember(array[at : at + self.layout.size][None, :], 1)
+    def _jumped(self, array: NDArray[np.uint8], at: int, unit: int, rivals: Rivals) -> bool:
+        """Weigh the phase at the end of a unit, and remember the unit; or say that it was lost."""
+        end = at + (unit + 1) * self.layout.size
+        offsets = rivals.lasting(unit + 1)
+        verdict = self.phases.verdict(array, end, offsets, self.trust.strict)
+        if verdict is Verdict.LOST:
+            return True
+        self.trust.weigh(verdict, bool(rivals.within(unit + 1)), self.phases.wary)
+        if not self.trust.strict:
+            self.likeness.remember(array[end - self.layout.size : end][None, :], 1)
+            self.phases.last_seen = rivals.within(unit)
+        self._rivalled = self.trust.doubt or bool(offsets)
+        return False
 
     def _emit(
         self, rows: NDArray[np.uint8], at: int, doubtful: NDArray[np.bool_], out: list[Units]
@@ -235,7 +202,7 @@ class PacketFramer:
             if high == low:
                 continue
             end = self._place + at + high * self.layout.size
-            units = self.layout.units(rows[low:high].copy(), end, self._broken)
+            units = self.layout.units(rows[low:high], end, self._broken)
             units.doubtful = bool(doubtful[low])
             self._broken = False
             out.append(units)
@@ -260,9 +227,8 @@ class PacketFramer:
         if not found.locked:
             return found.at
         self._locked = True
-        self._doubt, self._alone = found.doubtful or self._wary, 0
-        self._probation = 0 if found.doubtful else PROBATION
-        self._rivalled = self._doubt
+        self.trust.lock(found.doubtful, self.phases.wary)
+        self._rivalled = self.trust.doubt
         self.counts.resyncs += self._ever
         self._ever = True
         if self.layout.anchor:

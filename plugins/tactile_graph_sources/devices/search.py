@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.likeness import Likeness
+from tactile_graph_sources.devices.trust import SURE, Verdict
 
 MOST_UNITS = 16
 """Units that are waited for before a phase is taken that nothing favours."""
@@ -18,6 +20,8 @@ Pieces of a frame must come in order besides, and take but two."""
 STANDS_FOR = 12
 """Units in most of which a header among the values must be to count as standing there."""
 MOST_CONTENDERS = 8
+SHORT_LOSS = 8
+"""Bytes that are lost often: from a header so near another one a loss leads to that one."""
 LOOKS_AHEAD = 4096
 """Bytes in which the next beginning is looked for at once."""
 
@@ -28,6 +32,29 @@ class Found(NamedTuple):
     at: int
     locked: bool = False
     doubtful: bool = False
+
+
+class Rivals:
+    """Where beginnings are that are none of a phase's units, by unit."""
+
+    def __init__(self, places: NDArray[np.int64], size: int, n_follow: int) -> None:
+        self._within: dict[int, set[int]] = {}
+        for place in places.tolist():
+            self._within.setdefault(place // size, set()).add(place % size)
+        self._near = sorted({unit - i for unit in self._within for i in range(n_follow)})
+
+    def next_near(self, unit: int, stop: int) -> int:
+        """Return the first from ``unit`` on that has a rival, or before one; at most ``stop``."""
+        i = bisect_left(self._near, unit)
+        return min(self._near[i], stop) if i < len(self._near) else stop
+
+    def within(self, unit: int) -> frozenset[int]:
+        """Return where in a unit rivals are."""
+        return frozenset(self._within.get(unit, ()))
+
+    def lasting(self, unit: int) -> list[int]:
+        """Return where in a unit rivals are that are there one unit later, too."""
+        return sorted(self.within(unit) & self.within(unit + 1))
 
 
 class Phases:
@@ -45,6 +72,7 @@ class Phases:
         self.n_lock = 2 if layout.in_pieces else max(RUN, layout.n_follow + 1)
         self.fewest = self.n_lock + (1 if layout.in_pieces else 2)
         self._standing: tuple[int, frozenset[int]] = (-1, frozenset())
+        self.last_seen: frozenset[int] = frozenset()
         self.forget()
 
     def forget(self) -> None:
@@ -70,35 +98,63 @@ class Phases:
             places = places[held[places // size]]
         return np.asarray(places)
 
+    def rivals_by_unit(self, array: NDArray[np.uint8], at: int) -> Rivals:
+        """Return the rivals of the phase of ``at`` in all that came since."""
+        places = self.rivals(array, at, len(array) - self.layout.ahead + 1)
+        return Rivals(places, self.layout.size, self.layout.n_follow)
+
     def possible(self, units: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Return which units hold what they must, values in the allowed range included."""
         return self.layout.ok(units) & self.layout.in_range(units)
 
-    def ahead_by(self, units: NDArray[np.uint8], offsets: list[int]) -> float:
-        """Return by how many nats the first unit's phase is ahead of the others'.
+    def verdict(
+        self, array: NDArray[np.uint8], at: int, offsets: list[int], strict: bool = False
+    ) -> Verdict:
+        """Weigh the phase of the unit at ``at`` against those of beginnings at offsets from it.
 
-        Parameters
-        ----------
-        units : ndarray of uint8, shape (1 + k, size)
-            One of the phase that is weighed, and one of each rival's.
-        offsets : list of int
-            Where, counted from the first unit, all the rivals are; those of ``units`` first.
+        Where false headers stood decides first, as it survives a change of what the pad shows.
+        Likeness alone takes the phase from none: a pad that shows something else, with a header
+        in it, is likelier than a cut of just the length that leads from header to header; but
+        not than the loss of a byte or a few. After a loss (``strict``) a place must be seen on
+        units that are like the last good ones.
         """
-        nats = self.likeness.log_likelihood(units)
         places = [0, *offsets]
-        mine = self._stands(0, places)
-        margins = []
-        for i in range(1, len(units)):
-            theirs = self._stands(offsets[i - 1], places)
-            differ = mine - theirs
-            margins.append(differ * np.inf if differ else float(nats[0] - nats[i]))
-        return min(margins)
+        mine = bool(offsets) and self._stands(0, places)
+        theirs = [o for o in offsets if self._stands(o, places)]
+        if mine and not theirs and not strict:
+            return Verdict.HOLDS
+        real = [o for o in offsets if self._may_start(array, at + o)]
+        if not real:
+            return Verdict.ALONE
+        if strict and not (mine and self._is_typical(array, at)):
+            return Verdict.NEW
+        standing = [o for o in real if o in theirs]
+        if bool(standing) is not mine:
+            return Verdict.LOST if standing else Verdict.HOLDS
+        size = self.layout.size
+        units = np.stack([array[at + o : at + o + size] for o in [0, *(standing or real)]])
+        nats = self.likeness.log_likelihood(units)
+        if self.likeness.decides(float(nats[0]), float(nats[1:].max())):
+            return Verdict.HOLDS
+        close = any(min(o % size, -o % size) <= SHORT_LOSS for o in standing or real)
+        return Verdict.EITHER if mine or close else Verdict.NEW
 
-    def _stands(self, origin: int, places: list[int]) -> int:
+    def _is_typical(self, array: NDArray[np.uint8], at: int) -> bool:
+        unit = array[None, at : at + self.layout.size]
+        return self.likeness.is_typical(float(self.likeness.log_likelihood(unit)[0]))
+
+    def _may_start(self, array: NDArray[np.uint8], at: int) -> bool:
+        return bool(self.possible(array[None, at : at + self.layout.size])[0])
+
+    def _stands(self, origin: int, places: list[int]) -> bool:
         """Return whether, seen from ``origin``, false headers are where they stood so far."""
         seen = {(p - origin) % self.layout.size for p in places}
-        standing = self.standing
-        return int(bool(standing) and standing <= seen)
+        return any(stood and stood <= seen for stood in (self.last_seen, self.standing))
+
+    @property
+    def wary(self) -> bool:
+        """Whether a rival has stood so far: where it is not seen, that may be a flip's doing."""
+        return bool(self.standing)
 
     @property
     def standing(self) -> frozenset[int]:
@@ -149,7 +205,7 @@ class Phases:
         first = np.full(size, -1)
         for unit, phase in np.argwhere(runs).tolist():
             start = at + unit * size + phase
-            if first[phase] < 0 and self.possible(array[None, start : start + size])[0]:
+            if first[phase] < 0 and self._may_start(array, start):
                 first[phase] = unit
         return first
 
@@ -162,18 +218,23 @@ class Phases:
         phases: NDArray[np.int64],
     ) -> Found:
         size = self.layout.size
-        nats = np.array([self._nats(array, at + p, table[:-1, p]) for p in phases.tolist()])
+        each = [self._nats(array, at + p, table[:-1, p]) for p in phases.tolist()]
+        nats = np.array([n.mean() for n in each])
         stands = np.array([self._stands(p, phases.tolist()) for p in phases.tolist()])
-        order = np.lexsort((-nats, -stands))
-        best = int(phases[order[0]])
-        sure = len(phases) == 1 or bool(stands[order[0]] > stands[order[1]])
-        sure = sure or nats[order[0]] - nats[order[1]] >= self.likeness.decides_nats
-        if sure and first[best] >= 0:
+        order = np.lexsort((-nats, ~stands))
+        best, alone = int(phases[order[0]]), len(phases) == 1
+        placed, sure = False, alone and not self.wary
+        if not alone:
+            first_nats, next_nats = nats[order[:2]].tolist()
+            placed = bool(stands[order[0]] and not stands[order[1]])
+            like = self.likeness.is_typical(float(each[order[0]].max()))
+            # Where none stands as before, the scene has changed: likeness to it says nothing.
+            both = bool(stands[order[:2]].all())
+            sure = (placed and like) or (both and self.likeness.decides(first_nats, next_nats))
+        if (sure or placed or alone) and first[best] >= 0:
             self.forget()
-            begin = int(first[best])
-            if len(phases) > 1:
-                begin = self._surely(array, at, table, best, phases)
-            return Found(at + begin * size + best, locked=True)
+            begin = int(first[best]) if alone else self._surely(array, at, table, best, phases)
+            return Found(at + begin * size + best, locked=True, doubtful=not sure)
         if len(table) < MOST_UNITS:
             return self._wait(at)
         ready = [p for p in phases[order].tolist() if first[p] >= 0]
@@ -194,21 +255,21 @@ class Phases:
         cut at the wrong place, and the one in which it happened is so in part.
         """
         size = self.layout.size
-        enough = self.likeness.decides_nats
         for unit in range(len(table) - 1):
             offsets = [int(p) - best for p in phases.tolist() if p != best and table[unit, p]]
-            starts = [at + unit * size + best + o for o in [0, *offsets]]
-            rows = np.stack([array[s : s + size] for s in starts])
-            if table[unit, best] and (not offsets or self.ahead_by(rows, offsets) >= enough):
+            start = at + unit * size + best
+            if table[unit, best] and self.verdict(array, start, offsets) in SURE:
                 return unit + 1
         return len(table) - 1
 
-    def _nats(self, array: NDArray[np.uint8], start: int, there: NDArray[np.bool_]) -> float:
-        """Return the mean log likelihood of a phase's units; impossible ones count as refuted."""
+    def _nats(
+        self, array: NDArray[np.uint8], start: int, there: NDArray[np.bool_]
+    ) -> NDArray[np.float64]:
+        """Return the log likelihood of each possible unit of a phase; one of -inf if none is."""
         size = self.layout.size
         units = array[start : start + len(there) * size].reshape(-1, size)[there]
         units = units[self.possible(units)]
-        return float(self.likeness.log_likelihood(units).mean()) if len(units) else -np.inf
+        return self.likeness.log_likelihood(units) if len(units) else np.array([-np.inf])
 
     def _wait(self, at: int) -> Found:
         self._n_units += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.preset import Preset, Text, unit_cells
@@ -21,7 +22,9 @@ class TextFramer:
         text = preset.framer
         self.counts = counts
         self.geometry = preset.geometry
+        self.between = text.separator
         self.separator = text.separator.encode()
+        self.digits = b"0123456789 \t".replace(self.separator, b"")
         self.head = text.prefix.encode() + self.separator if text.prefix else b""
         self.size_head = text.size_prefix.encode() + self.separator if text.size_prefix else b""
         self.timed = text.time_unit_s is not None
@@ -46,7 +49,7 @@ class TextFramer:
         self._buffer += data
         *lines, self._buffer = self._buffer.replace(b"\r", b"\n").split(b"\n")
         out: list[Units] = []
-        rows: list[list[int]] = []
+        rows: list[NDArray[np.int64]] = []
         ends: list[int] = []
         for line in lines:
             self._place += len(line) + 1
@@ -104,7 +107,7 @@ class TextFramer:
             self._place += len(self._buffer)
             self._buffer, self._skipping, self._broken = b"", True, True
 
-    def _flush(self, rows: list[list[int]], ends: list[int], out: list[Units]) -> None:
+    def _flush(self, rows: list[NDArray[np.int64]], ends: list[int], out: list[Units]) -> None:
         if rows:
             out.append(self._units(rows, ends))
             rows.clear()
@@ -115,29 +118,28 @@ class TextFramer:
         self._run = (self._broken, self._opens)
         self._broken = self._opens = False
 
-    def _units(self, rows: list[list[int]], ends: list[int]) -> Units:
+    def _units(self, rows: list[NDArray[np.int64]], ends: list[int]) -> Units:
         """Return a run of lines, with what went before it."""
         broken, opens = self._run
-        numbers = np.array(rows, dtype=np.int64).reshape(len(rows), self.n_numbers)
+        numbers = np.stack(rows)
         time = numbers[:, 0] if self.timed else None
         cells = numbers[:, 1:] if self.timed else numbers
         return Units(cells, np.array(ends, dtype=np.int64), broken, opens, time=time)
 
-    def _line(self, line: bytes) -> list[int] | None:
+    def _line(self, line: bytes) -> NDArray[np.int64] | None:
         """Return a line's numbers, or None where it is bad or junk (counted as such)."""
         if self._skipping:
             self._skipping = False
             self.counts.discarded_bytes += len(line) + 1
             return None
-        if line.translate(None, b"0123456789 \t") != self.residue or self._wrong_size:
+        if line.translate(None, self.digits) != self.residue or self._wrong_size:
             self._refuse(line)
             return None
-        parts = line[len(self.head) :].split(self.separator)
         try:
-            numbers = list(map(int, parts[:-1] if self.trailing else parts))
+            numbers = np.fromstring(line[len(self.head) :], np.int64, sep=self.between)
         except ValueError:
-            numbers = []
-        if not numbers or max(numbers) > LARGEST:
+            numbers = np.zeros(0, np.int64)
+        if len(numbers) != self.n_numbers or numbers.max() > LARGEST:
             self._bad(line, "number")
             return None
         return numbers
@@ -147,7 +149,7 @@ class TextFramer:
         if self.size_head and line.startswith(self.size_head):
             self._take_size(line)
             return
-        rest = line.translate(None, b"0123456789 \t")
+        rest = line.translate(None, self.digits)
         if not line.startswith(self.head):
             self._junk(line)
         elif rest.replace(self.separator, b"") != self.head[:-1]:
