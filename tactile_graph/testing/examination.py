@@ -47,6 +47,10 @@ class Examination:
     subject : Subject
     makers : mapping of str to callable
         What makes each port's value of a `Case`.
+    limit_s : float
+        Processor time that a call may take; set from the ordinary case.
+    n_cases, n_values : int
+        Cases tried, and those that were answered with a value.
     """
 
     subject: Subject

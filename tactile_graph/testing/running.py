@@ -27,7 +27,7 @@ def run_step(
     ----------
     step : str or callable
         Its name, or the function or class itself.
-    inputs : object
+    *inputs : object
         By the order of its ports; a bare array becomes an image of pitch 1 cm and quantity ``raw``.
     settings : mapping, optional
         As under ``with`` in a pipeline; checked as there.
@@ -73,7 +73,7 @@ def run_pipeline(
     ----------
     pipeline : str or Path
         Its text (anything with a line break or a brace), name or file.
-    frames : Frame or ndarray
+    *frames : Frame or ndarray
         Those of the pipeline's own source if none is given.
     settings : mapping, optional
         ``{"node.setting": value}``.

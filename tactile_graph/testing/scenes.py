@@ -22,7 +22,7 @@ def scene(*objects: Any, seed: int = 0, **settings: Any) -> Frame:
 
     Parameters
     ----------
-    objects : Circle, Ellipse, Rectangle, Polygon or mapping
+    *objects : Circle, Ellipse, Rectangle, Polygon or mapping
         Shapes of 500 g where they say, or objects as in the file of a scene; none for an empty pad.
     seed : int
         Of all that is random: noise, unevenness, places that are left to chance.
