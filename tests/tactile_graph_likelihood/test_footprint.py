@@ -206,7 +206,7 @@ def test_what_holds_no_answer_says_why():
     with pytest.raises(RuleError, match=r"gap_cm: must be below the pitch of 0\.2 cm"):
         made(FootprintDisc)(Image(np.ones((4, 4)), (0.2, 0.2), (0.0, 0.0), "gram"))
     bad = Image(np.full((4, 4), np.nan), (1.3, 1.3), (0.0, 0.0), "gram")
-    with pytest.raises(ValueError, match="NaN or infinity"):
+    with pytest.raises(DataError, match="NaN or infinity"):
         made(FootprintDisc)(bad)
     with pytest.raises(ValueError, match="smallest_cm: must be below largest_cm"):
         made(FootprintDisc, smallest_cm=5.0, largest_cm=2.0)
