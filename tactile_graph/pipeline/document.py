@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pathlib
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
 DEEPEST = 40
 MOST_CHARACTERS = 1_000_000
+MOST_BYTES = 4 * MOST_CHARACTERS
 OFTEN_READ = 20_000  # characters; nodes of longer texts are not kept
 
 _SCALARS = {
@@ -89,6 +91,23 @@ def _columns(text: str) -> int:
         0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
         for c in text
     )
+
+
+def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES) -> str:
+    """Return a file's text, as far as it has an end; no more of it is read than is allowed.
+
+    Raises
+    ------
+    UsageError
+        If it is longer.
+    OSError, UnicodeDecodeError
+        If it cannot be read, or is not UTF-8.
+    """
+    with path.open("rb") as file:
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise UsageError(f"{str(path)!r} is longer than {most_bytes} bytes")
+    return data.decode("utf-8-sig")
 
 
 def read_document(text: str, file: str) -> Document:

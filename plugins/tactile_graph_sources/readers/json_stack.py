@@ -20,6 +20,9 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
 NAME = "JSON of frames"
+FEW_LISTS, CHARACTERS_A_LIST = 500_000, 40
+"""How many lists and objects may be in a file: more would take more memory than their numbers."""
+MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 Cells = NDArray[np.float64]
 
 
@@ -92,19 +95,34 @@ def _content(reading: Reading) -> Any:
         text = reading.path.read_text(encoding=reading.head.encoding)
     except ValueError as error:
         raise DataError(where, f"its text is damaged: {error}") from error
+    n_lists = text.count("[") + text.count("{")
+    if n_lists > FEW_LISTS + len(text) // CHARACTERS_A_LIST:
+        raise DataError(
+            where,
+            f"its JSON holds {n_lists} lists in {len(text)} characters; allowed are {FEW_LISTS}, "
+            f"and one more for each {CHARACTERS_A_LIST} characters",
+        )
     whole = _parsed(text)
-    if whole is not None:
-        return whole
-    lines = []
+    return _by_lines(reading, text) if whole is None else whole
+
+
+def _by_lines(reading: Reading, text: str) -> list[Any]:
+    """Return what each line holds; lines that hold no object and no list are damaged."""
+    lines: list[Any] = []
+    n_damaged = 0
     for number, line in enumerate(text.splitlines(), 1):
         if line.strip():
             entry = _parsed(line)
-            if entry is None:
-                reading.damaged(number, "no JSON")
-            else:
+            if isinstance(entry, dict | list):
                 lines.append(entry)
-    if not lines:
-        raise DataError(where, "it begins as JSON does, and is none, as a whole or by lines")
+                continue
+            n_damaged += 1
+            reading.damaged(number, "no JSON object or list")
+            if n_damaged > MOST_DAMAGED + len(lines):
+                break
+    if len(lines) < n_damaged:
+        text = "it begins as JSON does, and is none, as a whole or by lines"
+        raise DataError(str(reading.path), text)
     return lines
 
 
@@ -142,6 +160,8 @@ def entries_of(where: str, content: Any) -> Entries:
         if not nested and _is_matrix(content):
             content = [content]
         return Entries(content, None, "", Described(), what)
+    if len(content[0]) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
     key = _only(where, [k for k, v in content[0].items() if isinstance(v, list)])
     time = next((k for k in content[0] if _is_time(k)), "")
     objects = [e if isinstance(e, dict) else {} for e in content]
@@ -151,6 +171,8 @@ def entries_of(where: str, content: Any) -> Entries:
 
 
 def _of_object(where: str, content: dict[str, Any]) -> Entries:
+    if len(content) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)

@@ -29,13 +29,13 @@ def nested(folder: Path, levels: int, uses: int = 1) -> Path:
 def read_files(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """Return the files that are read."""
     read: list[Path] = []
-    text = module._text
+    text = module.text_of_file
 
     def noted(path: Path) -> str:
         read.append(path)
         return text(path)
 
-    monkeypatch.setattr(module, "_text", noted)
+    monkeypatch.setattr(module, "text_of_file", noted)
     return read
 
 
