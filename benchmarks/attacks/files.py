@@ -6,9 +6,8 @@
 
 Recordings, pipelines, conditions, pads, presets, scenes, databases and their exports, at most 20 MB
 each. A file that is refused must be within 0.5 CPU seconds and 200 MB beyond what the process held
-before; text that has to be parsed to its end before anything is known of it may take 0.25 s and
-60 MB for each MB. What is read may take in proportion to its frames. Every reading is in a process
-of its own.
+before. What is read may take in proportion to the file, its frames and their values. Every reading
+is in a process of its own.
 """
 
 from __future__ import annotations
@@ -37,11 +36,10 @@ from tactile_graph_sources.recording import recording
 from tactile_graph_sources.scene import load_scene
 
 MOST_S, MOST_MB = 0.5, 200.0
-PARSED_S, PARSED_MB = 0.0, 0.0
-"""For each MB of a text that has to be parsed as a whole."""
 ENOUGH_FRAMES, ENOUGH_VALUES = 20_000, 100_000_000
-READ_S, READ_MB = 5e-4, 3e-4
-"""For each frame that is given, and for each of its values."""
+READ_S, READ_MB = 0.5, 50.0
+"""For each MB of a file that is read, beyond what its frames and values may take."""
+FRAME_S, FRAME_MB, VALUE_S, VALUE_MB = 5e-4, 3e-4, 1e-6, 16e-6
 
 
 class Hostile(NamedTuple):
@@ -160,15 +158,13 @@ def read(file: Hostile, path: Path) -> tuple[str, str]:
         return "FOREIGN", repr(error)
 
 
-def allowed(came: str, megabytes: float, parsed: bool) -> tuple[float, float]:
+def allowed(came: str, megabytes: float) -> tuple[float, float]:
     """Return the seconds and the memory that reading a file may take."""
     seconds, memory = MOST_S, MOST_MB
-    if parsed:
-        seconds, memory = max(seconds, PARSED_S * megabytes), max(memory, PARSED_MB * megabytes)
     if came.startswith("read "):
         _, n, values = came.split()
-        seconds += READ_S * int(n) + 1e-6 * int(values) + PARSED_S * megabytes
-        memory += READ_MB * int(n) + 16e-6 * int(values) + PARSED_MB * megabytes
+        seconds += FRAME_S * int(n) + VALUE_S * int(values) + READ_S * megabytes
+        memory += FRAME_MB * int(n) + VALUE_MB * int(values) + READ_MB * megabytes
     return seconds, memory
 
 
@@ -177,7 +173,7 @@ def judged(file: Hostile, found: Measured, megabytes: float) -> Attempt:
     kind = file.what.partition(":")[0]
     came = found.came.partition(" ")[0] if found.came.startswith("read") else found.came
     why = "" if came.islower() else found.why
-    most_s, most_mb = allowed(found.came, megabytes, "text:" in file.what)
+    most_s, most_mb = allowed(found.came, megabytes)
     if not why and (found.seconds > most_s or found.megabytes > most_mb):
         why = f"too much; allowed are {most_s:.1f} s, {most_mb:.0f} MB"
     if why:
@@ -201,7 +197,8 @@ def attack(files: Sequence[Hostile]) -> Iterator[Attempt]:
                 # Made by a process of its own too, or this one would grow.
                 made = measured(lambda f=file, o=own: (str(f.make(Path(o))), ""))  # type: ignore[misc]
                 path = Path(made.came)
-                size = path.stat().st_size / 1e6 if path.is_file() else 0.0
+                files = [path, *path.rglob("*")] if path.is_relative_to(own) else []
+                size = sum(f.stat().st_size for f in files if f.is_file()) / 1e6
                 found = measured(lambda f=file, p=path: read(f, p))  # type: ignore[misc]
                 yield judged(file, found, size)
 

@@ -177,12 +177,16 @@ class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
 
 
 class _Loader(yaml.SafeLoader):
-    """Counts levels: PyYAML descends as deep as Python's stack, however deep that is."""
+    """Counts levels, for PyYAML descends as deep as Python's stack, and values while they come."""
 
     depth = 0
+    count = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         self.depth += 1
+        self.count += 1
+        if self.count > MOST_NODES:
+            raise _TooMuch(f"more than {MOST_NODES} values")
         if self.depth > DEEPEST:
             raise _TooMuch(f"deeper than {DEEPEST} levels")
         node: yaml.Node | None = super().compose_node(parent, index)

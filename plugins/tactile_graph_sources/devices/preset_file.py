@@ -8,7 +8,15 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, did_you_mean, one_of, shown
+from tactile_graph.errors import (
+    Mark,
+    PipelineError,
+    Problem,
+    UsageError,
+    did_you_mean,
+    one_of,
+    shown,
+)
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.plugins.registry import installed
 from tactile_graph_sources.devices import preset as records

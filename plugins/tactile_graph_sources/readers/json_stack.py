@@ -20,8 +20,7 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
 NAME = "JSON of frames"
-FEW_LISTS, CHARACTERS_A_LIST = 500_000, 40
-"""How many lists and objects may be in a file: more would take more memory than their numbers."""
+FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 Cells = NDArray[np.float64]
 
@@ -95,15 +94,23 @@ def _content(reading: Reading) -> Any:
         text = reading.path.read_text(encoding=reading.head.encoding)
     except ValueError as error:
         raise DataError(where, f"its text is damaged: {error}") from error
-    n_lists = text.count("[") + text.count("{")
-    if n_lists > FEW_LISTS + len(text) // CHARACTERS_A_LIST:
-        raise DataError(
-            where,
-            f"its JSON holds {n_lists} lists in {len(text)} characters; allowed are {FEW_LISTS}, "
-            f"and one more for each {CHARACTERS_A_LIST} characters",
-        )
+    _check_size(where, text)
     whole = _parsed(text)
     return _by_lines(reading, text) if whole is None else whole
+
+
+def _check_size(where: str, text: str) -> None:
+    """Refuse a text whose lists would take far more memory, or hold more, than frames do."""
+    n_lists, n_commas = text.count("[") + text.count("{"), text.count(",")
+    if n_lists > FEW_LISTS + n_commas * 2 // 3:
+        raise DataError(
+            where,
+            f"its JSON has {n_lists} lists and objects and {n_commas} commas; allowed are "
+            f"{FEW_LISTS}, and two more for every three commas",
+        )
+    if n_commas > LONGEST_LIST * max(n_lists, 1):
+        told = f"its JSON has {n_commas} commas and {n_lists} lists; allowed are {LONGEST_LIST}"
+        raise DataError(where, f"{told} a list")
 
 
 def _by_lines(reading: Reading, text: str) -> list[Any]:
@@ -117,10 +124,10 @@ def _by_lines(reading: Reading, text: str) -> list[Any]:
                 lines.append(entry)
                 continue
             n_damaged += 1
-            reading.damaged(number, "no JSON object or list")
+            reading.damaged(number, "no JSON" if entry is None else "no object and no list")
             if n_damaged > MOST_DAMAGED + len(lines):
                 break
-    if len(lines) < n_damaged:
+    if not lines or n_damaged > MOST_DAMAGED + len(lines):
         text = "it begins as JSON does, and is none, as a whole or by lines"
         raise DataError(str(reading.path), text)
     return lines

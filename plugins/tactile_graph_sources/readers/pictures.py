@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import logging
+import os
 import re
 import warnings
 import zipfile
@@ -81,7 +82,8 @@ def read_folder(reading: Reading) -> Iterator[Frame]:
 
 def pictures_in(folder: Path) -> list[str]:
     """Return the names of a folder's pictures in their order; none where it holds no picture."""
-    names = [p.name for p in folder.iterdir() if p.is_file() and p.suffix.lower() in NAMES]
+    with os.scandir(folder) as entries:
+        names = [e.name for e in entries if e.name.lower().endswith(NAMES) and e.is_file()]
     return in_order(names)
 
 
