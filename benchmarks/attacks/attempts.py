@@ -1,4 +1,4 @@
-"""What every attack here has in common: attempts, a seed, an end, and a table of what came of it."""
+"""What all attacks here have in common: attempts, a seed, an end, a table of what came of them."""
 
 from __future__ import annotations
 

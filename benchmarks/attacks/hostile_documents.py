@@ -49,7 +49,9 @@ def documents() -> Iterator[tuple[str, Callable[[], str]]]:
         "a tag": lambda: "!" + "x" * 900_000 + " 1",
         "a tag, binary": lambda: "!!binary " + "A" * 900_000,
         "a set": lambda: "!!set {" + ",".join(f"k{i}" for i in range(50_000)) + "}",
-        "an ordered map": lambda: "!!omap [" + ",".join(f"{{k{i}: 1}}" for i in range(30_000)) + "]",
+        "an ordered map": lambda: "!!omap ["
+        + ",".join(f"{{k{i}: 1}}" for i in range(30_000))
+        + "]",
         "a number by force": lambda: "!!int x",
         "a long key": lambda: "{" + "k" * 900_000 + ": 1}",
         "a key of a list": lambda: "{[1, 2]: 3, {a: 1}: 2}",
@@ -75,8 +77,9 @@ def documents() -> Iterator[tuple[str, Callable[[], str]]]:
     for what, value in values.items():
         yield f"{what}, as a value", lambda v=value: f"about: {v()}\n"
         yield f"{what}, alone", value
-        yield f"{what}, in a node", lambda v=value: (
-            PIPELINE.replace("level_v: 1", "level_v: " + v()) + END
+        yield (
+            f"{what}, in a node",
+            lambda v=value: PIPELINE.replace("level_v: 1", "level_v: " + v()) + END,
         )
 
 
@@ -122,13 +125,15 @@ def pipelines() -> Iterator[tuple[str, Callable[[], str]]]:
             for i in range(1_000)) + "outputs: [n0]\n",
         "a use of /dev/zero": lambda: head + "  a: {use: /dev/zero.yaml, in: frame}\n" + END,
         "a use of a device": lambda: head + "  a: {use: /dev/zero, in: frame}\n" + END,
-        "a use of a long name": lambda: head + f"  a: {{use: {'x' * 900_000}, in: frame}}\n" + END,
-        "a step of a long name": lambda: head + f"  a: {{step: {'x' * 900_000}, in: frame}}\n" + END,
+        "a use of a long name": lambda: head + f"  a: {{use: {'x' * 900_000}, in: frame}}\n"
+        + END,
+        "a step of a long name": lambda: head + f"  a: {{step: {'x' * 900_000}, in: frame}}\n"
+        + END,
         "a step of a long import": lambda: head + f"  a: {{step: {'os.' * 300_000}x, in: frame}}\n"
         + END,
         "a step of the system": lambda: head + "  a: {step: 'os:system', in: frame}\n" + END,
-        "an input of many dots": lambda: head + f"  a: {{step: threshold, in: frame{'.a' * 400_000}}}"
-        "\n" + END,
+        "an input of many dots": lambda: head
+        + f"  a: {{step: threshold, in: frame{'.a' * 400_000}}}\n" + END,
         "a scene in the source": lambda: "source: {step: simulate, with: {scene: {objects: ["
         + "{shape: disc, weight_g: 1, radius_cm: 1}," * 4_000 + "]}}}\n" + PIPELINE + END,
         "a pad of a million cells": lambda: "source: {step: simulate, with: {scene: discs, pad: "
@@ -144,22 +149,36 @@ def pipelines() -> Iterator[tuple[str, Callable[[], str]]]:
 def conditions() -> Iterator[tuple[str, str]]:
     """Yield what may stand behind ``when`` of a node that is at hand as ``f``."""
     yield from {
-        "a list repeated": "len([f.count]*500000000) > 3", "a tuple repeated": "len((1,)*f.count) > 3",
-        "a text repeated": "'x'*1000000000 == 'y'", "a text formatted": "'%1000000000d' % f.count == 1",
-        "a power": "f.count ** 9999999 > 1", "a shift": "1 << f.count > 1",
+        "a list repeated": "len([f.count]*500000000) > 3",
+        "a tuple repeated": "len((1,)*f.count) > 3",
+        "a text repeated": "'x'*1000000000 == 'y'",
+        "a text formatted": "'%1000000000d' % f.count == 1",
+        "a power": "f.count ** 9999999 > 1",
+        "a shift": "1 << f.count > 1",
         "products": "*".join(["99999999999999999999"] * 80) + " > f.count",
         "products of a field": "*".join(["f.count"] * 240) + " > 1",
-        "digits": "9" * 1_900 + " > f.count", "many digits": "9" * 100_000 + " > f.count",
-        "parentheses": "(" * 900 + "f.count" + ")" * 900, "nots": "not " * 450 + "f.count",
-        "minuses": "-" * 1_900 + "f.count > 1", "ands": " and ".join(["f.count > 0"] * 130),
-        "comparisons": " < ".join(["f.count"] * 200), "a list": f"f.count in [{'1,' * 900}]",
-        "lists of lists": "f.count in " + "[" * 900 + "]" * 900, "a lambda": "(lambda: 1)()",
-        "an attribute": "f.__class__.__mro__[1] == 1", "an import": "__import__('os').system('id') == 1",
-        "a comprehension": "[x for x in range(10**9)] == 1", "an f-string": "f'{f.count:>1000000000}' == 1",
-        "a call": "max(*[1]*1000000000) > f.count", "sums": "sum([f.count]*100000000) > 1",
-        "a division": "1 // (f.count - f.count) > 1", "a modulo": "1e308 * 1e308 % f.count > 1",
-        "blanks": "f.count" + " " * 100_000 + "> 1", "a null": "f.count > 1\0", "a walrus": "(x := 9) > 1",
-    }.items()  # fmt: skip
+        "digits": "9" * 1_900 + " > f.count",
+        "many digits": "9" * 100_000 + " > f.count",
+        "parentheses": "(" * 900 + "f.count" + ")" * 900,
+        "nots": "not " * 450 + "f.count",
+        "minuses": "-" * 1_900 + "f.count > 1",
+        "ands": " and ".join(["f.count > 0"] * 130),
+        "comparisons": " < ".join(["f.count"] * 200),
+        "a list": f"f.count in [{'1,' * 900}]",
+        "lists of lists": "f.count in " + "[" * 900 + "]" * 900,
+        "a lambda": "(lambda: 1)()",
+        "an attribute": "f.__class__.__mro__[1] == 1",
+        "an import": "__import__('os').system('id') == 1",
+        "a comprehension": "[x for x in range(10**9)] == 1",
+        "an f-string": "f'{f.count:>1000000000}' == 1",
+        "a call": "max(*[1]*1000000000) > f.count",
+        "sums": "sum([f.count]*100000000) > 1",
+        "a division": "1 // (f.count - f.count) > 1",
+        "a modulo": "1e308 * 1e308 % f.count > 1",
+        "blanks": "f.count" + " " * 100_000 + "> 1",
+        "a null": "f.count > 1\0",
+        "a walrus": "(x := 9) > 1",
+    }.items()
 
 
 def databases() -> Iterator[tuple[str, Make]]:
@@ -183,24 +202,34 @@ def databases() -> Iterator[tuple[str, Make]]:
         return make
 
     endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT"
-    yield "objects without end", made(
-        "DROP TABLE objects",
-        f"CREATE VIEW objects AS {endless} i AS id, 'x' || i AS name, 'disc' AS shape, "
-        "8 AS n_readings, '' AS learned_at FROM n",
+    yield (
+        "objects without end",
+        made(
+            "DROP TABLE objects",
+            f"CREATE VIEW objects AS {endless} i AS id, 'x' || i AS name, 'disc' AS shape, "
+            "8 AS n_readings, '' AS learned_at FROM n",
+        ),
     )
-    yield "readings without end", made(
-        "DROP TABLE readings",
-        f"CREATE VIEW readings AS {endless} i AS id, 1 AS object_id, 'x' AS source, i AS place "
-        "FROM n",
+    yield (
+        "readings without end",
+        made(
+            "DROP TABLE readings",
+            f"CREATE VIEW readings AS {endless} i AS id, 1 AS object_id, 'x' AS source, i AS place "
+            "FROM n",
+        ),
     )
-    yield "features without end", made(
-        "DROP TABLE features",
-        f"CREATE VIEW features AS {endless} i AS id, 'f' || i AS name, i AS place FROM n",
+    yield (
+        "features without end",
+        made(
+            "DROP TABLE features",
+            f"CREATE VIEW features AS {endless} i AS id, 'f' || i AS name, i AS place FROM n",
+        ),
     )
     yield "a name of 1 GB", made("UPDATE objects SET name = zeroblob(900000000)")
     yield "a name of 300 MB", made("UPDATE objects SET shape = hex(zeroblob(9000000))")
-    yield "an index that runs", made(
-        "CREATE TRIGGER t AFTER INSERT ON objects BEGIN DELETE FROM readings; END"
+    yield (
+        "an index that runs",
+        made("CREATE TRIGGER t AFTER INSERT ON objects BEGIN DELETE FROM readings; END"),
     )
     yield "garbage", file_of("a.sqlite", lambda: b"SQLite format 3\0" + b"x" * 19_000_000)
     yield "zeros", file_of("a.sqlite", lambda: bytes(MOST_BYTES))

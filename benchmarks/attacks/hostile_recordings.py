@@ -7,7 +7,6 @@ import io
 import json
 import struct
 import sys
-import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -79,16 +78,20 @@ def arrays() -> Iterator[tuple[str, Make]]:
     """Yield files of NumPy, and archives."""
     for n in (150, 255, 1000, 3900):
         for shape in ((n << 9, 16, 16), (n << 17,), (1, 1 << 10, n << 7)):
-            yield f"npz of {n} MB of zeros, {shape}", file_of(
-                "a.npz", lambda n=n, shape=shape: archive("values.npy", npy_head(shape), n)
+            yield (
+                f"npz of {n} MB of zeros, {shape}",
+                file_of(
+                    "a.npz", lambda n=n, shape=shape: archive("values.npy", npy_head(shape), n)
+                ),
             )
     for shape in ("(1000000000, 16, 16)", "(-5, 16, 16)", "(2, 3037000500, 3037000500)",
                   "(99999999999999999999, 4, 4)", "(1000000, 0, 16)", "((((" * 5000, "()",
                   "(16, 16.0)", "(" + "1," * 200_000 + ")", "(5000000, 2, 2)"):  # fmt: skip
         head = npy_head(shape, version=2)
         yield f"npy that says {shape[:40]}", file_of("a.npy", lambda h=head: h + bytes(4096))
-        yield f"npz that says {shape[:40]}", file_of(
-            "a.npz", lambda h=head: zipped({"values.npy": h + bytes(4096)})
+        yield (
+            f"npz that says {shape[:40]}",
+            file_of("a.npz", lambda h=head: zipped({"values.npy": h + bytes(4096)})),
         )
     types = "[" + ",".join(f"('f{i}', '<f8')" for i in range(60_000)) + "]"
     for descr in (types, "'O'", "'|V1000000000'", "'<U500000000'", "'<f8' " + "+1" * 100_000):
@@ -98,23 +101,29 @@ def arrays() -> Iterator[tuple[str, Make]]:
     yield "npy with a head of 19 MB", file_of("a.npy", lambda: long + bytes(32))
     yield "npy of 20 MB in one row", file_of("a.npy", lambda: npy_head((1, 2_490_000), version=2)
                                              + bytes(19_920_000))  # fmt: skip
-    yield "npz of 20,000 members", file_of(
-        "a.npz", lambda: npz(**{f"a{i}": np.zeros((2, 2)) for i in range(20_000)})
+    yield (
+        "npz of 20,000 members",
+        file_of("a.npz", lambda: npz(**{f"a{i}": np.zeros((2, 2)) for i in range(20_000)})),
     )
-    yield "npz of 900 members", file_of(
-        "a.npz", lambda: npz(**{f"a{i}": np.zeros((20, 20)) for i in range(900)})
+    yield (
+        "npz of 900 members",
+        file_of("a.npz", lambda: npz(**{f"a{i}": np.zeros((20, 20)) for i in range(900)})),
     )
     yield "zip of 150,000 empty members", file_of("a.zip", lambda: zipped(
         {f"{i}": b"" for i in range(150_000)}))  # fmt: skip
-    yield "npz whose members are 60,000 letters each", file_of(
-        "a.npz", lambda: npz(**{chr(97 + i) * 60_000: np.zeros((2, 2)) for i in range(20)})
+    yield (
+        "npz whose members are 60,000 letters each",
+        file_of(
+            "a.npz", lambda: npz(**{chr(97 + i) * 60_000: np.zeros((2, 2)) for i in range(20)})
+        ),
     )
     yield "npz of our own, labels of 100 million letters", file_of(
         "a.npz", lambda: npz(values=np.zeros((2, 4, 4)), label=np.array(["x" * 40_000_000, ""]))
         [:0] + archive("label.npy", npy_head((1,), "'<U100000000'"), 382)
     )  # fmt: skip
-    yield "npz of our own, truth deep", file_of(
-        "a.npz", lambda: npz(values=np.ones((2, 4, 4)), truth=np.array("[" * 1_000_000))
+    yield (
+        "npz of our own, truth deep",
+        file_of("a.npz", lambda: npz(values=np.ones((2, 4, 4)), truth=np.array("[" * 1_000_000))),
     )
     yield "npz of our own, truth wide", file_of(
         "a.npz", lambda: npz(values=np.ones((2, 4, 4)), truth=np.array("[" + "[]," * 1_000_000 +
@@ -151,22 +160,29 @@ def pictures() -> Iterator[tuple[str, Make]]:
     packed = b"\x78\xda" + zeros_deflated(400) + struct.pack(">I", 0)
     for side in (1_900, 5_000, 13_000, 20_000, 60_000, 2**31 - 1):
         yield f"PNG of {side} x {side}", file_of("a.png", lambda s=side: png(s, s, packed))
-        yield f"zip of a PNG of {side} x {side}", file_of(
-            "a.zip", lambda s=side: zipped({f"{i}.png": png(s, s, packed) for i in range(9)})
+        yield (
+            f"zip of a PNG of {side} x {side}",
+            file_of(
+                "a.zip", lambda s=side: zipped({f"{i}.png": png(s, s, packed) for i in range(9)})
+            ),
         )
     text = b"a\0\0" + zlib.compress(bytes(50 << 20), 9)
-    yield "PNG of a text of 50 MB", file_of(
-        "a.png", lambda: png(8, 8, zlib.compress(bytes(72)), *([(b"zTXt", text)] * 20))
+    yield (
+        "PNG of a text of 50 MB",
+        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), *([(b"zTXt", text)] * 20))),
     )
-    yield "PNG of a colour profile of 50 MB", file_of(
-        "a.png", lambda: png(8, 8, zlib.compress(bytes(72)), (b"iCCP", text))
+    yield (
+        "PNG of a colour profile of 50 MB",
+        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), (b"iCCP", text))),
     )
     small = picture(np.zeros((4, 4), np.uint8), "png")
-    yield "zip of 20,000 PNGs", file_of(
-        "a.zip", lambda: zipped({f"{i}.png": small for i in range(20_000)})
+    yield (
+        "zip of 20,000 PNGs",
+        file_of("a.zip", lambda: zipped({f"{i}.png": small for i in range(20_000)})),
     )
-    yield "zip of a PNG that is none, 1 GB of zeros", file_of(
-        "a.zip", lambda: archive("a.png", small, 1000)
+    yield (
+        "zip of a PNG that is none, 1 GB of zeros",
+        file_of("a.zip", lambda: archive("a.png", small, 1000)),
     )
     usual = {256: (4, 1, 8), 257: (4, 1, 8), 258: (3, 1, 8), 259: (3, 1, 1), 262: (3, 1, 1),
              273: (4, 1, 200), 277: (3, 1, 1), 278: (4, 1, 8), 279: (4, 1, 64)}  # fmt: skip
@@ -178,13 +194,17 @@ def pictures() -> Iterator[tuple[str, Make]]:
         {322: (4, 1, 30_000), 323: (4, 1, 30_000), 324: (4, 1, 200), 325: (4, 1, 64)},
     }.items():  # fmt: skip
         yield f"TIFF {what}", file_of("a.tif", lambda c=changed: tiff(usual | c, bytes(400)))
-    yield "TIFF whose directories go round", file_of(
-        "a.tif", lambda: tiff(usual, bytes(400), following=8)
+    yield (
+        "TIFF whose directories go round",
+        file_of("a.tif", lambda: tiff(usual, bytes(400), following=8)),
     )
     deflated = zlib.compress(bytes(400 << 20), 9)
     bomb = {256: (4, 1, 20_000), 257: (4, 1, 20_000), 259: (3, 1, 8), 278: (4, 1, 20_000),
             279: (4, 1, len(deflated))}  # fmt: skip
-    yield "TIFF of 400 MB of zeros", file_of("a.tif", lambda: tiff(usual | bomb, deflated).ljust(300))
+    yield (
+        "TIFF of 400 MB of zeros",
+        file_of("a.tif", lambda: tiff(usual | bomb, deflated).ljust(300)),
+    )
     many = io.BytesIO()
 
     def pages() -> bytes:
@@ -200,8 +220,10 @@ def pictures() -> Iterator[tuple[str, Make]]:
     tiny = b"GIF89a" + struct.pack("<HHBBB", 1_900, 1_900, 0x80, 0, 0) + bytes(6)
     dot = b"," + struct.pack("<HHHHB", 0, 0, 1, 1, 0) + b"\x02\x02\x4c\x01\0"
     yield "GIF of 1,900 x 1,900 in 100,000 pictures", file_of("a.gif", lambda: tiny + dot * 100_000)
-    bmp = b"BM" + struct.pack("<IHHI", 1000, 0, 0, 54) + struct.pack(
-        "<IiiHHIIiiII", 40, 60_000, 60_000, 1, 8, 0, 0, 0, 0, 256, 0
+    bmp = (
+        b"BM"
+        + struct.pack("<IHHI", 1000, 0, 0, 54)
+        + struct.pack("<IiiHHIIiiII", 40, 60_000, 60_000, 1, 8, 0, 0, 0, 0, 256, 0)
     )
     yield "BMP of 60,000 x 60,000", file_of("a.bmp", lambda: bmp + bytes(2000))
     jpeg = picture(np.zeros((16, 16), np.uint8), "jpg")
@@ -282,13 +304,12 @@ def texts() -> Iterator[tuple[str, Make]]:
         "utf-16"))  # fmt: skip
     yield "text: bytes that are no text", file_of("a.csv", lambda: b"\xff1,2\n" * 4_000_000)
     yield "binary: zeros", file_of("a.bin", lambda: bytes(MOST_BYTES))
-    yield "binary: at random", file_of(
-        "a.bin", lambda: np.random.default_rng(0).bytes(MOST_BYTES)
-    )
+    yield "binary: at random", file_of("a.bin", lambda: np.random.default_rng(0).bytes(MOST_BYTES))
     yield "gzip", file_of("a.gz", lambda: gzip.compress(bytes(200 << 20)))
     for dialect in dialects():
-        yield f"{dialect.name} with numbers inflated", file_of(
-            "a.dat", lambda d=dialect: inflated(d.content)
+        yield (
+            f"{dialect.name} with numbers inflated",
+            file_of("a.dat", lambda d=dialect: inflated(d.content)),
         )
 
 
@@ -397,21 +418,27 @@ def hdf5() -> Iterator[tuple[str, Make]]:
         group["outer"] = h5py.ExternalLink("/dev/zero", "x")
 
     for shape in ((10**6, 16, 16), (10**12, 16, 16), (1_900_000, 16, 16), (2, 20_000, 10_000)):
-        yield f"HDF5 of {shape}, never written", made(
-            lambda f, s=shape: f.create_dataset("values", s, "f8", chunks=(1, 16, 16)))
+        yield (
+            f"HDF5 of {shape}, never written",
+            made(lambda f, s=shape: f.create_dataset("values", s, "f8", chunks=(1, 16, 16))),
+        )
         yield f"HDF5 of {shape}, one chunk", made(
             lambda f, s=shape: f.create_dataset("values", s, "f8", chunks=(1, 16, 16)).__setitem__(
                 (0, 0, 0), 1.0))  # fmt: skip
     yield "HDF5 packed, 480 MB of zeros", made(
         lambda f: f.create_dataset("values", (60, 1_000, 1_000), "f8", compression="gzip",
                                    chunks=(1, 1_000, 1_000)).__setitem__(..., 0.0))  # fmt: skip
-    yield "HDF5 of 20,000 datasets", made(
-        lambda f: [f.create_dataset(f"d{i}", (2, 2, 2)) for i in range(20_000)])
+    yield (
+        "HDF5 of 20,000 datasets",
+        made(lambda f: [f.create_dataset(f"d{i}", (2, 2, 2)) for i in range(20_000)]),
+    )
     yield "HDF5 of 3,000 groups in each other", made(nested)
     yield "HDF5 of a dataset elsewhere", made(virtual)
     yield "HDF5 that goes round", made(looped)
-    yield "HDF5 with 8,000 attributes", made(
-        lambda f: [f.attrs.__setitem__(f"a{i}", "x" * 500) for i in range(8_000)])
+    yield (
+        "HDF5 with 8,000 attributes",
+        made(lambda f: [f.attrs.__setitem__(f"a{i}", "x" * 500) for i in range(8_000)]),
+    )
 
 
 def mcap() -> Iterator[tuple[str, Make]]:
@@ -425,8 +452,9 @@ def mcap() -> Iterator[tuple[str, Make]]:
         return struct.pack("<I", len(words)) + words
 
     head = mark + record(1, text(b"") + text(b""))
-    channel = record(4, struct.pack("<HH", 1, 0) + text(b"/t") + text(b"json") + struct.pack("<I",
-                                                                                             0))
+    channel = record(
+        4, struct.pack("<HH", 1, 0) + text(b"/t") + text(b"json") + struct.pack("<I", 0)
+    )
     message = record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + b"[[1,2],[3,4]]")
     bomb = struct.pack("<QQQI", 0, 0, 4 << 30, 0)
     end = record(2, bytes(20)) + mark

@@ -4,11 +4,10 @@
     python benchmarks/attacks/pipelines.py --tries 100000    # half an hour
 
 Each try changes a file that is shipped: letters, words and lines lost, doubled and exchanged, words
-of YAML and of Python put in, parts of another file, bytes that are no text. It is loaded, and planned
-if it is a pipeline. Allowed are a pipeline and errors for people, within half a CPU
-second beyond what a file of its kind takes as it is shipped. Counted
-as foreign code is whatever starts a process, writes a file, or imports a module that only words of
-these files name.
+of YAML and of Python put in, parts of another file, bytes that are no text. It is loaded, and if it
+is a pipeline planned. It may be what it was or an error for people, within half a CPU second beyond
+what files of its kind take as they are shipped. Counted as foreign code is whatever starts a
+process, writes a file, or imports a module that only words of these files name.
 """
 
 from __future__ import annotations
@@ -37,16 +36,17 @@ from tactile_graph_sources.scene import load_scene
 SLOW_S = 0.5
 CANARY = "attack_canary"
 WORDS = (
-    "", "~", "[]", "{}", "yes", "1e400", ".nan", "-.inf", "0x" + "f" * 5000, "9" * 4400, "-1", "1:30",
-    "1" + ":59" * 400, "frame", "frame.image", "a.b.c", "*a", "&a x", "<<: *a", "? ", "!!int x",
+    "", "~", "[]", "{}", "yes", "1e400", ".nan", "-.inf", "0x" + "f" * 5000, "9" * 4400, "-1",
+    "1:30", "1" + ":59" * 400, "frame", "frame.image", "a.b.c", "*a", "&a x", "<<: *a", "? ",
+    "!!int x",
     "!!set {a, b}", "!!binary aGk=", "!!python/name:os.system", "!!python/object:x.y {}",
     f"!!python/module:{CANARY}", f"!!python/object/apply:{CANARY}.run []",
     "!!python/object/apply:os.system ['true']", f"{CANARY}:run", f"{CANARY}.run", "os:system",
     f"__import__('{CANARY}')", "().__class__.__base__.__subclasses__()", "2020-01-01", "2020-99-99",
-    "'", '"', '"\\0"', '"\\ud800"', "\u2028", "\ufeff", "\t", "- ", ": ", "#", "|\n", ">-\n", "%YAML 2",
-    "---\n", "...\n", "(" * 300, "not " * 400 + "a", "-" * 1500 + "a", "x" * 3000, "[" * 60, "{a: " * 50,
-    "../" * 40 + "x.yaml", "/dev/zero", "/etc/passwd", "step", "use", "each", "when", "with", "in",
-    "extends", "objects", "geometry", "framer", "rows", "1e-320", "1e308", "-0.0", "10**9",
+    "'", '"', '"\\0"', '"\\ud800"', "\u2028", "\ufeff", "\t", "- ", ": ", "#", "|\n", ">-\n",
+    "%YAML 2", "---\n", "...\n", "(" * 300, "not " * 400 + "a", "-" * 1500 + "a", "x" * 3000,
+    "[" * 60, "{a: " * 50, "../" * 40 + "x.yaml", "/dev/zero", "/etc/passwd", "step", "use", "each",
+    "when", "with", "in", "extends", "objects", "geometry", "framer", "rows", "1e-320", "1e308", "-0.0", "10**9",
 )  # fmt: skip
 
 

@@ -4,9 +4,10 @@
     python benchmarks/attacks/signals.py --tries 2000     # an hour
 
 Each try runs a command that writes, sends it SIGINT, SIGTERM, SIGHUP or SIGKILL at a moment drawn
-at random, every second time one within 30 ms of its first file, and looks at what is left: lines must be whole, files whole or not there, stores open;
-the exit code must be 128 and the signal's number and no traceback may be shown. At first each
-command is run with standard input, output or error closed.
+at random, every second time one within 30 ms of its first file, and looks at what is left: lines
+must be whole, files whole or not there, stores open; the exit code must be 128 and the signal's
+number and no traceback may be shown. At first each command is run with standard input, output or
+error closed.
 """
 
 from __future__ import annotations
@@ -32,6 +33,10 @@ SOURCE = ("--source", "simulate", "--with", "scene=discs")
 COMMANDS: dict[str, tuple[str, ...]] = {
     "run jsonl": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.jsonl"),
     "run csv": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.csv"),
+    "run parquet": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.parquet"),
+    "run images": ("run", "circle-1", *SOURCE, "--frames", "100", "--only", "frame",
+                   "-o", "out.h5"),
+    "run film": ("run", "circle-1", *SOURCE, "--frames", "6", "--plot", "out.gif"),
     "compare": ("compare", "circle-1", "circle-2", *SOURCE, "--frames", "30", "--json", "out.json",
                 "--report", "out.html"),
     "audit": ("audit", "circle-3", *SOURCE, "--frames", "30", "--json", "out.json"),
@@ -86,9 +91,28 @@ def _store(path: Path) -> str:
     return "" if index == list(range(len(index))) else f"frames {index}"
 
 
+def _stacks(path: Path) -> str:
+    import h5py
+
+    with h5py.File(path) as file:
+        return "" if len(file["index"]) == len(file["frame/values"]) else "stacks are unequal"
+
+
+def _rows(path: Path) -> str:
+    import pyarrow.parquet
+
+    return "" if pyarrow.parquet.read_table(path).num_rows <= 100 else "too many rows"
+
+
+def _film(path: Path) -> str:
+    import imageio.v3 as iio
+
+    return "" if len(list(iio.imiter(path))) else "no picture"
+
+
 LOOKS: dict[str, Callable[[Path], str]] = {
     ".jsonl": _lines, ".csv": _lines, ".json": _json, ".html": _page, ".npz": _archive,
-    ".zarr": _store,
+    ".zarr": _store, ".h5": _stacks, ".parquet": _rows, ".gif": _film,
 }  # fmt: skip
 
 
@@ -117,9 +141,7 @@ def wait_for_a_file(running: subprocess.Popen[bytes], folder: Path) -> None:
         time.sleep(0.0005)
 
 
-def once(
-    name: str, number: signal.Signals, after_s: float, from_file: bool, folder: Path
-) -> str:
+def once(name: str, number: signal.Signals, after_s: float, from_file: bool, folder: Path) -> str:
     """Return what is wrong after a command got a signal; "" if nothing is.
 
     ``after_s`` counts from the start, or from its first file.
@@ -171,9 +193,7 @@ def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
         for command in COMMANDS:
             for stream in ("<&-", ">&-", "2>&-"):
                 why = closed(command, stream, _emptied(folder))
-                yield Attempt(
-                    f"{command} {stream}", "as promised" if not why else "FAILED", why
-                )
+                yield Attempt(f"{command} {stream}", "as promised" if not why else "FAILED", why)
         for _ in range(n_tries):
             command, number = rng.choice(list(COMMANDS)), signal.Signals[rng.choice(SIGNALS)]
             from_file = rng.random() < 0.5

@@ -18,6 +18,7 @@ MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of v
 DEEPEST = 40
 MOST_CHARACTERS = 1_000_000
 MOST_BYTES = 4 * MOST_CHARACTERS
+LONGEST_NUMBER = 1_000  # characters; the value of 1:59:59:… takes their square
 OFTEN_READ = 20_000  # characters; nodes of longer texts are not kept
 
 _SCALARS = {
@@ -247,6 +248,10 @@ class _Reader:
     def _scalar(self, node: yaml.ScalarNode) -> Any:
         if node.tag == "tag:yaml.org,2002:timestamp":
             return node.value
+        if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_NUMBER:
+            text = f"a number of {len(node.value)} characters; allowed are {LONGEST_NUMBER}"
+            self.document.problem_at(self._mark(node), text)
+            return None
         try:
             return self.constructor.construct_object(node, deep=True)
         except (ValueError, LookupError, yaml.YAMLError):
