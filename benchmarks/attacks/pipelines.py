@@ -46,7 +46,8 @@ WORDS = (
     "'", '"', '"\\0"', '"\\ud800"', "\u2028", "\ufeff", "\t", "- ", ": ", "#", "|\n", ">-\n",
     "%YAML 2", "---\n", "...\n", "(" * 300, "not " * 400 + "a", "-" * 1500 + "a", "x" * 3000,
     "[" * 60, "{a: " * 50, "../" * 40 + "x.yaml", "/dev/zero", "/etc/passwd", "step", "use", "each",
-    "when", "with", "in", "extends", "objects", "geometry", "framer", "rows", "1e-320", "1e308", "-0.0", "10**9",
+    "when", "with", "in", "extends", "objects", "geometry", "framer", "rows", "1e-320", "1e308",
+    "-0.0", "10**9",
 )  # fmt: skip
 
 

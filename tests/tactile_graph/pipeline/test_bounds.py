@@ -106,3 +106,24 @@ def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
         loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
     assert 100 < len(told.value.problems) < 110
     assert "more than 100 mistakes" in str(told.value.problems[-1])
+
+
+@pytest.mark.parametrize("value", ["1" + ":59" * 400, "0b" + "1" * 1100, "9" * 1100 + ".5"])
+def test_a_number_that_is_too_long_is_not_worked_out(value: str) -> None:
+    with pytest.raises(PipelineError, match=r"a number of \d+ characters; allowed are 1000"):
+        loads(f"about: {value}\n{LEAF}", registry=registry())
+
+
+def test_values_are_counted_while_they_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted: list[object] = []
+    monkeypatch.setattr("tactile_graph.pipeline.document._measure", counted.append)
+    monkeypatch.setattr("tactile_graph.pipeline.document.MOST_NODES", 200)
+    with pytest.raises(PipelineError, match="more than 200 values"):
+        loads(f"about: [{'1,' * 200}]\n{LEAF}", registry=registry())
+    assert counted == []
+
+
+def test_nothing_is_looked_up_that_is_near_a_very_long_name() -> None:
+    with pytest.raises(PipelineError) as told:
+        loads(LEAF.replace("read", "r" * 5_000), registry=registry())
+    assert "did you mean" not in str(told.value)
