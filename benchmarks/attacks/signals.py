@@ -6,8 +6,7 @@
 Each try runs a command that writes, sends it SIGINT, SIGTERM, SIGHUP or SIGKILL at a moment drawn
 at random, every second time one within 30 ms of its first file, and looks at what is left: lines
 must be whole, files whole or not there, stores open; the exit code must be 128 and the signal's
-number and no traceback may be shown. At first each command is run with standard input, output or
-error closed.
+number and no traceback may be shown. Some are run with standard input, output or error closed.
 """
 
 from __future__ import annotations
@@ -47,6 +46,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGKILL")
 LONGEST_S = 600.0
 SOON_S = 0.03
+CLOSED_SHARE = 0.15
 
 
 def started(words: Sequence[str], folder: Path, shell: str = "") -> subprocess.Popen[bytes]:
@@ -185,23 +185,30 @@ def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         lasts: dict[str, float] = {}
-        for command in COMMANDS:
-            begun = time.monotonic()
-            why = closed(command, "", _emptied(folder))
-            yield Attempt(command, "ended" if not why else "FAILED", why)
-            lasts[command] = time.monotonic() - begun
-        for command in COMMANDS:
-            for stream in ("<&-", ">&-", "2>&-"):
-                why = closed(command, stream, _emptied(folder))
-                yield Attempt(f"{command} {stream}", "as promised" if not why else "FAILED", why)
         for _ in range(n_tries):
-            command, number = rng.choice(list(COMMANDS)), signal.Signals[rng.choice(SIGNALS)]
-            from_file = rng.random() < 0.5
-            after_s = rng.random() * (SOON_S if from_file else lasts[command])
-            why = once(command, number, after_s, from_file, _emptied(folder))
-            since = "its first file" if from_file else "its start"
-            why = why and f"{after_s:.3f} s from {since} on: {why}"
-            yield Attempt(f"{command}, {number.name}", "as promised" if not why else "FAILED", why)
+            command = rng.choice(list(COMMANDS))
+            if command not in lasts:
+                begun = time.monotonic()
+                why = closed(command, "", _emptied(folder))
+                yield Attempt("left alone", "ended" if not why else "FAILED", f"{command}: {why}"
+                              if why else "")  # fmt: skip
+                lasts[command] = time.monotonic() - begun
+            if rng.random() < CLOSED_SHARE:
+                stream = rng.choice(("<&-", ">&-", "2>&-"))
+                what, why = f"without {stream}", closed(command, stream, _emptied(folder))
+            else:
+                what, why = signalled(command, lasts[command], folder, rng)
+            why = why and f"{command}: {why}"
+            yield Attempt(what, "as promised" if not why else "FAILED", why)
+
+
+def signalled(command: str, lasts_s: float, folder: Path, rng: random.Random) -> tuple[str, str]:
+    """Return which signal a command got, and what is wrong with what it did then."""
+    number, from_file = signal.Signals[rng.choice(SIGNALS)], rng.random() < 0.5
+    after_s = rng.random() * (SOON_S if from_file else lasts_s)
+    why = once(command, number, after_s, from_file, _emptied(folder))
+    since = "its first file" if from_file else "its start"
+    return number.name, why and f"{after_s:.3f} s from {since} on: {why}"
 
 
 def _emptied(folder: Path) -> Path:

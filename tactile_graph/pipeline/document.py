@@ -6,18 +6,18 @@ import pathlib
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import yaml
 
-from tactile_graph.errors import Mark, Problem, UsageError, shown
+from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
 DEEPEST = 40
-MOST_CHARACTERS = 1_000_000
-MOST_BYTES = 4 * MOST_CHARACTERS
+MOST_CHARACTERS, MOST_BYTES = 400_000, 4_000_000  # PyYAML takes a second for a million line ends
+MOST_PROBLEMS = 100  # nobody reads more, and each may take a millisecond to word
 LONGEST_NUMBER = 1_000  # characters; the value of 1:59:59:… takes their square
 OFTEN_READ = 20_000  # characters; nodes of longer texts are not kept
 
@@ -69,14 +69,28 @@ class Document:
         self.problem_at(self.mark(*path, key=key), message)
 
     def problem_at(self, mark: Mark, message: str) -> None:
-        """Note a problem at ``mark``."""
+        """Note a problem at ``mark``.
+
+        Raises
+        ------
+        PipelineError
+            If there are `MOST_PROBLEMS` already.
+        """
         found = Problem(mark, message, self.snippet(mark))
-        if found not in self.problems:
-            self.problems.append(found)
+        if found in self.problems:
+            return
+        if len(self.problems) >= MOST_PROBLEMS:
+            text = f"more than {MOST_PROBLEMS} mistakes: the rest of the file was not looked at"
+            raise PipelineError([*self.problems, Problem(None, text)])
+        self.problems.append(found)
+
+    @cached_property
+    def _lines(self) -> list[str]:
+        return self.text.splitlines()
 
     def snippet(self, mark: Mark) -> str:
         """Return the marked line with a caret below its column."""
-        lines = self.text.splitlines()
+        lines = self._lines
         if not 1 <= mark.line <= len(lines):
             return ""
         line = lines[mark.line - 1]

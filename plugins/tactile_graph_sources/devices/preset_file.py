@@ -17,7 +17,7 @@ from tactile_graph.errors import (
     one_of,
     shown,
 )
-from tactile_graph.pipeline.document import Document, read_document, text_of_file
+from tactile_graph.pipeline.document import MOST_PROBLEMS, Document, read_document, text_of_file
 from tactile_graph.plugins.registry import installed
 from tactile_graph_sources.devices import preset as records
 from tactile_graph_sources.devices.preset import Preset
@@ -61,7 +61,7 @@ def read_preset(path: Path) -> Preset:
     try:
         return Preset.model_validate(data)
     except ValidationError as error:
-        raise PresetError([_problem(document, e) for e in error.errors()]) from None
+        raise PresetError([_problem(document, e) for e in error.errors()[:MOST_PROBLEMS]]) from None
 
 
 def _merged(path: Path, deepest: int) -> tuple[Document, dict[str, Any]]:

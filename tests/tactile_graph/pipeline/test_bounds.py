@@ -127,3 +127,17 @@ def test_nothing_is_looked_up_that_is_near_a_very_long_name() -> None:
     with pytest.raises(PipelineError) as told:
         loads(LEAF.replace("read", "r" * 5_000), registry=registry())
     assert "did you mean" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        LEAF + "".join(f"k{i}: 1\n" for i in range(300)),
+        LEAF.replace("[a]", f"[{','.join(f'x{i}' for i in range(300))}]"),
+        LEAF.replace("{a:", "{" + "".join(f"n-{i}: {{step: read}}, " for i in range(300)) + "a:"),
+    ],
+)
+def test_a_hundred_mistakes_of_any_kind_end_the_look_at_a_file(text: str) -> None:
+    with pytest.raises(PipelineError, match="more than 100 mistakes") as told:
+        loads(text, registry=registry())
+    assert len(told.value.problems) == 101
