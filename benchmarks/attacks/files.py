@@ -37,6 +37,8 @@ from tactile_graph_sources.scene import load_scene
 
 MOST_S, MOST_MB = 0.5, 200.0
 ENOUGH_FRAMES, ENOUGH_VALUES = 20_000, 100_000_000
+LOADED_S = 20.0
+"""For each MB of YAML that is no mistake: half a millisecond a node."""
 READ_S, READ_MB = 0.5, 50.0
 """For each MB of a file that is read, beyond what its frames and values may take."""
 FRAME_S, FRAME_MB, VALUE_S, VALUE_MB = 5e-4, 3e-4, 1e-6, 16e-6
@@ -161,6 +163,8 @@ def read(file: Hostile, path: Path) -> tuple[str, str]:
 def allowed(came: str, megabytes: float) -> tuple[float, float]:
     """Return the seconds and the memory that reading a file may take."""
     seconds, memory = MOST_S, MOST_MB
+    if came == "loaded":
+        seconds += LOADED_S * megabytes
     if came.startswith("read "):
         _, n, values = came.split()
         seconds += FRAME_S * int(n) + VALUE_S * int(values) + READ_S * megabytes

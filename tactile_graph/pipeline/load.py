@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean, one_of
-from tactile_graph.pipeline.declaration import declare
+from tactile_graph.pipeline.declaration import MOST_NODES, declare
 from tactile_graph.pipeline.document import read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
 from tactile_graph.pipeline.scope import Overrides, Scope
 from tactile_graph.plugins.registry import Registry, installed
 
-MOST_LEVELS, MOST_NODES = 50, 2_000
-"""Of pipelines within each other, and of nodes in one that another uses, with all it uses."""
+MOST_LEVELS = 50
+"""Of pipelines within each other."""
 
 
 class Opened(NamedTuple):

@@ -101,7 +101,7 @@ def test_a_condition_cannot_ask_for_all_memory(condition: str, words: str) -> No
 
 
 def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
-    nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(3000))
+    nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(1900))
     with pytest.raises(PipelineError) as told:
         loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
     assert 100 < len(told.value.problems) < 110
@@ -141,3 +141,18 @@ def test_a_hundred_mistakes_of_any_kind_end_the_look_at_a_file(text: str) -> Non
     with pytest.raises(PipelineError, match="more than 100 mistakes") as told:
         loads(text, registry=registry())
     assert len(told.value.problems) == 101
+
+
+def test_very_many_nodes_or_conditions_are_refused() -> None:
+    nodes = "".join(f"  n{i}: {{}}\n" for i in range(2001))
+    with pytest.raises(PipelineError, match="2001 nodes; allowed are 2000"):
+        loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
+    conditions = nodes.replace("{}", "a > 1")
+    with pytest.raises(PipelineError, match="2001 conditions; allowed are 2000"):
+        loads(f"{LEAF}conditions:\n{conditions}", registry=registry())
+
+
+def test_conditions_that_double_with_each_name_end_soon() -> None:
+    doubled = "".join(f"  c{i}: c{i + 1} and c{i + 1}\n" for i in range(12))
+    with pytest.raises(PipelineError, match="longer than 2000 characters"):
+        loads(f"{LEAF}conditions:\n{doubled}  c12: a > 1\n", registry=registry())
