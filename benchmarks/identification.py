@@ -14,34 +14,41 @@ import numpy as np
 from tactile_graph_thesis.measure.identification_errors import (
     Curve,
     Trials,
+    added,
     mean_curves,
     strangers_rejected,
     table_4_9,
 )
+from tactile_graph_thesis.measure.weighing import Kind
 from tactile_graph_thesis.numbers import numbers
 
 SEEDS = range(4)
 THESIS_BEYOND_G = numbers("identification")["beyond_g"]
 THESIS_AT_MOST = 0.01 * numbers("identification")["error_below_percent"]
-WEIGHINGS = {"curve": "calibration curve alone, as in the thesis", "decoupled": "circuit inverted"}
+WEIGHINGS: dict[Kind, str] = {
+    "curve": "calibration curve alone, area from the circle, as in the thesis",
+    "decoupled": "circuit inverted, area from the circle",
+    "footprint": "circuit inverted, area of the footprint",
+}
 
 
 def show_table_4_9() -> None:
     print("Table 4.9: five objects, 25 readings each to learn, 25 others to test, 10 pads")
     print("thesis: 100 % identified")
-    results = [table_4_9(seed=seed) for seed in range(10)]
-    for step in results[0]:
-        right = np.mean([r[step].share_right for r in results])
-        rejected = np.mean([r[step].share_rejected for r in results])
-        n = sum(r[step].n for r in results)
-        print(f"  {step:<28} {100 * right:6.2f} % right, {100 * rejected:.2f} % rejected, of {n}")
+    for kind, words in WEIGHINGS.items():
+        print(f" {words}")
+        results = [table_4_9(seed=seed, kind=kind) for seed in range(10)]
+        for step in results[0]:
+            one = added([r[step] for r in results])
+            shares = f"{100 * one.share_right:6.2f} % right, {100 * one.share_rejected:.2f} %"
+            print(f"  {step:<28} {shares} rejected, of {one.n}")
     print("One of the five not learned: its readings rejected as unknown")
     shares = [strangers_rejected(seed=seed) for seed in range(4)]
     for step in shares[0]:
         print(f"  {step:<28} {100 * np.mean([s[step] for s in shares]):6.2f} %")
 
 
-def show(curves: list[Curve], kind: str) -> None:
+def show(curves: list[Curve], kind: Kind) -> None:
     print(f"\nFigures 4.38 to 4.43, weight by {WEIGHINGS[kind]}: error in % over difference in g")
     print("thesis: below 5 % beyond 1000 g in all six")
     grams = curves[0].differences_g
@@ -60,7 +67,7 @@ def show(curves: list[Curve], kind: str) -> None:
             )
 
 
-def plot(curves: list[Curve], kind: str, folder: Path) -> None:
+def plot(curves: list[Curve], kind: Kind, folder: Path) -> None:
     """Draw the six figures side by side."""
     import matplotlib
 

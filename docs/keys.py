@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tactile_graph.cli.file_kinds import file_kind
-from tactile_graph.cli.key_tables import Key, KeyTable, key_tables
+from tactile_graph.cli.pages.key_tables import Key, KeyTable, key_tables
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.record_schema import record_schema
 

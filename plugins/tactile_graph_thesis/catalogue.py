@@ -29,7 +29,11 @@ CONTENTS = {
         "tables_4_3_to_4_8_errors",
         "table_4_9_identification",
     ),
-    "chapter_5": ("figures_5_8_to_5_14_restoration", "table_5_2_radii"),
+    "chapter_5": (
+        "section_5_4_1_schedule",
+        "figures_5_8_to_5_14_restoration",
+        "table_5_2_radii",
+    ),
     "chapter_6": (
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",

@@ -25,9 +25,10 @@ COMMANDS = {
     "pipelines": "List the pipelines, search them, or print one of them.",
     "steps": "List the steps, search them, or describe one of them.",
     "plugins": "List the plugins, what they offer and what is wrong with them.",
+    "new": "Make a package with a step of your own, its pipeline and tests.",
     "schema": "Write a JSON Schema of pipeline and other files, for editors.",
 }
-"""Name -> what ``--help`` says; the command ``x`` is ``tactile_graph.cli.x:x``."""
+"""Name -> what ``--help`` says; the command ``x`` is ``tactile_graph.cli.commands.x:x``."""
 
 
 @click.group(

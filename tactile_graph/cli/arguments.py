@@ -160,7 +160,7 @@ def _help_preparing(name: str, recordings: Sequence[str], settings: Sequence[str
 
 def offered() -> str:
     """Return the pipelines there are, a line each."""
-    from tactile_graph.cli.pipelines import heads
+    from tactile_graph.cli.commands.pipelines import heads
 
     found = heads(registry.installed())
     width = max((len(h.name) for h in found), default=0)

@@ -45,7 +45,7 @@ class Group(click.Group):
         if cmd_name in self.built_in:
             from importlib import import_module
 
-            command = getattr(import_module(f"tactile_graph.cli.{cmd_name}"), cmd_name)
+            command = getattr(import_module(f"tactile_graph.cli.commands.{cmd_name}"), cmd_name)
         elif registry.installed().has("commands", cmd_name):
             command = registry.installed().load("commands", cmd_name)
         else:

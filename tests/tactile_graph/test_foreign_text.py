@@ -19,8 +19,8 @@ ROOT = Path(__file__).parents[2]
 ECHOES = {
     "tactile_graph/cli/say.py",
     "tactile_graph/cli/endings.py",  # a coloured word before what is made visible
-    "tactile_graph/cli/schema.py",
-    "tactile_graph/cli/graph.py",  # the bytes of a picture
+    "tactile_graph/cli/commands/schema.py",
+    "tactile_graph/cli/commands/graph.py",  # the bytes of a picture
     "plugins/tactile_graph_sources/commands/record.py",  # a counter that goes back to its line
 }
 

@@ -46,6 +46,7 @@ def test_an_outline_off_the_pad_is_refused_in_words():
         expect(Image(np.ones((4, 4))), Circle(50.0, 50.0, 1.0))
 
 
+@pytest.mark.slow  # all kinds of moves are compiled
 def test_knowing_the_class_restores_better():
     """Noise as high as the load: the outline of the class, with its load, brings it back."""
     rng = np.random.default_rng(0)
@@ -61,6 +62,7 @@ def test_knowing_the_class_restores_better():
     assert error[5.0] < 0.5 * error[0.0]
 
 
+@pytest.mark.slow  # all kinds of moves are compiled
 def test_it_is_wired_into_a_restorer():
     text = """
 pipeline: p

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tactile_graph_thesis
 from helpers_cli import call
 from tactile_graph import Circle, Frame, load
 from tactile_graph.errors import RuleError
@@ -21,14 +22,18 @@ IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
     *("adaptive", "circle-by-order", "circle-followed", "circle-full")
 }
 """Those that weigh a pad's volts: they cannot do with less."""
-KNOWN_IN_GRAMS = {"identify", "identify-any", "identify-locate"}
+KNOWN_IN_GRAMS = {
+    *("identify", "identify-any", "identify-locate"),
+    *("thesis-identify", "identify-decoupled", "identify-footprint"),
+}
 """Those that know the thesis' objects, by their grams."""
 
 SLOW = {
     *("locate", "locate-circle", "locate-contacts", "locate-objects", "locate-rectangle"),
     "bayes-circle",
+    *set(tactile_graph_thesis.tactile_graph_pipelines()) - {"thesis-lines"},
 }
-"""Those of which much is compiled."""
+"""Those of which much is compiled, and steps between others, which are like those."""
 
 
 def slow_where_much_is_compiled(names: set[str]) -> list[Any]:
@@ -71,7 +76,7 @@ def test_one_that_needs_volts_says_so_before_it_computes(name: str, quantity: st
 
 
 @pytest.mark.parametrize("quantity", ["raw", "counts", "kilopascal"])
-@pytest.mark.parametrize("name", sorted(KNOWN_IN_GRAMS))
+@pytest.mark.parametrize("name", slow_where_much_is_compiled(KNOWN_IN_GRAMS))
 def test_one_that_knows_objects_by_grams_says_so(name: str, quantity: str) -> None:
     failed = load(name).run(disc((16, 16), quantity)).outcome("identity")
     assert "the objects were learned in gram" in failed.reason

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
+import tactile_graph_thesis
 from tactile_graph import load
-from tactile_graph.cli.writers import json_row
+from tactile_graph.cli.output.writers import json_row
 from tactile_graph.engine.outcome import Failed
 from tactile_graph.plugins.registry import installed
 
@@ -18,9 +19,10 @@ LONGEST_LINE = 2048
 
 
 SLOW = {name for name in NAMES if "likelihood" in name or "locate" in name} | {
-    *("adaptive", "bayes-objects", "circle-by-order", "circle-followed", "circle-full", "objects")
+    *("adaptive", "bayes-objects", "circle-by-order", "circle-followed", "circle-full", "objects"),
+    *tactile_graph_thesis.tactile_graph_pipelines(),
 }
-"""Their kernels alone compile for a quarter of a minute."""
+"""Their kernels alone compile for a quarter of a minute, or they are steps between others."""
 
 
 @pytest.mark.parametrize(

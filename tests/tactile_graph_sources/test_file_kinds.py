@@ -13,7 +13,7 @@ import yaml
 
 from helpers_cli import call
 from tactile_graph.cli.file_kinds import file_kind
-from tactile_graph.cli.key_tables import key_tables
+from tactile_graph.cli.pages.key_tables import key_tables
 from tactile_graph.plugins.registry import installed
 from tactile_graph.record_schema import record_schema
 

@@ -18,7 +18,8 @@ FIGURES = (
     *(f"5.{k}" for k in range(8, 15)),
 )
 WISHES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
-STUDIES = ("converter", "samples", *WISHES)
+SCHEDULE = ("annealing", "state-space")
+STUDIES = ("converter", "samples", *SCHEDULE, *WISHES)
 
 
 def test_every_table_and_figure_is_there_once() -> None:
@@ -33,6 +34,7 @@ def test_the_order_is_that_of_the_thesis() -> None:
     for table, before, after in (
         ("table-4.3", "figure-4.12", "figure-4.13"),
         ("table-4.5", "figure-4.20", "figure-4.21"),
+        ("annealing", "figure-4.43", "figure-5.8"),
         ("table-5.2", "figure-5.13", "figure-5.14"),
     ):
         assert ids.index(before) < ids.index(table) < ids.index(after)

@@ -39,6 +39,18 @@ def test_rectangles_and_radii_are_as_printed() -> None:
     assert error_table("table-5.2").values.tolist() == [[6.9, 6.3, 6.3], [7.7, 7.3, 7.3]]
 
 
+def test_errors_of_circles_are_as_printed() -> None:
+    printed = {
+        "table-4.3": [[0.4, 0.3, 2.0, 1.3, 2.2, 1.2], [1.1, 0.7, 0.6, 0.4, 2.3, 2.0],
+                      [1.5, 0.6, 1.5, 0.9, 2.6, 2.0]],
+        "table-4.4": [[0.8, 0.5, 1.2, 1.0, 1.3, 0.8], [0.5, 0.4, 0.4, 0.3, 2.0, 1.6],
+                      [2.0, 0.8, 1.4, 0.7, 2.2, 1.7]],
+        "table-4.5": [[0.9, 0.6, 1.0, 0.6, 0.4, 0.3], [0.7, 0.4, 0.6, 0.5, 1.3, 1.0],
+                      [0.7, 0.5, 0.6, 0.4, 0.7, 0.4]],
+    }  # fmt: skip
+    assert {name: error_table(name).values.tolist() for name in printed} == printed
+
+
 def test_limits_are_the_thesis_ones() -> None:
     assert numbers("readings")["each"] == 20
     assert numbers("threshold")["chosen_v"] == 0.01

@@ -91,7 +91,7 @@ class _Options:
 def _frames(auditor: Auditor, span: Span, seed: int) -> KeyboardInterrupt | None:
     """Take the frames; return what ended them before their end, if anything did."""
     from tactile_graph.cli.interrupt import Interrupts
-    from tactile_graph.cli.progress import Bar
+    from tactile_graph.cli.output.progress import Bar
     from tactile_graph.cli.terminal import console
     from tactile_graph.steps.injected import Report
 

@@ -226,7 +226,7 @@ class _Run:
         return code_of(interrupted) if interrupted else 0
 
     def _frames(self, held: Any) -> tuple[KeyboardInterrupt | None, Exception | None]:
-        from tactile_graph.cli.progress import Bar
+        from tactile_graph.cli.output.progress import Bar
 
         bar = Bar(self.stderr, "compare")
         source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)

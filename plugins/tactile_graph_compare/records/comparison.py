@@ -180,11 +180,15 @@ class SettingChange:
         return f"{self.what}: {_word(self.before)} -> {_word(self.after)}"
 
 
+LONGEST_WORD = 60
+
+
 def _word(value: Any) -> str:
-    """Return a value as a pipeline file has it; ``none`` where it has none."""
+    """Return a value as a pipeline file has it, cut where long; ``none`` where it has none."""
     if value is None:
         return "none"
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    word = str(value).lower() if isinstance(value, bool) else str(value)
+    return word if len(word) <= LONGEST_WORD else f"{word[: LONGEST_WORD - 1]}…"
 
 
 @dataclass(frozen=True)

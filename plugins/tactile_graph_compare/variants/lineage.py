@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 from tactile_graph import Pipeline
@@ -46,7 +47,16 @@ def _told(node: Node) -> dict[str, Any]:
         )
     if node.guard is not None:
         told["when"] = node.guard.text
-    return told | {k: plain(v) for k, v in node.settings.items()}
+    return told | {k: v for name, of in node.settings.items() for k, v in _fields_of(name, of)}
+
+
+def _fields_of(name: str, setting: Any) -> Iterator[tuple[str, Any]]:
+    """Yield a setting; of a record every field, by name and field."""
+    if is_dataclass(setting) and not isinstance(setting, type):
+        for field in fields(setting):
+            yield from _fields_of(f"{name}.{field.name}", getattr(setting, field.name))
+    else:
+        yield name, plain(setting)
 
 
 def nodes_between(

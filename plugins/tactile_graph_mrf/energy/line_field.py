@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.wires import Image
+from tactile_graph.wires import Image, Points
 
 
 @dataclass(frozen=True, eq=False)
 class LineField:
     """Lines that are on, one site between any two cells that share a side (thesis fig. 5.5).
+
+    Ports that take points take the middles of the lines: a line is an element of the line field,
+    which stands between two cells.
 
     Parameters
     ----------
@@ -30,6 +34,7 @@ class LineField:
     pitch_cm: tuple[float, float] = (1.0, 1.0)
     origin_cm: tuple[float, float] = (0.0, 0.0)
     columns_shown: ClassVar[tuple[str, ...]] = ("count", "length_cm")
+    provides: ClassVar[Mapping[type, str]] = {Points: "middles"}
 
     def __post_init__(self) -> None:
         self.horizontal.setflags(write=False)
@@ -55,6 +60,11 @@ class LineField:
         down = np.stack([np.stack([j + 1, i], 1), np.stack([j + 1, i + 1], 1)], 1)
         ends = np.concatenate([across, down]).astype(np.float64)
         return np.asarray(self.origin_cm + ends * np.asarray(self.pitch_cm))
+
+    @property
+    def middles(self) -> Points:
+        """The middle of each line that is on."""
+        return Points(self.segments_cm.mean(axis=1))
 
     @classmethod
     def none(cls, image: Image) -> LineField:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from tactile_graph.cli.listing import complete, list_files
+from tactile_graph.cli.pages.listing import complete, list_files
 
 
 @click.command(epilog="tactile-graph schema preset --keys tells every key of such a file.")

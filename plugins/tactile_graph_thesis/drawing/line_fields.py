@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 LINE, OUTLINE, HEURISTIC, TRUTH = "#d62728", "#ff7f0e", "#1f77b4", "#2ca02c"
+EVERY = "#9e9e9e"
 MAP = "Greys"
 
 
@@ -41,7 +42,7 @@ def draw_5_8(*made: Restoration) -> Figure:
         _lines(row[4], one.lines, None, title, label="line that is on")
         _polygons(row[4], [p.xy_cm for p in one.outlines], TRUTH, "true outline")
         figure.colorbar(shown, ax=list(row[:4]), shrink=0.75, label="grey level")
-    _legend(figure, axes[0])
+    _legend(figure, axes.ravel())
     return figure
 
 
@@ -57,11 +58,23 @@ def draw_5_10_to_5_13(made: Sequence[Restoration]) -> Figure:
         high = max(float(image.values.max()) for _, image in images)
         for ax, (title, image) in zip(row, images, strict=False):
             shown = _image(ax, image, title, (0.0, high))
-        figure.colorbar(shown, ax=list(row[:3]), shrink=0.8, label="log reading (asinh)")
-        _lines(row[3], one.lines, one.observed, "lines and contour", label="line that is on")
+        figure.colorbar(shown, ax=list(row[:3]), shrink=0.8, label=one.unit)
+        title = "lines and contour" if one.outlines else "lines"
+        _lines(row[3], one.lines, one.observed, title, label="line that is on")
         _polygons(row[3], [p.xy_cm for p in one.outlines], OUTLINE, "closed contour")
         _shape(row[3], one.shape)
-    _legend(figure, axes[0])
+    _legend(figure, axes.ravel())
+    return figure
+
+
+def draw_5_13(*made: Sequence[Restoration]) -> Figure:
+    """Draw figure 5.13: line fields, a row a way and a column an object."""
+    figure, axes = _panels(len(made), len(made[0]))
+    for row, objects in zip(axes, made, strict=True):
+        for ax, one in zip(row, objects, strict=True):
+            _lines(ax, one.lines, one.observed, f"{one.name}, {one.unit}", label="line that is on")
+            _shape(ax, one.shape)
+    _legend(figure, axes.ravel())
     return figure
 
 
@@ -70,17 +83,18 @@ def draw_5_14(made: Sequence[Hulls]) -> Figure:
     figure, axes = _panels(1, len(made))
     for ax, one in zip(axes[0], made, strict=True):
         _lines(ax, one.lines, None, one.name, label="line that is on")
-        _polygons(ax, [one.bayesian.xy_cm], OUTLINE, "hull of the line field")
+        _polygons(ax, [one.every_line.xy_cm], EVERY, "hull of every line")
+        _polygons(ax, [one.enclosed.xy_cm], OUTLINE, "hull of what lines enclose")
         _polygons(ax, [one.heuristic.xy_cm], HEURISTIC, "hull of circle-3")
         _shape(ax, one.shape)
-    _legend(figure, axes[0])
+    _legend(figure, axes.ravel())
     return figure
 
 
 def _panels(rows: int, columns: int) -> tuple[Figure, NDArray[np.object_]]:
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(3.1 * columns + 0.6, 3.1 * rows + 0.8), layout="constrained")
+    figure = Figure(figsize=(3.1 * columns + 0.6, 3.1 * rows + 1.1), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
     for ax in axes[-1]:
         ax.set_xlabel("x (cm)")
@@ -127,4 +141,4 @@ def _legend(figure: Figure, axes: NDArray[np.object_]) -> None:
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)
-    figure.legend([*found.values()], [*found], loc="outside lower center", ncols=4, fontsize=9)
+    figure.legend([*found.values()], [*found], loc="outside lower center", ncols=3, fontsize=9)

@@ -18,7 +18,7 @@ from tactile_graph_thesis.measure.simulated_readings import (
     known_from,
     simulated,
 )
-from tactile_graph_thesis.measure.weighing import weighing
+from tactile_graph_thesis.measure.weighing import Kind, weighing
 
 Array = NDArray[np.float64]
 STACK_OFFSET_CM = 1.0
@@ -100,7 +100,9 @@ def classifiers(known: Known) -> dict[str, Any]:
     }
 
 
-def table_4_9(n: int = N_READINGS, seed: int = 0, pad: str = "thesis") -> dict[str, Confusion]:
+def table_4_9(
+    n: int = N_READINGS, seed: int = 0, pad: str = "thesis", kind: Kind = "curve"
+) -> dict[str, Confusion]:
     """Return how each classifier tells the five objects of table 4.9 apart.
 
     Parameters
@@ -109,16 +111,31 @@ def table_4_9(n: int = N_READINGS, seed: int = 0, pad: str = "thesis") -> dict[s
         Readings of each object to learn it, and as many others to test it.
     seed : int
     pad : str
+    kind : "curve", "decoupled" or "footprint"
+        How they are measured, see `weighing`.
 
     Notes
     -----
     Thesis section 4.4.2: all 25 readings of each object were identified.
     """
-    from tactile_graph import load
-
-    readings = simulated(load("features"), "identify", 2 * n, 5, seed, pad)
+    readings = simulated(weighing(kind, seed, pad), "identify", 2 * n, 5, seed, pad)
     known = known_from(readings, n)
     return {name: confusion(one, readings, n) for name, one in classifiers(known).items()}
+
+
+def added(found: Sequence[Confusion]) -> Confusion:
+    """Return several confusions of the same objects as one.
+
+    Parameters
+    ----------
+    found : sequence of Confusion
+    """
+    nearest: Counter[tuple[str, str]] = Counter()
+    rejected: Counter[str] = Counter()
+    for one in found:
+        nearest.update(one.nearest)
+        rejected.update(one.rejected)
+    return Confusion(found[0].names, nearest, rejected, sum(one.n for one in found))
 
 
 def strangers_rejected(n: int = N_READINGS, seed: int = 0) -> dict[str, float]:
@@ -197,15 +214,15 @@ class Trials(NamedTuple):
 
     Parameters
     ----------
-    kind : "curve" or "decoupled"
-        How weights are found, see `weighing`.
+    kind : "curve", "decoupled" or "footprint"
+        How discs are measured, see `weighing`.
     differences_g : tuple of float
     n_learn, n_test : int
         Readings of each disc and weight to learn it, and to test it.
     pad : str
     """
 
-    kind: str = "curve"
+    kind: Kind = "curve"
     differences_g: tuple[float, ...] = (
         0, 50, 100, 200, 300, 400, 600, 800, 1000, 1250, 1500, 2000,
     )  # fmt: skip

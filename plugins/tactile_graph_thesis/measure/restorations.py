@@ -1,44 +1,38 @@
-"""The data of the thesis' figures 5.8 to 5.14 and of its table 5.2, made anew."""
+"""Figures 5.10 to 5.14 and table 5.2: readings restored with lines, and the circles of these."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph import Frame, load
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Report
-from tactile_graph.wires import Circle, Image, Mask, Points, Polygon, Shape
+from tactile_graph.wires import Circle, Image, Points, Polygon, Shape
 from tactile_graph_fitters.circle.fit_circle import fit_circle
 from tactile_graph_hull.hull import hull
 from tactile_graph_mrf.contours.contours import contours
-from tactile_graph_mrf.contours.outline_points import outline_points
 from tactile_graph_mrf.descent.restore import restore
 from tactile_graph_mrf.energy.line_field import LineField
 from tactile_graph_mrf.energy.model import Model
-from tactile_graph_mrf.samplers.gibbs import gibbs
 from tactile_graph_sources.simulate import simulate
 from tactile_graph_thesis.numbers import error_table
 
-VOLTS = Model(lambda_d=1.0, lambda_l=300.0)
-"""Model of table 5.2's line fields in volts: that of the pipelines."""
-SIMULATED = Model(lambda_d=1.0, lambda_l=1000.0)
-"""Model of figure 5.8: lines pay from steps of 35 levels on."""
-RECTANGLE = (slice(5, 11), slice(3, 13))
-"""Rows and columns of the rectangle of figure 5.8."""
-FLOOR, TOP, NOISE = 50.0, 150.0, 15.0
-"""Grey levels of figure 5.8: outside, on the rectangle, and the noise's standard deviation."""
-ENERGY_SCALE = 0.001
-"""Factor on the energy in squared levels, beside which T = 5 is a temperature; see `gibbs`."""
+Array = NDArray[np.float64]
+Way = Literal["thesis", "bayes"]
+
+STIFF = Model(lambda_d=1.0, lambda_l=300.0)
+"""Weights at which the image is smoothed too: those of the pipelines on a logarithmic scale."""
 
 
 class Restoration(NamedTuple):
     """One object's images; ``truth`` is the image without noise, or None where nobody knows it.
 
-    ``energy`` is that of the image restored with lines, in squared levels.
+    ``energy`` is that of the image restored with lines, in squared levels; ``unit`` is what the
+    images hold.
     """
 
     name: str
@@ -51,138 +45,184 @@ class Restoration(NamedTuple):
     shape: Shape | None
     restorer: str
     energy: float
+    unit: str
 
 
 class Hulls(NamedTuple):
-    """Convex hulls of one object by both ways, and what it is."""
+    """Convex hulls of one object by lines and by circle-3, and what it is.
+
+    ``every_line`` is the hull of the whole line field, ``enclosed`` that of what the lines of the
+    same field enclose, ``logarithmic`` the latter where the image is on a logarithmic scale.
+    """
 
     name: str
     shape: Shape
     lines: LineField
-    bayesian: Polygon
+    every_line: Polygon
+    enclosed: Polygon
+    logarithmic: Polygon
     heuristic: Polygon
 
 
-class RadiusRow(NamedTuple):
-    """A row of table 5.2, in cm: mean and standard deviation over the readings.
+EVERY_LINE, ENCLOSED = "every line", "what lines enclose"
+LOGARITHMIC = "what lines enclose, on the logarithm"
+MOVED_IN = "the same, moved in"
+LEAST_ENERGY = "every line at the least energy"
+HEURISTIC = "circle-3"
+WAYS = (EVERY_LINE, ENCLOSED, LEAST_ENERGY, LOGARITHMIC, MOVED_IN, HEURISTIC)
+"""To the radius: of the hull of every line of `thesis-circle`'s field, of what the same lines
+enclose (`circle-enclosed`), of every line where `restore` finds the least energy of stiffer
+weights, of what lines enclose on the logarithm (`circle-logarithmic`), of that moved inwards by
+what border cells leave uncovered (`bayes-circle`), and of `circle-3`. The first three are on
+volts."""
 
-    ``volt_hull`` is nearest to the thesis: the hull of all lines in the image in volts, by
-    `restore` (a line that a sampler leaves astray would spoil it). ``line_hull`` is the hull of
-    what the lines of `bayes-lines` enclose; ``bayesian`` that of `bayes-circle`, moved inwards by
-    what cells at the border leave uncovered; ``heuristic`` circle-3's.
+
+class RadiusRow(NamedTuple):
+    """A row of table 5.2.
+
+    Parameters
+    ----------
+    name : str
+    actual_cm : float
+    radius_cm : mapping
+        By `WAYS`: the radius found in each reading, shape (n,); NaN where there is no answer.
     """
 
     name: str
     actual_cm: float
-    volt_hull_cm: tuple[float, float]
-    line_hull_cm: tuple[float, float]
-    bayesian_cm: tuple[float, float]
-    heuristic_cm: tuple[float, float]
+    radius_cm: Mapping[str, Array]
+
+    def mean_cm(self, way: str) -> float:
+        """Mean radius by a way.
+
+        Parameters
+        ----------
+        way : str
+        """
+        return float(np.nanmean(self.radius_cm[way]))
+
+    def sd_cm(self, way: str) -> float:
+        """Standard deviation of the radius by a way.
+
+        Parameters
+        ----------
+        way : str
+        """
+        return float(np.nanstd(self.radius_cm[way]))
+
+    def error_cm(self, way: str) -> Array:
+        """Absolute error in each reading, shape (n,).
+
+        Parameters
+        ----------
+        way : str
+        """
+        return np.abs(self.radius_cm[way] - self.actual_cm)
 
 
-def figure_5_8(seed: int = 0, restorer: Literal["gibbs", "restore"] = "gibbs") -> Restoration:
-    """Return a rectangle on an even floor: original, corrupted, restored without and with lines.
-
-    By ``gibbs`` with the thesis' schedule (section 5.4.1: T0 = 5, cooled by 0.9 over 110 sweeps
-    from a random start, 200 levels), or by ``restore``, whose energy is lower. Figure 5.9 is the
-    ``lines``. The thesis gives neither the image nor the noise in numbers; these are ours.
-    """
-    rng = np.random.default_rng(seed)
-    on = np.zeros((16, 16), np.bool_)
-    on[RECTANGLE] = True
-    truth = Image(np.where(on, TOP, FLOOR), quantity="level")
-    observed = truth.with_values(truth.values + NOISE * rng.standard_normal(on.shape))
-    bare = replace(SIMULATED, lines="none")
-    if restorer == "gibbs":
-        smooth = gibbs(observed, rng=rng, model=bare, energy_scale=ENERGY_SCALE)
-        lined = gibbs(observed, rng=rng, model=SIMULATED, energy_scale=ENERGY_SCALE)
-    else:
-        smooth, lined = restore(observed, model=bare), restore(observed, model=SIMULATED)
-    return Restoration(
-        "simulated rectangle",
-        truth,
-        observed,
-        smooth.image,
-        lined.image,
-        lined.lines,
-        contours(truth.mask(on)),
-        None,
-        restorer,
-        lined.energy,
-    )
-
-
-def figures_5_10_to_5_13(seed: int = 0, pad: str = "thesis") -> tuple[Restoration, ...]:
+def figures_5_10_to_5_13(
+    seed: int = 0, pad: str = "thesis", way: Way = "thesis"
+) -> tuple[Restoration, ...]:
     """Return Disc I, Disc II and RECTANGLE II on a pad, restored without and with lines.
 
-    As `bayes-smooth` and `bayes-lines` do it, on the logarithmic scale of `compress`.
-    ``outlines`` are the closed contours of what the lines enclose.
+    Parameters
+    ----------
+    seed : int
+    pad : str
+    way : str
+        ``thesis``: volts, by `thesis-smooth` and `thesis-lines`. ``bayes``: on a logarithmic
+        scale, by `bayes-smooth` and `bayes-lines`; ``outlines`` are then the closed contours of
+        what the lines enclose.
     """
-    smooth = load("bayes-smooth").runner(seed=seed)
-    lined = load("bayes-lines").runner(["levels", "restored", "closed", "object"], seed)
+    smooth = load(f"{way}-smooth").runner(seed=seed)
+    ours = way == "bayes"
+    asked = ["levels", "restored", "closed", "object"] if ours else ["restored"]
+    lined = load(f"{way}-lines").runner(asked, seed)
     made = []
-    for frame in _frames(seed, 3, pad):
+    for frame in frames(seed, 3, pad):
         result = lined(frame)
+        restored = result["restored"]
         made.append(
             Restoration(
-                _name(frame),
+                name_of(frame),
                 None,
-                result["levels"].image,
+                result["levels"].image if ours else frame.image,
                 smooth(frame)["restored"].image,
-                result["restored"].image,
-                result["closed"],
-                contours(result["object"].mask),
-                _shape(frame),
+                restored.image,
+                result["closed"] if ours else restored.lines,
+                contours(result["object"].mask) if ours else (),
+                shape_of(frame),
                 "gibbs",
-                result["restored"].energy,
+                restored.energy,
+                "log reading (asinh)" if ours else "V",
             )
         )
     return tuple(made)
 
 
-def figure_5_14(seed: int = 0, pad: str = "thesis") -> tuple[Hulls, ...]:
-    """Return the hulls of Disc I and Disc II: of the line field, and of circle-3's opened mask."""
-    lined = load("bayes-lines").runner(["closed", "object"], seed)
+def hulls(seed: int = 0, readings: int = 1, pad: str = "thesis") -> list[Hulls]:
+    """Return the hulls of figure 5.14 for each reading of Disc I and Disc II in turn.
+
+    A reading of which one way makes no hull is left out.
+
+    Parameters
+    ----------
+    seed : int
+    readings : int
+        Of each disc.
+    pad : str
+    """
+    enclosed = load("circle-enclosed").runner(["restored", "hull"], seed)
+    logarithmic = load("circle-logarithmic").runner(["hull"], seed)
     heuristic = load("circle-3").runner(["hull"])
-    return tuple(
-        Hulls(
-            _name(frame),
-            _shape(frame),
-            (result := lined(frame))["closed"],
-            _line_hull(result["object"].mask),
-            heuristic(frame)["hull"],
-        )
-        for frame in _frames(seed, 2, pad)
-    )
+    found = []
+    for frame in frames(seed, 3 * readings, pad):
+        if not isinstance(shape_of(frame), Circle):
+            continue
+        result = enclosed(frame)
+        lines = result["restored"].lines
+        other = logarithmic(frame).get("hull"), heuristic(frame).get("hull")
+        if "hull" in result and lines.count and None not in other:
+            every = hull(lines.middles)
+            found.append(
+                Hulls(name_of(frame), shape_of(frame), lines, every, result["hull"], *other)
+            )
+    return found
 
 
 def table_5_2(seed: int = 0, readings: int = 100, pad: str = "thesis") -> tuple[RadiusRow, ...]:
     """Return the radii of Disc I and Disc II by each way, over so many readings of each.
 
-    A reading without an answer is left out.
+    Parameters
+    ----------
+    seed : int
+    readings : int
+    pad : str
     """
-    lined = load("bayes-lines").runner(["object"], seed)
-    bayesian, heuristic = load("bayes-circle").runner(), load("circle-3").runner()
+    enclosed = load("circle-enclosed").runner(["restored", "circle"], seed)
+    others = [
+        load(name).runner(["circle"], seed)
+        for name in ("circle-logarithmic", "bayes-circle", "circle-3")
+    ]
     objects = error_table("table-5.2").objects
-    radii: dict[str, list[list[float]]] = {name: [[], [], [], []] for name in objects}
+    radii: dict[str, list[list[float]]] = {name: [] for name in objects}
     actual = {}
-    for frame in _frames(seed, 3 * readings, pad):
-        name, shape = _name(frame), _shape(frame)
+    for frame in frames(seed, 3 * readings, pad):
+        name, shape = name_of(frame), shape_of(frame)
         if name not in radii or not isinstance(shape, Circle):
             continue
         actual[name] = shape.radius_cm
-        volts = restore(frame.image, model=VOLTS).lines
-        found = [
-            _hull_circle(Points(volts.segments_cm.mean(axis=1))),
-            _hull_circle(outline_points(lined(frame)["object"].mask)),
-            bayesian(frame).get("circle"),
-            heuristic(frame).get("circle"),
-        ]
-        for column, circle in zip(radii[name], found, strict=True):
-            column += [] if circle is None else [circle.radius_cm]
+        result = enclosed(frame)
+        found = (
+            _hull_circle(result["restored"].lines.middles),
+            result.get("circle"),
+            _hull_circle(restore(frame.image, model=STIFF).lines.middles),
+            *(run(frame).get("circle") for run in others),
+        )
+        radii[name].append([np.nan if c is None else c.radius_cm for c in found])
     return tuple(
-        RadiusRow(name, actual[name], *map(_mean_and_sd, columns))
-        for name, columns in radii.items()
+        RadiusRow(name, actual[name], dict(zip(WAYS, np.array(of).T, strict=True)))
+        for name, of in radii.items()
     )
 
 
@@ -193,26 +233,35 @@ def _hull_circle(points: Points) -> Circle | None:
         return None
 
 
-def _mean_and_sd(values: list[float]) -> tuple[float, float]:
-    return float(np.mean(values)), float(np.std(values))
+def frames(seed: int, n: int, pad: str) -> Iterator[Frame]:
+    """Yield frames of table 5.1's objects in turn.
 
-
-def _line_hull(mask: Mask) -> Polygon:
-    """Return the convex hull of the middles of the lines around an object."""
-    return hull(outline_points(mask))
-
-
-def _frames(seed: int, n: int, pad: str) -> Iterator[Frame]:
-    """Yield frames of table 5.1's objects in turn."""
+    Parameters
+    ----------
+    seed, n : int
+    pad : str
+    """
     rng = np.random.default_rng(seed)
     return simulate(scene="bayes", pad=pad, frames=n, rng=rng, report=Report())
 
 
-def _shape(frame: Frame) -> Shape:
+def shape_of(frame: Frame) -> Shape:
+    """Return the true outline of a frame's object.
+
+    Parameters
+    ----------
+    frame : Frame
+    """
     assert frame.truth is not None
     return frame.truth[0].shape
 
 
-def _name(frame: Frame) -> str:
+def name_of(frame: Frame) -> str:
+    """Return what a frame's object is called.
+
+    Parameters
+    ----------
+    frame : Frame
+    """
     assert frame.truth is not None
     return frame.truth[0].name

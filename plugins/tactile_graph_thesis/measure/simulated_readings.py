@@ -48,18 +48,17 @@ def simulated(
     Parameters
     ----------
     pipeline : Pipeline
-        Its first output measures.
+        Its node ``features`` measures.
     scene : str or mapping
     n_each, n_objects : int
         Placements of each object, and how many objects there are.
     seed : int
     pad : str
     """
-    output = next(iter(pipeline.outputs))
     runs = pipeline.with_source("simulate", scene=scene, frames=n_each * n_objects, pad=pad)
     found: dict[str, Readings] = {}
-    for result in runs.stream(seed=seed):
-        value = result.outcome(output)
+    for result in runs.stream(only=["features"], seed=seed):
+        value = result.outcome("features")
         measured = getattr(value, "measurements", value)
         if not isinstance(measured, Measurements):
             continue  # skipped or failed: nothing was measured, as on a real pad

@@ -2,58 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal
 
 import numpy as np
+
+from tactile_graph import Pipeline, load
 
 MOST_CALIBRATED_G = 750.0
 """On each of four elements: figure 2.15 ends at 3000 g."""
 
-THESIS_WEIGHING = """
-pipeline: thesis-features
-about: Weight by the calibration curve alone, area from the circle's radius (section 4.4.3)
-conditions:
-  touched: footprint.count > 0
-nodes:
-  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
-  grams: {step: force, in: frame, with: {curve: [[5, 1000]]}, when: touched}
-  measured: {step: features, in: {image: grams, mask: footprint}}
-  circle: {use: circle-3, in: frame}
-  features: {step: fitted_area, in: {features: measured, shape: circle}}
-outputs: [features]
-"""
-DECOUPLED_WEIGHING = """
-pipeline: decoupled-features
-about: Weight by the circuit's inverse and the force law, area from the circle's radius
-conditions:
-  touched: footprint.count > 0
-nodes:
-  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
-  siemens: {step: decouple, in: frame, when: touched}
-  grams: {step: force, in: siemens}
-  measured: {step: features, in: {image: grams, mask: footprint}}
-  circle: {use: circle-3, in: frame}
-  features: {step: fitted_area, in: {features: measured, shape: circle}}
-outputs: [features]
-"""
+Kind = Literal["curve", "decoupled", "footprint"]
+"""How discs are measured: as in the thesis; with the weight by the circuit's inverse and the force
+law; and with the area of the footprint's cells besides."""
+PIPELINES: dict[Kind, str] = {
+    "curve": "thesis-identify",
+    "decoupled": "identify-decoupled",
+    "footprint": "identify-footprint",
+}
+"""Whose node ``features`` measures so."""
 
 
-def weighing(kind: str, seed: int = 0, pad: str = "thesis") -> Any:
-    """Return the pipeline that measures discs: ``curve`` as in the thesis, or ``decoupled``.
+def weighing(kind: Kind, seed: int = 0, pad: str = "thesis") -> Pipeline:
+    """Return the pipeline whose node ``features`` measures discs.
 
     Parameters
     ----------
-    kind : "curve" or "decoupled"
+    kind : "curve", "decoupled" or "footprint"
     seed : int
         Of the calibration's placements.
     pad : str
         On which it is calibrated.
     """
-    from tactile_graph import loads
-
-    if kind == "decoupled":
-        return loads(DECOUPLED_WEIGHING)
-    return loads(THESIS_WEIGHING).with_settings({"grams.curve": calibration_curve(seed, pad)})
+    pipeline = load(PIPELINES[kind])
+    if kind != "curve":
+        return pipeline
+    return pipeline.with_settings({"grams.curve": calibration_curve(seed, pad)})
 
 
 def calibration_curve(seed: int = 0, pad: str = "thesis", groups: int = 9) -> list[list[float]]:

@@ -254,7 +254,7 @@ def test_a_graph_is_a_picture_too(hand_made, name, start):
 
 
 def test_a_picture_of_a_graph_is_not_poured_over_a_screen(hand_made, monkeypatch):
-    monkeypatch.setattr("tactile_graph.cli.graph.on_screen", lambda: True)
+    monkeypatch.setattr("tactile_graph.cli.commands.graph.on_screen", lambda: True)
     got = call("graph", "discs", "--format", "png")
     assert got.exit_code == 2
     assert "--format png: is nothing to read on a screen; give -o FILE.png" in got.stderr

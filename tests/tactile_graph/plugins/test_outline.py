@@ -125,7 +125,7 @@ def test_what_cannot_be_read_says_why(target, trouble):
 def test_a_summary_is_read_without_parsing_and_by_parsing_where_code_tells_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    target = "tactile_graph.cli.run:run"
+    target = "tactile_graph.cli.commands.run:run"
     quick = summary_of(target)
     assert quick == "Run PIPELINE, a name or a YAML file, over recordings or another source."
     assert summary_of("tg_outline:renamed") == "Elsewhere.", "handed on from module to module"

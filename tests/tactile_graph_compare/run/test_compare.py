@@ -149,6 +149,10 @@ def test_a_change_is_told_in_the_words_of_a_pipeline_file():
     assert str(SettingChange("when", "touched", None)) == "when: touched -> none"
     assert str(SettingChange("each", None, True)) == "each: none -> true"
     assert str(SettingChange("factor", 2, 3)) == "factor: 2 -> 3"
+    long = str(SettingChange("curve", list(range(100)), None))
+    assert long.startswith("curve: [0, 1, 2,")
+    assert long.endswith("… -> none")
+    assert len(long) < 80
 
 
 def test_difference_images_are_of_equally_named_nodes_cell_by_cell():

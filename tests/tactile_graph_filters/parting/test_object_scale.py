@@ -72,6 +72,7 @@ def test_what_falls_apart_in_detail_is_whole_on_coarser_cells():
     assert min(counts(FINE, images[:1])) > 4
 
 
+@pytest.mark.slow  # parting is compiled
 def test_two_large_discs_that_touch_are_two_contacts_of_the_right_cells():
     both = discs(64, 64, (20, 20, 11), (36, 40, 14))
     for seed in range(8):
@@ -83,6 +84,7 @@ def test_two_large_discs_that_touch_are_two_contacts_of_the_right_cells():
         assert np.abs(np.subtract(places, wanted)).max() < 1.3  # one cell
 
 
+@pytest.mark.slow  # parting is compiled
 def test_small_objects_side_by_side_are_not_lost_on_coarser_cells():
     """Twenty-four discs of some twelve cells, a cell or two apart: three hundred cells in all."""
     places = [(2.5 + 5.4 * i, 2.5 + 5.4 * j, 2.0) for i in range(4) for j in range(6)]
@@ -93,6 +95,7 @@ def test_small_objects_side_by_side_are_not_lost_on_coarser_cells():
     assert 22 <= SPLIT(image, mask).count <= 26
 
 
+@pytest.mark.slow  # parting is compiled
 def test_objects_of_unlike_size_are_each_looked_at_on_their_own_scale():
     image = discs(64, 64, (25, 25, 18), (55, 55, 2.2), (55, 8, 2.2))
     found = SPLIT(image, image.mask(image.values > 0)).contacts

@@ -51,6 +51,7 @@ def test_an_even_load_gives_the_disc_to_a_hundredth_of_an_element():
         assert found.uneven < 5e-3
 
 
+@pytest.mark.slow  # much is compiled
 def test_lightly_covered_elements_that_do_not_show_are_no_sign_of_a_smaller_disc():
     """A quarter of a load is needed to show: left out, the radius would come out too small."""
     rng = np.random.default_rng(1)

@@ -97,6 +97,7 @@ def test_the_pressure_of_an_element_is_its_mean_over_it(shape, fall, lean):
     assert np.isfinite(found).all()
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("fall", [-0.4, 0.3, 1.0])
 def test_a_falling_pressure_has_the_mean_of_an_even_one(fall):
     even, found = (by_kernel(SHAPES[0], f, (0.0, 0.0)).sum() for f in (0.0, fall))

@@ -80,6 +80,7 @@ def test_information_is_the_same_plain_and_compiled():
     np.testing.assert_allclose(*found, rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_truth_is_likelier_than_what_is_half_a_centimetre_off():
     rng = np.random.default_rng(4)
     ahead = 0

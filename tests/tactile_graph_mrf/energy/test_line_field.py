@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tactile_graph import loads
 from tactile_graph.wires import Image
 from tactile_graph_mrf.energy.line_field import LineField
 
@@ -18,6 +19,13 @@ def test_segments_lie_between_the_cells_they_part():
     assert lines.length_cm == 3.5
     wanted = [[[13.0, 22.0], [14.5, 22.0]], [[11.5, 22.0], [11.5, 24.0]]]
     np.testing.assert_allclose(lines.segments_cm, wanted)
+    np.testing.assert_allclose(lines.middles.xy_cm, [[13.75, 22.0], [11.5, 23.0]])
+
+
+def test_ports_that_take_points_take_the_middles_of_the_lines():
+    text = "pipeline: p\nnodes:\n  restored: {step: restore, in: frame}\n"
+    pipeline = loads(text + "  hull: {step: hull, in: restored.lines}\noutputs: [hull]\n")
+    assert str(pipeline.nodes["hull"].inputs[0].refs[0]) == "restored.lines.middles"
 
 
 def test_no_lines():

@@ -20,6 +20,13 @@ def random_lines(problem, rng):
     return [sites & (rng.random(sites.shape) < 0.5) for sites in problem.sites]
 
 
+def test_the_line_potentials_are_those_told():
+    told = {"end": 2.7, "straight": 0.9, "corner": 1.8, "tee": 1.8, "cross": 2.7}
+    ours = {"parallel": 1.8, "one": 0.3}
+    assert {name: getattr(Model(), name) for name in told | ours} == told | ours
+    assert (Model().n_levels, Model().order, Model().smoothness) == (200, 1, "quadratic")
+
+
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("smoothness", [*RHO])
 def test_energy_is_the_sum_over_all_cliques(order, smoothness):

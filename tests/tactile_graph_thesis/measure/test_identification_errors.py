@@ -7,7 +7,9 @@ import pytest
 
 from tactile_graph_thesis.measure.identification_errors import (
     PAIRS,
+    Confusion,
     Trials,
+    added,
     error_curves,
     strangers_rejected,
     table_4_9,
@@ -15,11 +17,27 @@ from tactile_graph_thesis.measure.identification_errors import (
 from tactile_graph_thesis.measure.weighing import calibration_curve
 
 
-def test_all_readings_of_the_five_objects_are_identified():
-    found = table_4_9(seed=3)
+def test_all_readings_of_the_five_objects_are_identified_where_weights_are_right():
+    found = table_4_9(seed=3, kind="footprint")
     assert {name: c.share_right for name, c in found.items()} == dict.fromkeys(found, 1.0)
     assert all(c.n >= 120 for c in found.values())
     assert all(c.share_rejected < 0.06 for c in found.values())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 4, 11])
+def test_with_the_thesis_weights_the_modified_distance_is_right_and_equation_4_8_is_not(seed):
+    found = table_4_9(seed=seed)
+    assert found["minimum_distance_normalised"].share_right == 1.0
+    assert 0.8 < found["minimum_distance"].share_right < 0.99
+
+
+def test_confusions_add_up():
+    one = Confusion(("a", "b"), {("a", "a"): 3, ("b", "a"): 1}, {"a": 1}, 4)
+    two = Confusion(("a", "b"), {("b", "b"): 4}, {}, 4)
+    both = added([one, two])
+    assert (both.n, both.share_right, both.share_rejected) == (8, 7 / 8, 1 / 8)
+    assert both.names == ("a", "b")
 
 
 def test_an_object_that_was_not_learned_is_called_unknown():

@@ -1,0 +1,308 @@
+"""``tactile-graph run``: frames through a pipeline, to people, to programs, to a picture."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tactile_graph.cli.app import EXIT_CODES
+from tactile_graph.cli.arguments import (
+    Span,
+    open_pipeline,
+    parse_span,
+    pipeline_argument,
+    source_options,
+)
+from tactile_graph.cli.endings import SOME_FAILED, exited
+from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.output.outputs import FORMATS, Output
+from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
+from tactile_graph.errors import UsageError
+from tactile_graph.files import is_plain
+
+if TYPE_CHECKING:
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
+    from tactile_graph.cli.output.outputs import Writer
+    from tactile_graph.engine.table import Table
+
+LONG_RUN = 200
+STALLED_S = 1.0
+
+
+@click.command(epilog=EXIT_CODES)
+@pipeline_argument
+@source_options
+@click.option(
+    "--frames",
+    "span",
+    callback=parse_span,
+    metavar="N|A:B",
+    help="Only the first N frames, or frames A up to B, counted from 0. A source that makes its "
+    "frames makes as many.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; or stacks of the "
+    "images and masks asked for (--only): out.h5, out.zarr. How it was made is written beside it, "
+    "as FILE.meta.json.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(FORMATS),
+    help="Format of what is written, where the file's name does not say; alone it means '-o -'.",
+)
+@click.option(
+    "--full",
+    is_flag=True,
+    help="JSON lines with every field and array of the outputs, not only their summary.",
+)
+@click.option(
+    "--long",
+    is_flag=True,
+    help="CSV and Parquet with a row a frame and object: every item of every list.",
+)
+@click.option(
+    "--plot",
+    metavar="FILE",
+    help=f"Draw the first {IN_A_STRIP} frames, a row a frame, a column a node (.png, .svg, .pdf); "
+    "or a film, what was found drawn over every frame (.gif, .mp4).",
+)
+@click.option(
+    "--verify",
+    is_flag=True,
+    help="Look after every step whether it wrote into what others read; slower.",
+)
+def run(
+    pipeline: str | None,
+    recordings: tuple[str, ...],
+    source: str | None,
+    source_settings: tuple[str, ...],
+    settings: tuple[str, ...],
+    seed: int,
+    only: tuple[str, ...],
+    span: Span,
+    output: str | None,
+    form: str | None,
+    full: bool,
+    long: bool,
+    plot: str | None,
+    verify: bool,
+) -> None:
+    """Run PIPELINE, a name or a YAML file, over recordings or another source.
+
+    Without recordings and --source the pipeline's own source is used. People get a table on
+    stdout, with errors where the truth is known; programs ask for lines with -o.
+    """
+    lines = Output.of(output, form, full, long)
+    _check_files(recordings, lines, plot)
+    opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
+    _Run(opened, tuple(only), span, seed, lines, plot, verify).go()
+
+
+def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
+    """Refuse what could not be written in the end, before the work."""
+    if output is not None:
+        output.check()
+    if plot is not None:
+        check_plot(plot)
+    for option, name in (("-o", output.name if output else None), ("--plot", plot)):
+        if name is not None and any(Path(r).resolve() == Path(name).resolve() for r in recordings):
+            raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
+
+
+@dataclass
+class _Run:
+    """One run from its first frame to its closing lines."""
+
+    pipeline: Pipeline
+    only: tuple[str, ...]
+    span: Span
+    seed: int
+    output: Output | None
+    plot: str | None
+    verify: bool
+    interrupted: KeyboardInterrupt | None = None
+    form_of_table: Table | None = None
+    quantity: str = "raw"
+    last_frame_s: float = field(default_factory=time.monotonic)
+    error: Exception | None = None
+
+    def go(self) -> None:
+        from tactile_graph.cli.interrupt import Interrupts
+        from tactile_graph.cli.output.progress import Bar
+        from tactile_graph.cli.output.tally import Tally
+        from tactile_graph.cli.terminal import console, stdout_for_programs
+        from tactile_graph.engine.columns import columns_of
+        from tactile_graph.steps.injected import Report
+
+        self.report = Report(listener=self._trouble)
+        self.runner = self.pipeline.runner(self.only, self.seed, self.verify)
+        self.asked = self.only or tuple(self.pipeline.outputs)
+        self.columns = columns_of(self.pipeline, self.asked)
+        self.tally = Tally(self.columns)
+        # Lines own stdout; what is said to people then goes to stderr.
+        self.people = console(stderr=self.output is not None)
+        self.table: Any = None
+        self.drawing: Plot | None = None
+        if self.plot is not None:
+            self.drawing = plot_of(self.plot, self.pipeline.name, self.asked)
+        self.lines: Writer | None = None
+        if self.output is not None:
+            self.lines, self.form_of_table = self.output.writer(self.pipeline, self.asked)
+        on_screen = self.lines is None and sys.stdout.isatty()
+        self.stderr = console(stderr=True)
+        self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
+        with Interrupts() as interrupts:
+            with stdout_for_programs(self.output is not None and self.output.name == "-"):
+                self._frames(interrupts.held)
+            code = self._close()
+        click.get_current_context().exit(code)
+
+    # -- the frames --------------------------------------------------------------------------
+
+    def _results(self) -> Iterator[Result]:
+        frames = self.span.of(self.pipeline.frames(self.seed, self.report))
+        for i, frame in enumerate(frames):
+            if i == 0:
+                self._warm_up()
+            result = self.runner(frame)
+            if self.pipeline.promises.waiting:
+                self.pipeline.promises.check(result)
+            yield result
+
+    def _warm_up(self) -> None:
+        from tactile_graph.compiled import warm_up
+
+        expected = self.span.expected(self.report.n_expected)
+        if expected is None or expected > LONG_RUN:
+            warm_up()
+            self.bar.now(expected)
+
+    def _frames(self, held: Any) -> None:
+        try:
+            for result in self._results():
+                with held:
+                    self._one(result)
+        except KeyboardInterrupt as error:
+            self.interrupted = error
+        except BrokenPipeError:
+            raise
+        except Exception as error:  # a source may raise anything; what was done is kept
+            self.error = error
+        except BaseException as error:
+            self.error = exited(error)
+        finally:
+            self.bar.stop()
+
+    def _trouble(self, where: str, what: str) -> None:
+        """Tell a trouble at once when no frame comes: closing lines would be too late."""
+        if time.monotonic() - self.last_frame_s > STALLED_S:
+            self.stderr.print(f"{where}: {what}", style="yellow", soft_wrap=True)
+
+    def _one(self, result: Result) -> None:
+        self.quantity = result.frame.image.quantity
+        self.last_frame_s = time.monotonic()
+        self.tally.add(result)
+        if self.lines is None:
+            self._row(result)
+        else:
+            self.lines.write(result)
+            if self.tally.n == 1:
+                self._provenance(complete=False)  # should the run be killed
+        if self.drawing is not None:
+            self.drawing.add(result)
+        self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
+
+    def _row(self, result: Result) -> None:
+        if self.table is None:
+            from tactile_graph.cli.output.live_table import LiveTable
+
+            self.people.print(self._heading(result), soft_wrap=True)
+            self.table = LiveTable(self.people, self.columns, result)
+        self.table.row(result)
+
+    def _heading(self, result: Result) -> Any:
+        from rich.text import Text
+
+        image = result.frame.image
+        pitch = " x ".join(f"{p:g}" for p in dict.fromkeys(image.pitch_cm))
+        name = self.pipeline.source.name if self.pipeline.source else "frames"
+        what = f"{image.rows} x {image.columns} cells of {pitch} cm, {image.quantity}"
+        return Text.assemble((self.pipeline.name, "bold"), f" on {name}: {what}")
+
+    # -- the end -----------------------------------------------------------------------------
+
+    def _close(self) -> int:
+        if self.error is None and not self.tally.n and not self.interrupted:
+            self._no_frames()
+        if self.tally.n or self.error is None:
+            self._finish_lines()
+            came = self.interrupted
+            self.tally.close(self.people, self.report, words_of(came) if came else "")
+            self._hints(self.drawing is not None and self.drawing.save(self.stderr))
+        if self.error is not None:
+            raise self.error  # the command line shows it; what was done stands above
+        if self.interrupted is not None:
+            return code_of(self.interrupted)
+        tally = self.tally
+        return SOME_FAILED if tally.n_failed or tally.n_items_failed or tally.not_finite else 0
+
+    def _no_frames(self) -> None:
+        got = self.report.counts["frames"]
+        if self.span.start:
+            self.error = UsageError(
+                f"--frames {self.span.start}:…: the source gave only {got} frames"
+            )
+
+    def _finish_lines(self) -> None:
+        if self.lines is not None:
+            self.lines.close()
+            self._provenance(complete=self.error is None and not self.interrupted)
+
+    def _provenance(self, complete: bool) -> None:
+        from tactile_graph.provenance import provenance, write_provenance
+
+        name = None if self.output is None else self.output.name
+        if name in (None, "-") or not (is_plain(str(name)) or Path(str(name)).is_dir()):
+            return  # nothing stands beside a pipe or a device
+        data = provenance(
+            self.pipeline, self.seed, self.report,
+            command=["tactile-graph", *sys.argv[1:]], complete=complete,
+            asked=list(self.asked), columns=self._units(),
+            frames={"from": self.span.start, "to": self.span.stop}, result=self.tally.data(),
+        )  # fmt: skip
+        write_provenance(str(name), data)
+
+    def _units(self) -> dict[str, str] | None:
+        from tactile_graph.engine.table import units_of
+
+        table = self.form_of_table
+        return None if table is None else units_of(table, self.quantity)
+
+    def _hints(self, drawn: bool) -> None:
+        say = self.people
+        hidden = self.table.hidden if self.table is not None else []
+        if hidden:
+            names = ", ".join(c.key for c in hidden)
+            say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
+                      soft_wrap=True)  # fmt: skip
+        whole = self.output is not None and self.lines is not None and not self.lines.broken
+        written = self.output.name if whole and self.output is not None else None
+        for name in (written, self.plot if drawn else None):
+            if name not in (None, "-"):
+                say.print(f"wrote {name}", style="dim", soft_wrap=True)
+        for note in self.drawing.notes() if self.drawing is not None and drawn else ():
+            say.print(note, style="dim", soft_wrap=True)
+        most = self.span.most if self.error is None else None
+        if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
+            say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")

@@ -1,0 +1,1 @@
+"""What a run gives: rows for people, lines, tables, stacks and pictures in files."""

@@ -1,0 +1,109 @@
+"""What ``--plot`` draws of a run: the first frames as a strip, or all of them as a film."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from tactile_graph.errors import UsageError, did_you_mean
+from tactile_graph.files import check_target
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from tactile_graph.api.result import Result
+
+IN_A_STRIP = 12
+PICTURES = (".png", ".svg", ".pdf")
+FILMS = (".gif", ".mp4")
+
+
+class Plot(Protocol):
+    """Takes results while they come, and draws them in the end."""
+
+    def add(self, result: Result) -> None:
+        """Take in a frame."""
+
+    def save(self, stderr: Console) -> bool:
+        """Write it, and return whether there was anything to draw."""
+
+    def notes(self) -> Iterator[str]:
+        """Yield what people should know of it."""
+
+
+def check_plot(path: str) -> None:
+    """Refuse what could not be drawn in the end, before the work.
+
+    Raises
+    ------
+    UsageError
+    """
+    suffix, allowed = Path(path).suffix.lower(), (*PICTURES, *FILMS)
+    if suffix not in allowed:
+        near = did_you_mean(suffix, allowed) if suffix else ""
+        raise UsageError(f"--plot {path}: its name must end in {', '.join(allowed)}{near}")
+    check_target("--plot", path)
+    if suffix == ".mp4":
+        from tactile_graph.draw.film_files import ffmpeg
+
+        ffmpeg()
+
+
+def plot_of(path: str, name: str, asked: tuple[str, ...]) -> Plot:
+    """Return what draws a run of the pipeline of that name, of which that is asked."""
+    return _Film(path, name, asked) if Path(path).suffix.lower() in FILMS else _Strip(path)
+
+
+class _Strip:
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._kept: list[Result] = []
+
+    def add(self, result: Result) -> None:
+        if len(self._kept) < IN_A_STRIP:
+            self._kept.append(result)
+
+    def save(self, stderr: Console) -> bool:
+        if self._kept:
+            from tactile_graph.draw.strip import save_strip
+
+            save_strip(self._kept, self._path)
+        return bool(self._kept)
+
+    def notes(self) -> Iterator[str]:
+        yield from ()
+
+
+class _Film:
+    def __init__(self, path: str, name: str, asked: tuple[str, ...]) -> None:
+        from tactile_graph.draw.film import Film
+
+        self._path = path
+        self._film = Film(name, asked)
+
+    def add(self, result: Result) -> None:
+        self._film.add(result)
+
+    def save(self, stderr: Console) -> bool:
+        if not self._film.n:
+            return False
+        from tactile_graph.cli.output.progress import Bar
+
+        bar = Bar(stderr, "film")
+        try:
+            self._film.write(self._path, bar.at)
+        finally:
+            bar.stop()
+        return True
+
+    def notes(self) -> Iterator[str]:
+        from tactile_graph.draw.film import LONGEST_S, UNTIMED_S
+
+        film = self._film
+        if film.full:
+            yield f"the film holds the first {film.n} pictures; --frames A:B takes others"
+        if film.shortened:
+            yield f"pauses of more than {LONGEST_S:g} s are shown as {LONGEST_S:g} s"
+        if not film.timed:
+            yield f"frames without a time are shown for {UNTIMED_S:g} s each"

@@ -1,0 +1,283 @@
+"""Count what the frames of a run came to, and say it in closing."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.text import Text
+
+from tactile_graph.api.result import Result
+from tactile_graph.cli.output.live_table import shown
+from tactile_graph.engine.columns import OutputColumns, values_of
+from tactile_graph.engine.notices import notices
+from tactile_graph.engine.outcome import Failed, Skipped, item_words
+from tactile_graph.steps.injected import Report
+
+MOST_TROUBLES = 20
+LOOKED_THROUGH = 100
+"""Frames at the beginning in which nodes are asked what they assume, and have to say."""
+LONGEST_REASON = 300
+READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
+
+
+@dataclass
+class _Kept:
+    """How often something happened, and the first time in full."""
+
+    outcome: Any
+    first_frame: int
+    last_frame: int = -1
+    n: int = 0
+    """Frames; several items of one frame count once."""
+
+
+@dataclass
+class _Error:
+    unit: str
+    n: int = 0
+    total: float = 0.0
+    most: float = 0.0
+
+    def add(self, value: float) -> None:
+        self.n += 1
+        self.total += abs(value)
+        self.most = max(self.most, abs(value))
+
+
+@dataclass
+class _Noticed:
+    """What a node had to say in the frames looked through: how often, and the first time."""
+
+    text: str = ""
+    first_frame: int = -1
+    n: int = 0
+    n_ran: int = 0
+
+    def add(self, text: str, frame: int) -> None:
+        self.n_ran += 1
+        self.n += bool(text)
+        if text and not self.text:
+            self.text, self.first_frame = text, frame
+
+    @property
+    def usual(self) -> bool:
+        """Whether more than half of the frames were so: now and then it may be a faulty reading."""
+        return 2 * self.n > self.n_ran
+
+    @property
+    def times(self) -> str:
+        if self.n_ran == 1:
+            return f"in frame {self.first_frame}"
+        return f"in {self.n} of {self.n_ran} frames looked at, first in frame {self.first_frame}"
+
+
+@dataclass
+class Tally:
+    """What a run came to so far."""
+
+    outputs: list[OutputColumns]
+    n: int = 0
+    n_failed: int = 0
+    n_skipped: int = 0
+    n_lacking: int = 0
+    """Frames with all outputs, in the lists of which items failed or were skipped."""
+    n_not_finite: int = 0
+    """Frames with all outputs and items, of which one holds NaN or infinity."""
+    n_items_failed: int = 0
+    assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
+    """What a node took that nobody said, and in which frame first."""
+    noticed: dict[str, _Noticed] = field(default_factory=dict)
+    failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    not_finite: dict[tuple[str, str], _Kept] = field(default_factory=dict)
+    errors: dict[str, dict[str, _Error]] = field(default_factory=dict)
+    started: float = field(default_factory=time.perf_counter)
+    seconds: float = 0.0
+
+    def add(self, result: Result) -> None:
+        """Count a frame."""
+        self.n += 1
+        if self.n <= LOOKED_THROUGH:
+            self._assumed(result)
+            self._noticed(result)
+        classes = {result.outcome(o.output).__class__ for o in self.outputs}
+        self.n_failed += Failed in classes
+        self.n_skipped += Skipped in classes and Failed not in classes
+        for failure in result.failures:
+            key = (failure.origin, failure.reason.partition("\n")[0])
+            self._keep(self.failed, key, failure, result)
+        strange = False
+        for output in self.outputs:
+            outcome = result.outcome(output.output)
+            if isinstance(outcome, Skipped):
+                self._keep(self.skipped, (output.output, outcome.origin), outcome, result)
+            elif not isinstance(outcome, Failed):
+                values = values_of(result, output)
+                strange = self._look(output, values, result) or strange
+                self._compare(output, values)
+        good = Failed not in classes and Skipped not in classes
+        empty = [gap for found in result.gaps.values() for gap in found]
+        for gap in empty:
+            if isinstance(gap, Skipped):
+                self._keep(self.skipped, (gap.origin, gap.origin), gap, result)
+        self.n_lacking += good and bool(empty)
+        self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
+        self.n_not_finite += strange and good and not empty
+        self.seconds = time.perf_counter() - self.started
+
+    @staticmethod
+    def _keep(
+        where: dict[tuple[str, str], _Kept], key: tuple[str, str], outcome: Any, result: Result
+    ) -> None:
+        frame = result.frame.index
+        kept = where.setdefault(key, _Kept(outcome, frame))
+        kept.n += kept.last_frame != frame or kept.n == 0
+        kept.last_frame = frame
+
+    def _assumed(self, result: Result) -> None:
+        """Note what nodes took that nobody said."""
+        seen: set[int] = set()  # a value may be handed on as it is
+        for item in result.plan.nodes:
+            value = result.outcome(item.name)
+            told = getattr(value, "assumed", "")
+            if told and id(value) not in seen and item.name not in self.assumed:
+                self.assumed[item.name] = (told, result.frame.index)
+            seen.add(id(value))
+
+    def _noticed(self, result: Result) -> None:
+        """Note what steps had to say beside their values."""
+        for node, text in notices(result).items():
+            self.noticed.setdefault(node, _Noticed()).add(text, result.frame.index)
+
+    def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
+        """Note each value that is no number and should be one; return whether there is any."""
+        strange = [c.key for c in output.values if not _finite(values.get(c.key))]
+        for key in strange:
+            self._keep(self.not_finite, (key, ""), values[key], result)
+        return bool(strange)
+
+    def _compare(self, output: OutputColumns, values: dict[str, Any]) -> None:
+        errors = self.errors.setdefault(output.output, {})
+        for column in output.errors:
+            value = values.get(column.key)
+            if value is not None and _finite(value):
+                errors.setdefault(column.field, _Error(column.unit)).add(value)
+
+    def data(self) -> dict[str, Any]:
+        """Return the counts as plain data."""
+        failed: dict[str, int] = {}
+        for (node, _), kept in self.failed.items():
+            failed[node] = failed.get(node, 0) + kept.n
+        return {
+            "frames": self.n,
+            "frames_failed": self.n_failed,
+            "frames_skipped": self.n_skipped,
+            "frames_lacking_items": self.n_lacking,
+            "frames_not_finite": self.n_not_finite,
+            "failures_by_node": failed,
+            "assumed": {node: told for node, (told, _) in self.assumed.items()},
+            "notices": {node: found.text for node, found in self.noticed.items() if found.usual},
+        }
+
+    # -- in closing --------------------------------------------------------------------------
+
+    def close(self, console: Console, report: Report, interrupted: str = "") -> None:
+        """Print what the run came to and what the source had to say.
+
+        ``interrupted`` says what ended it before its end, if anything did.
+        """
+        lines = [*self._errors(), *self._outcomes(), *_source(report), self._last(interrupted)]
+        for line in lines:
+            console.print(line, soft_wrap=True)
+
+    def _errors(self) -> Iterator[Text]:
+        for output, errors in self.errors.items():
+            parts = [
+                f"{name} {shown(e.total / e.n, e.unit)} {e.unit} (most {shown(e.most, e.unit)})"
+                for name, e in errors.items()
+            ]
+            n = max((e.n for e in errors.values()), default=0)
+            if parts:
+                frames = "frame" if n == 1 else "frames"
+                text = f"{output} is off, on average over {n} {frames}, by {', '.join(parts)}"
+                yield _labelled("truth", "magenta", text)
+
+    def _outcomes(self) -> Iterator[Text]:
+        for (node, _), kept in self.failed.items():
+            yield _labelled("failed", "red", f"{node} {_times(kept)}: {_why(kept.outcome)}")
+        for (key, _), kept in self.not_finite.items():
+            text = f"{key} {_times(kept)}: {kept.outcome}, which is no answer"
+            yield _labelled("strange", "red", text)
+        for node, (told, frame) in self.assumed.items():
+            yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
+        for node, found in self.noticed.items():
+            if found.usual:
+                yield _labelled("notice", "yellow", f"{node}: {found.text} ({found.times})")
+        for (output, origin), kept in self.skipped.items():
+            at = "" if origin in ("", output) else f"{origin}: "
+            text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
+            yield _labelled("skipped", "yellow", text)
+
+    def _last(self, interrupted: str) -> Text:
+        rate = f" ({self.n / self.seconds:.4g} a second)" if self.seconds > 0 and self.n else ""
+        frames = "frame" if self.n == 1 else "frames"
+        text = Text.assemble(
+            (f"{interrupted}: " if interrupted else "", "bold red"),
+            (f"{self.n} {frames} in {self.seconds:.2f} s{rate}", "bold"),
+        )
+        if not self.n:
+            return text
+        good = self.n - self.n_failed - self.n_skipped - self.n_lacking - self.n_not_finite
+        parts = [(f"{good} with all outputs", "green" if good else "")]
+        parts += [(f"{self.n_lacking} with items missing", "red")] if self.n_lacking else []
+        parts += [(f"{self.n_not_finite} not finite", "red")] if self.n_not_finite else []
+        parts += [(f"{self.n_skipped} skipped", "yellow")] if self.n_skipped else []
+        parts += [(f"{self.n_failed} failed", "red")] if self.n_failed else []
+        for i, (part, style) in enumerate(parts):
+            text.append(", " if i else ": ")
+            text.append(part, style=style)
+        return text
+
+
+def _finite(value: Any) -> bool:
+    return not isinstance(value, float | np.floating) or math.isfinite(value)
+
+
+def _why(failure: Failed) -> str:
+    """Return why a node failed in one line, with what to do where that is known."""
+    text = " ".join(failure.reason.split()).removesuffix(":")
+    if len(text) > LONGEST_REASON:
+        text = f"{text[:LONGEST_REASON]}…"
+    if failure.kind == "error":
+        # A condition has no file: it says itself where the trouble is.
+        where = failure.step if failure.where.startswith("<condition>") else failure.where
+        text += f" ({where})" if where else ""
+        text += READ_ONLY if "read-only" in failure.reason else ""
+    return text
+
+
+def _times(kept: _Kept) -> str:
+    first = f"frame {kept.first_frame}"
+    first += f" ({item_words(kept.outcome.item)})" if getattr(kept.outcome, "item", ()) else ""
+    return f"in {first}" if kept.n == 1 else f"in {kept.n} frames, first in {first}"
+
+
+def _source(report: Report) -> Iterator[Text]:
+    told = {k: n for k, n in report.counts.items() if k not in ("frames", "troubles")}
+    if told:
+        yield _labelled("source", "cyan", ", ".join(f"{k}: {n}" for k, n in told.items()))
+    n = report.counts["troubles"]
+    for where, what in report.troubles[:MOST_TROUBLES]:
+        yield _labelled("source", "cyan", f"{where}: {what}")
+    if n > MOST_TROUBLES:
+        yield _labelled("source", "cyan", f"… and {n - MOST_TROUBLES} more troubles")
+
+
+def _labelled(label: str, style: str, text: str) -> Text:
+    return Text.assemble((f"{label:<8}", style), " ", text)

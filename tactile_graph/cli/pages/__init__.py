@@ -1,0 +1,1 @@
+"""What commands show of what there is: lists, searches, one thing in full."""

@@ -1,0 +1,41 @@
+"""``--plot``: strips and films of a run, refused beforehand where they could not be drawn."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image as Pillow
+
+from helpers_cli import call
+from tactile_graph.cli.output import plot
+from tactile_graph.draw import film as films
+
+
+def test_run_writes_a_film_and_says_what_was_cut(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done = call("run", "discs", "--frames", 4, "--plot", "film.gif")
+    assert done.exit_code == 0, done.output
+    assert "wrote film.gif" in done.output
+    with Pillow.open(hand_made / "film.gif") as gif:
+        assert gif.n_frames == 4
+    monkeypatch.setattr(films, "MOST_PICTURES", 2)
+    told = call("run", "discs", "--frames", 4, "--plot", "film.gif").output
+    assert "the film holds the first 2 pictures; --frames A:B takes others" in told
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_mp4_without_ffmpeg_is_refused_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    done = call("run", "discs", "--plot", "film.mp4")
+    assert done.exit_code == 2
+    assert "films in MP4 need imageio-ffmpeg: pip install 'tactile-graph[film]'" in done.stderr
+    assert done.stdout == ""
+
+
+def test_the_endings_of_strips_are_those_they_are_drawn_in() -> None:
+    from tactile_graph.draw.strip import FORMATS
+
+    assert {f".{form}" for form in FORMATS} == set(plot.PICTURES)
