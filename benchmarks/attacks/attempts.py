@@ -56,15 +56,18 @@ def told(attempts: Iterable[Attempt], args: argparse.Namespace) -> int:
     counts: Counter[tuple[str, str]] = Counter()
     failures: Counter[str] = Counter()
     worst: dict[str, float] = {}
-    for attempt in attempts:
-        counts[attempt.what, attempt.came] += 1
-        worst[attempt.what] = max(worst.get(attempt.what, 0.0), attempt.seconds)
-        if attempt.why:
-            failures[attempt.what] += 1
-            if failures.total() <= MOST_SHOWN:
-                print(f"FAILED {attempt.what}: {attempt.came}: {attempt.why}", flush=True)
-        if time.monotonic() > until:
-            break
+    try:
+        for attempt in attempts:
+            counts[attempt.what, attempt.came] += 1
+            worst[attempt.what] = max(worst.get(attempt.what, 0.0), attempt.seconds)
+            if attempt.why:
+                failures[attempt.what] += 1
+                if failures.total() <= MOST_SHOWN:
+                    print(f"FAILED {attempt.what}: {attempt.came}: {attempt.why}", flush=True)
+            if time.monotonic() > until:
+                break
+    except KeyboardInterrupt:  # what was tried so far counts
+        print("ended by Ctrl-C", flush=True)
     _print_table(counts, failures, worst)
     seconds = time.monotonic() - begun
     words = json.dumps({k: v for k, v in vars(args).items() if v != float("inf")})

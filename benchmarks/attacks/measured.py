@@ -63,8 +63,8 @@ def _child(act: Callable[[], tuple[str, str]], write: int) -> None:
     before, begun = _peak_bytes(), time.process_time()
     try:
         came, why = act()
-    except MemoryError as error:
-        came, why = "FOREIGN", f"MemoryError: {error}"
+    except BaseException as error:  # or this process would go on as the other one
+        came, why = "FOREIGN", repr(error)
     seconds = time.process_time() - begun
     found = [came, why[:300], seconds, (_peak_bytes() - before) / MB]
     os.write(write, json.dumps(found).encode())
