@@ -32,9 +32,10 @@ tactile-graph schema pad -o pad.schema.json
 tactile-graph schema scene --keys
 ```
 
-`check` tells by a file's keys what it is; `--as scene` says so where they do not. A key without a
-default and not required is left out unless it is meant. Lengths are in cm, places (x right, y down)
-from the pad's top left corner.
+`check` of a pipeline opens the pad, scene, preset or recording that its source names as well, and
+tells what is wrong in it. It tells by a file's keys what it is; `--as scene` says so where they do
+not. A key without a default and not required is left out unless it is meant. Lengths are in cm,
+places (x right, y down) from the pad's top left corner.
 """
 
 

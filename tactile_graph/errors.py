@@ -56,7 +56,7 @@ class PluginError(TactileGraphError):
 
 
 class RuleError(TactileGraphError):
-    """A frame that breaks a rule (quantity, shape, pitch) some step of the pipeline declares."""
+    """A frame that breaks a rule (quantity, shape, pitch) of some step of the pipeline."""
 
 
 _BETWEEN = {

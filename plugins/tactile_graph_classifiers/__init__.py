@@ -7,6 +7,7 @@ from tactile_graph import hookimpl
 _STEPS = {
     "describe": "measuring.describe:Describe",
     "discriminant": "distances.discriminant:CanonicalDiscriminant",
+    "discriminant_presses": "distances.discriminant_presses:DiscriminantOfPresses",
     "features": "measuring.features:FeaturesOf",
     "fitted_area": "measuring.fitted_area:fitted_area",
     "mahalanobis": "distances.mahalanobis:Mahalanobis",

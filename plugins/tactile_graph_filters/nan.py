@@ -23,6 +23,11 @@ def all_finite(values):  # type: ignore[no-untyped-def]
     return bad == 0
 
 
+def finite(values: NDArray[Any]) -> bool:
+    """Return whether all values are numbers, of whatever type; fast where they are doubles."""
+    return all_finite.call(values) if values.dtype.char == "d" else bool(np.isfinite(values).all())
+
+
 def refuse_nan(image: Image, *, infinite: bool = False) -> None:
     """Raise if a valid cell holds NaN.
 
@@ -59,7 +64,7 @@ def require_finite(image: Image) -> None:
     DataError
         As `refuse_nan`.
     """
-    if not all_finite.call(image.values):
+    if not finite(image.values):
         refuse_nan(image, infinite=True)
 
 

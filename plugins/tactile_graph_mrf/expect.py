@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -49,7 +50,7 @@ def expect(
     Raises
     ------
     Degenerate
-        If the outline covers no cell.
+        If the outline covers no cell, or the load under it is not finite.
 
     Notes
     -----
@@ -61,6 +62,8 @@ def expect(
     if load is None:
         readings = np.maximum(image.filled(0.0), 0.0)
         load = float(readings[covered > 0].sum() / covered.sum())
+        if not math.isfinite(load):
+            raise Degenerate("the load under the outline is no finite number")
     told = (covered == 0.0) | (covered >= known)
     return image.with_values(np.where(told, load * covered, 0.0), valid=told)
 

@@ -21,7 +21,7 @@ def tactile_graph_steps() -> Mapping[str, str]:
 @hookimpl
 def tactile_graph_readers() -> Mapping[str, str]:
     """Offer what reads the recordings a command line names."""
-    return {"recording": "path"}
+    return {"recording": "path", "replay": "path"}
 
 
 @hookimpl

@@ -13,7 +13,7 @@ from annotated_types import Ge, Gt
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers import pictures
+from tactile_graph_sources.readers import node_images, pictures
 from tactile_graph_sources.readers.formats import known, reader_of
 from tactile_graph_sources.readers.garbage import without_garbage
 from tactile_graph_sources.readers.head import Head
@@ -147,15 +147,15 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
         If it is missing or of no known format.
     """
     _check_file(path)
+    if node_images.is_store_of_images(path):
+        return _folder(path, told, report, label, node_images.NAME, node_images.read_store)
     if is_store(path):
         name, why = "Zarr store of ours", "by the files in it, zarr.json or frames.journal"
         frames, start = read_store(path, report), told.skip
         kept = without_garbage(islice(frames, start, None), report, str(path))
         return Opened(name, lambda: why, kept)
     if path.is_dir():
-        reading = Reading(Head(path, b"", told), told, report, 0, label)
-        found = islice(_frames(reading, pictures.NAME, pictures.read_folder), told.skip, None)
-        return Opened(pictures.NAME, lambda: reading.why, without_garbage(found, report, str(path)))
+        return _folder(path, told, report, label, pictures.NAME, pictures.read_folder)
     try:
         with path.open("rb") as file:
             report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
@@ -167,6 +167,20 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     found = islice(_frames(reading, reader.NAME, reader.read), told.skip, None)
     frames = without_garbage(found, report, str(path))
     return Opened(reader.NAME, lambda: reading.why or "by its first lines", frames)
+
+
+def _folder(
+    path: Path,
+    told: Told,
+    report: Report,
+    label: str,
+    name: str,
+    read: Callable[[Reading], Iterator[Frame]],
+) -> Opened:
+    """Return a folder that is a recording, read by ``read``."""
+    reading = Reading(Head(path, b"", told), told, report, 0, label)
+    found = islice(_frames(reading, name, read), told.skip, None)
+    return Opened(name, lambda: reading.why, without_garbage(found, report, str(path)))
 
 
 def _check_file(path: Path) -> None:

@@ -11,6 +11,8 @@ from tactile_graph.engine.plan import Plan
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.pipeline.wiring import Ref
 
+VALUE = "value"
+
 
 class Settled(Protocol):
     """A plan and the outcomes that a frame came to."""
@@ -27,18 +29,20 @@ class Settled(Protocol):
 def notices(settled: Settled) -> dict[str, str]:
     """Return for each node that ran, and whose step may have something to say, what it says.
 
-    A step says so by an attribute ``notice``, a function of some of its ports: their names are
-    its parameters. It returns a text, empty where there is nothing to say. Nodes run for each item
-    of a list say nothing.
+    A step says so by an attribute ``notice``, a function of some of its ports, and of ``value``,
+    what it gave: their names are its parameters. It returns a text, empty where there is nothing
+    to say. Nodes run for each item of a list say nothing.
     """
     found = {}
     for item in settled.plan.nodes:
         say = _notice_of(item.node)
         if item.node is None or say is None or settled.outcome(item.name).__class__ in NO_VALUE:
             continue
-        ports = _ports(item.node, settled, tuple(signature(say).parameters))
+        names = tuple(signature(say).parameters)
+        given = {VALUE: settled.outcome(item.name)} if VALUE in names else {}
+        ports = _ports(item.node, settled, tuple(n for n in names if n != VALUE))
         if ports is not None:
-            found[item.name] = say(**ports)
+            found[item.name] = say(**ports, **given)
     return found
 
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import inspect
 import typing
-from collections.abc import Iterable, Mapping, Sequence, Sized
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
+from functools import partial
+from math import isclose
 from typing import Any, get_args, get_origin
 
 import numpy as np
@@ -20,7 +22,7 @@ from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import Grid
-from tactile_graph.steps.signature import list_item, type_name
+from tactile_graph.steps.signature import Signature, list_item, type_name
 from tactile_graph.wires.image import Image, Mask
 
 MOST_ITEMS = 16
@@ -58,7 +60,7 @@ class Promises:
             value = result.outcome(node.name)
             if value.__class__ in NO_VALUE:
                 continue
-            broken = misfit(value, node.output) or _broken_rule(node, value, result)
+            broken = misfit(value, node.output) or _of_node(node, value, result)
             if broken:
                 raise PluginError(f"node {node.name!r}: {self._step(node)} {broken}")
             self.waiting.remove(node)
@@ -137,35 +139,61 @@ def _described(value: Any) -> str:
 # -- quantity and shape ----------------------------------------------------------------------
 
 
-def _broken_rule(node: Node, value: Any, result: Outcomes) -> str:
-    signature = node.signature
-    if signature is None or not isinstance(value, Image | Mask):
+def broken_rule(
+    signature: Signature, settings: Mapping[str, Any], given: Callable[[str], Any], value: Any
+) -> str:
+    """Return which rule of quantity or grid an image or mask breaks; "" where it breaks none.
+
+    Parameters
+    ----------
+    signature : Signature
+    settings : mapping
+        Every setting of the step.
+    given : callable
+        Returns what came in at a port, None where nobody can tell.
+    value : object
+        What the step gave.
+    """
+    if not isinstance(value, Image | Mask):
         return ""
     if value.values.ndim != 2:
         return f"gave values of shape {value.values.shape}, not (rows, columns)"
     if value.values.dtype.kind not in "biuf":
         return f"gave values of type {value.values.dtype}, not numbers"
-    wrong = _broken_shape(node, signature.output_grid, value, result)
+    wrong = _broken_grid(signature.output_grid, settings, given, value)
     rule = signature.output_quantity
     if wrong or rule is None or not isinstance(value, Image):
         return wrong
-    given = _at_port(node, rule.port, result)
-    allowed = (given.quantity,) if isinstance(given, Image) else rule.names
+    came = given(rule.port)
+    allowed = (came.quantity,) if isinstance(came, Image) else rule.names
     if not allowed or value.quantity in allowed:
         return ""
     return f"promises {' or '.join(allowed)}, but gave {value.quantity}"
 
 
-def _broken_shape(node: Node, grid: Grid | None, value: Image | Mask, result: Outcomes) -> str:
-    given = _at_port(node, grid.port, result) if grid is not None else None
-    if grid is None or given is None:
+def _broken_grid(
+    grid: Grid | None, settings: Mapping[str, Any], given: Callable[[str], Any], value: Image | Mask
+) -> str:
+    came = given(grid.port) if grid is not None else None
+    if grid is None or not isinstance(came, Image | Mask):
         return ""
-    finer = grid.finer_by if isinstance(grid.finer_by, int) else node.settings[grid.finer_by]
-    rows, columns = given.shape[0] * finer, given.shape[1] * finer
+    finer = grid.finer_by if isinstance(grid.finer_by, int) else settings[grid.finer_by]
+    rows, columns = came.shape[0] * finer, came.shape[1] * finer
     if value.shape != (rows, columns):
         got = " x ".join(map(str, value.shape))
         return f"promises {rows} x {columns} cells, but gave {got}"
-    return ""
+    x_cm, y_cm = came.pitch_cm[0] / finer, came.pitch_cm[1] / finer
+    if isclose(value.pitch_cm[0], x_cm) and isclose(value.pitch_cm[1], y_cm):
+        return ""
+    got = " by ".join(f"{p:g}" for p in value.pitch_cm)
+    return f"promises a pitch of {x_cm:g} by {y_cm:g} cm, but gave {got}"
+
+
+def _of_node(node: Node, value: Any, result: Outcomes) -> str:
+    if node.signature is None:
+        return ""
+    given = partial(_at_port, node, result=result)
+    return broken_rule(node.signature, node.settings, given, value)
 
 
 def _at_port(node: Node, port: str, result: Outcomes) -> Image | Mask | None:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from tactile_graph.errors import RuleError
 from tactile_graph.wires.image import QUANTITIES, Image, Mask
 
 
@@ -96,10 +97,10 @@ def require_same_shape(**images: Image | Mask) -> None:
 
     Raises
     ------
-    ValueError
+    RuleError
         With the names and shapes.
     """
     shapes = [image.shape for image in images.values()]
     if any(shape != shapes[0] for shape in shapes):
         names, got = " and ".join(images), " and ".join(map(str, shapes))
-        raise ValueError(f"{names} must have the same shape, got {got}")
+        raise RuleError(f"{names} must have the same shape, got {got}")

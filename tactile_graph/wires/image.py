@@ -15,6 +15,15 @@ QUANTITIES: tuple[str, ...] = get_args(Known)
 """What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
 
 
+_USUAL_BYTES = frozenset({1, 4, 8})
+"""Of a number; whatever takes others is looked at once more."""
+
+
+def _taken_by_machine_code(values: NDArray[Any]) -> NDArray[Any]:
+    """Return values of half or quadruple precision in double; others as they are."""
+    return values.astype(np.float64) if values.dtype.kind == "f" else values
+
+
 class _Gridded:
     """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
 
@@ -74,7 +83,8 @@ class Image(_Gridded):
     Parameters
     ----------
     values : ndarray, shape (rows, columns)
-        One number per cell; row 0 is the top of the pad.
+        One number per cell; row 0 is the top of the pad. Half and quadruple precision, which no
+        machine code takes, becomes double.
     pitch_cm : (float, float)
         Distance of neighbouring cells along x and y.
     origin_cm : (float, float)
@@ -99,6 +109,8 @@ class Image(_Gridded):
         quantity: str = "raw",
         valid: NDArray[np.bool_] | None = None,
     ) -> None:
+        if values.itemsize not in _USUAL_BYTES:
+            values = _taken_by_machine_code(values)
         values.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
         if valid is not None:
             valid.setflags(False)  # type: ignore[call-arg]

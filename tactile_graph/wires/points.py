@@ -27,6 +27,10 @@ class Points:
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"Points is frozen: cannot set {name!r}")
 
+    def __reduce__(self) -> tuple[type[Points], tuple[Any, ...]]:
+        """Copy and pickle by what it is made of: another process's points are as frozen."""
+        return Points, (self.xy_cm,)
+
     @property
     def count(self) -> int:
         """Number of points."""

@@ -42,7 +42,7 @@ class Circle:
     @property
     def area_cm2(self) -> float:
         """Enclosed area."""
-        return math.pi * self.radius_cm**2
+        return math.pi * (self.radius_cm * self.radius_cm)  # a power would overflow
 
     def outline_cm(self, n: int = 90) -> NDArray[np.float64]:
         """Return ``n`` points of the outline, shape (n, 2), to draw."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
+import runpy
+import sys
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -77,3 +80,22 @@ def test_the_refusal_the_page_quotes_is_the_one_that_inspect_gives(
     run(cells()[0][0], {})
     (quoted,) = re.findall(r"`(give rows .*?)`", PAGE.read_text("utf-8"))
     assert quoted in CliRunner().invoke(cli, ["inspect", "press.csv"]).output
+
+
+def test_the_page_becomes_a_notebook_with_the_same_code_and_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = PAGE.with_suffix(".py")
+    monkeypatch.setattr(sys, "argv", [str(script), str(PAGE), str(tmp_path / "press.ipynb")])
+    runpy.run_path(str(script), run_name="__main__")
+    made = json.loads((tmp_path / "press.ipynb").read_text("utf-8"))
+    assert (made["nbformat"], made["nbformat_minor"]) == (4, 5)
+    code = [cell for cell in made["cells"] if cell["cell_type"] == "code"]
+    assert [cell["source"] + "\n" for cell in code] == [block for block, _ in cells()]
+    printed = ["".join(o["text"] for o in cell["outputs"]) or None for cell in code]
+    assert printed == [text for _, text in cells()]
+    words = "\n".join(c["source"] for c in made["cells"] if c["cell_type"] == "markdown")
+    assert "# In a notebook" in words
+    assert "```" not in words
+    ids = [cell["id"] for cell in made["cells"]]
+    assert len(set(ids)) == len(ids)

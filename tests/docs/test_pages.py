@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import re
 import shlex
+import sys
+from inspect import signature
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import click
@@ -167,7 +170,21 @@ def test_the_plugin_shown_is_one() -> None:
     assert [(f.index, f.time_s, f.image.peak) for f in frames] == [
         (k, 0.01 * k, k) for k in range(3)
     ]
-    assert set(spaces[3]["alone"].times_us) < set(spaces[3]["both"].times_us)
+    assert set(spaces[4]["alone"].times_us) < set(spaces[4]["both"].times_us)
+
+
+def test_the_tests_shown_for_plugins_pass(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (code,) = (block for block in fenced("plugins", "python") if "check_step" in block)
+    shown = ModuleType("shown_tests")
+    monkeypatch.setitem(sys.modules, "shown_tests", shown)
+    exec(compile(code, "plugins.md", "exec"), vars(shown))
+    tests = [(n, f) for n, f in vars(shown).items() if n.startswith("test_")]
+    assert len(tests) == 3
+    for _, test in tests:
+        wanted = [] if hasattr(test, "hypothesis") else signature(test).parameters
+        test(**{name: request.getfixturevalue(name) for name in wanted})
 
 
 def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,7 @@ import pytest
 from helpers_likelihood import NOISE, drawn, made
 from helpers_modes import answered_by
 from tactile_graph.engine.rows import as_data
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, packed, unpacked
 from tactile_graph_likelihood.single.fit_footprint import FitFootprint
@@ -201,9 +201,9 @@ def test_what_holds_no_answer_says_why():
     with pytest.raises(Degenerate, match="no element bears a load"):
         made(FootprintDisc)(empty)
     oblong = Image(np.ones((4, 4)), (1.3, 1.0), (0.0, 0.0), "gram")
-    with pytest.raises(ValueError, match="needs square cells"):
+    with pytest.raises(RuleError, match="needs square cells"):
         made(FootprintDisc)(oblong)
-    with pytest.raises(ValueError, match=r"gap_cm: must be below the pitch of 0\.2 cm"):
+    with pytest.raises(RuleError, match=r"gap_cm: must be below the pitch of 0\.2 cm"):
         made(FootprintDisc)(Image(np.ones((4, 4)), (0.2, 0.2), (0.0, 0.0), "gram"))
     bad = Image(np.full((4, 4), np.nan), (1.3, 1.3), (0.0, 0.0), "gram")
     with pytest.raises(ValueError, match="NaN or infinity"):
@@ -228,5 +228,5 @@ def test_an_image_in_another_unit_is_told_which_setting_says_what_shows() -> Non
 
 def test_readings_that_are_no_numbers_of_a_pad_are_refused() -> None:
     image = Image(np.full((16, 16), 1e150), (1.3, 1.3), (-0.15, -0.15), "raw")
-    with pytest.raises(ValueError, match=r"readings must be at most 1e\+100, got 1e\+150"):
+    with pytest.raises(DataError, match=r"readings must be at most 1e\+100, got 1e\+150"):
         made(FootprintDisc)(image)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,10 @@ from tactile_graph_classifiers.commands.shared import database_option
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph_classifiers.distances.identity import Identity
+    from tactile_graph_classifiers.measuring.measurements import Measurements
 
-HEAD = ("frame", "object", "distance", "runner-up", "margin", "")
+HEAD = ("object", "distance", "runner-up", "margin", "")
 
 
 @click.command()
@@ -28,6 +31,9 @@ HEAD = ("frame", "object", "distance", "runner-up", "margin", "")
               help="Which pipeline identifies: a name or a YAML file.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--together", type=click.Choice(("recording", "all")),
+              help="The frames of each recording, or of all, are presses of one object: name it"
+                   " once, by all of them.")  # fmt: skip
 def identify(
     recordings: tuple[str, ...],
     source: str | None,
@@ -39,10 +45,12 @@ def identify(
     timeout_s: float,
     pipeline: str,
     span: Span,
+    together: str | None,
 ) -> None:
     """Say for each frame of the recordings which known object it is, and which comes next.
 
-    The margin is 0 for a tie of the two and 1 where nothing else comes into question. Programs
+    The margin is 0 for a tie of the two and 1 where nothing else comes into question. Several
+    presses of an object, named --together, tell what one does not: strangers above all. Programs
     ask 'tactile-graph run identify-any -o -' for lines.
     """
     from tactile_graph.steps.injected import Report
@@ -56,7 +64,7 @@ def identify(
     opened = opened.with_settings({f"{node}.database": str(database)})
     report = Report()
     runner = opened.runner([node], seed)
-    lines = _Lines(node)
+    lines = _Together(opened, node, together) if together else _Lines(node)
     for frame in span.of(opened.frames(seed, report)):
         lines.add(runner(frame))
     for where, what in report.troubles:
@@ -90,6 +98,23 @@ def _identifying(pipeline: Pipeline, only: tuple[str, ...]) -> str:
     raise UsageError(f"pipeline {pipeline.name!r} has {what}; name one with --only")
 
 
+def _named(result: Result, node: str) -> Any:
+    """Return the outcome of the node that identifies.
+
+    Raises
+    ------
+    OtherQuantityError
+        If the frame is in another unit than the objects were learned in.
+    """
+    from tactile_graph.engine.outcome import Failed
+    from tactile_graph_classifiers.database.known import OtherQuantityError
+
+    outcome: Any = result.outcome(node)
+    if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
+        raise outcome.error  # no other frame of these recordings would fare better
+    return outcome
+
+
 class _Lines:
     """A line a frame, and what they came to."""
 
@@ -108,36 +133,32 @@ class _Lines:
             If it is in another unit than the objects were learned in.
         """
         from tactile_graph.engine.outcome import Failed, Skipped
-        from tactile_graph_classifiers.database.known import OtherQuantityError
+        from tactile_graph_classifiers.measuring.shapes import true_name
 
-        outcome: Any = result.outcome(self.node)
-        if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
-            raise outcome.error  # no other frame of these recordings would fare better
+        outcome = _named(result, self.node)
         if not self.counts:
-            say(_line(*HEAD))
+            say(f"frame  {_line(*HEAD)}")
+        start = f"{result.frame.index:>5}  "
         if isinstance(outcome, Failed | Skipped):
             kind = "failed" if isinstance(outcome, Failed) else "skipped"
             self.n_failed += kind == "failed"
             self.counts[f"({kind})"] += 1
-            say(f"{result.frame.index:>5}  {kind}: {outcome.reason}")
+            say(f"{start}{kind}: {outcome.reason}")
             return
-        self.counts[outcome.name] += 1
-        second = outcome.runner_up or "-"
-        note = self._judged(result, outcome)
-        if not outcome.known:
-            note = f"nearest: {outcome.nearest}, accepted up to {outcome.limit:.3g} {note}".rstrip()
-        number, margin = f"{outcome.distance:.3g}", f"{outcome.margin:.3f}"
-        say(_line(str(result.frame.index), outcome.name, number, second, margin, note))
+        say(start + self.told(outcome, true_name(result.frame)))
 
-    def _judged(self, result: Result, identity: Any) -> str:
-        from tactile_graph_classifiers.measuring.shapes import true_name
-
-        name = true_name(result.frame)
-        if not name:
-            return ""
-        self.n_true += 1
-        self.n_right += name == identity.name
-        return "" if name == identity.name else f"(truly {name})"
+    def told(self, identity: Identity, true: str, note: str = "") -> str:
+        """Count an answer, and return it as a line."""
+        self.counts[identity.name] += 1
+        if not identity.known:
+            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note}"
+        if true:
+            self.n_true += 1
+            self.n_right += true == identity.name
+            note += "" if true == identity.name else f" (truly {true})"
+        number, margin = f"{identity.distance:.3g}", f"{identity.margin:.3f}"
+        note = " ".join(note.split())
+        return _line(identity.name, number, identity.runner_up or "-", margin, note)
 
     def summarise(self) -> None:
         """Write what the lines came to.
@@ -154,6 +175,81 @@ class _Lines:
             say(f"right: {self.n_right} of {self.n_true}")
 
 
-def _line(number: str, name: str, distance: str, second: str, margin: str, note: str) -> str:
-    text = f"{number:>5}  {name:<20}  {distance:>9}  {second:<20}  {margin:>6}  {note}"
-    return text.rstrip()
+@dataclass
+class _Pressed:
+    """The presses of a recording so far: what was measured, named alone, and true."""
+
+    presses: list[Measurements] = field(default_factory=list)
+    alone: Counter[str] = field(default_factory=Counter)
+    true: set[str] = field(default_factory=set)
+
+
+class _Together(_Lines):
+    """A line for each recording, or one for all, in closing."""
+
+    def __init__(self, pipeline: Pipeline, node: str, which: str) -> None:
+        super().__init__(node)
+        it = pipeline.nodes[node]
+        self._step: Any = it.callable
+        if not hasattr(self._step, "together"):
+            raise UsageError(
+                f"--together: step {it.what!r} of node {node!r} names each reading by itself; step"
+                " 'discriminant' (pipeline identify-any) names several together"
+            )
+        self._measured = it.inputs[0].refs[0]
+        self._in_all = which == "all"
+        self._recordings: dict[str, _Pressed] = {}
+        self._left_out: Counter[str] = Counter()
+
+    def add(self, result: Result) -> None:
+        """Take a press.
+
+        Raises
+        ------
+        OtherQuantityError
+            If it is in another unit than the objects were learned in.
+        """
+        from tactile_graph.engine.outcome import Failed, Skipped
+        from tactile_graph_classifiers.measuring.shapes import true_name
+
+        outcome = _named(result, self.node)
+        if isinstance(outcome, Failed | Skipped):
+            self.n_failed += isinstance(outcome, Failed)
+            self._left_out[outcome.reason.partition(" (")[0]] += 1
+            return
+        label = "all" if self._in_all else result.frame.label or "recording"
+        of = self._recordings.setdefault(label, _Pressed())
+        of.presses.append(result.outcome_at(self._measured))
+        of.alone[outcome.nearest] += 1
+        of.true.add(true_name(result.frame))
+
+    def summarise(self) -> None:
+        """Write a line for each recording, and what they came to.
+
+        Raises
+        ------
+        UsageError
+            If no frame could be named, or the frames of a recording are of several objects.
+        """
+        for what, n in self._left_out.items():
+            say(f"left out: {n} frames: {what}", err=True)
+        if not self._recordings:
+            raise UsageError("the source gave no frame in which an object could be named")
+        width = max(len("recording"), *map(len, self._recordings))
+        say(f"{'recording':<{width}}  presses  {_line(*HEAD)}")
+        for label, of in self._recordings.items():
+            if len(of.true) > 1:
+                raise UsageError(
+                    f"--together: {label} holds several objects: {', '.join(sorted(of.true))};"
+                    " name one object at a time, or frame by frame"
+                )
+            identity, n = self._step.together(of.presses), len(of.presses)
+            most = of.alone[identity.nearest]
+            note = f"alone, {most} of {n} presses are nearest to it" if 2 * most < n else ""
+            line = self.told(identity, next(iter(of.true)), note)
+            say(f"{label:<{width}}  {n:>7}  {line}")
+        super().summarise()
+
+
+def _line(name: str, distance: str, second: str, margin: str, note: str) -> str:
+    return f"{name:<20}  {distance:>9}  {second:<20}  {margin:>6}  {note}".rstrip()

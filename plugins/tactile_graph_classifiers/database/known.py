@@ -161,5 +161,6 @@ class Known:
             raise OtherQuantityError(
                 self.where,
                 f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
-                " them from recordings like these, into another database",
+                " them from recordings like these, into another database, and name that as the"
+                " step's database",
             )

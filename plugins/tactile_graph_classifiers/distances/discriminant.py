@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -67,10 +69,12 @@ class CanonicalDiscriminant:
         manner = (known.choice or choose(examples)).manner
         self._learned = Learned.of(examples.readings, examples.labels, manner.shrinkage)
         self._discriminant = self._learned.discriminant(manner)
-        self._beyond = manner.beyond
-        self._limit: float | None = None
-        if reject:
-            self._limit = largest_accepted(left_out_squares(examples, manner), confidence)
+        self._examples, self._manner = examples, manner
+        self._confidence = confidence if reject else None
+        self._most_presses = examples.most_presses()
+        self._limits: dict[int, float | None] = {}
+        self._median = 0.0
+        self._limit(1)
 
     def __call__(self, features: Measurements) -> Identity:
         """Return the likeliest object, the runner-up and their margin.
@@ -80,29 +84,72 @@ class CanonicalDiscriminant:
         DataError
             If a feature was not measured or is not finite, or the reading is in another unit.
         """
-        vector = self._lookup.vector(features)
+        return self.together([features])
+
+    def together(self, presses: Sequence[Measurements]) -> Identity:
+        """Return which object all of several presses are of, which one press may not tell.
+
+        Their mean in the variates varies less than one of them does; what is accepted is learned
+        from as many successive readings left out together. Where fewer were learned than that
+        takes (four times as many), further presses steady the mean, but narrow no limit.
+
+        Parameters
+        ----------
+        presses : sequence of Measurements
+            At least one.
+
+        Raises
+        ------
+        DataError
+            If a feature was not measured or is not finite, or a reading is in another unit.
+        """
+        vectors = np.array([self._lookup.vector(one) for one in presses])
+        n_presses = min(len(vectors), self._most_presses)
         with np.errstate(over="ignore", invalid="ignore"):  # told below
-            scores = self._discriminant(self._learned.located(vector[None]))
+            mean = self._learned.located(vectors).mean(axis=0)
+            scores = self._discriminant(mean[None], n_presses)
         order = np.argsort(scores.unlikeliness[0], kind="stable")[:2]
-        squares = [float(scores.at(order[i : i + 1], self._beyond)[0]) for i in range(len(order))]
+        beyond = self._manner.beyond
+        squares = [float(scores.at(order[i : i + 1], beyond)[0]) for i in range(len(order))]
         if not math.isfinite(squares[0]):
             raise DataError("features", "they are too far from every known object for a number")
         behind = float(np.ptp(scores.unlikeliness[0, order]))
-        return self._identity(order.tolist(), [math.sqrt(s) for s in squares], behind)
+        found = self._identity(order.tolist(), squares, self._limit(n_presses), behind)
+        return replace(found, n_presses=len(presses))
 
-    def _identity(self, order: list[int], distances: list[float], behind: float) -> Identity:
+    def _limit(self, n_presses: int) -> float | None:
+        """Return the largest squared distance at which so many presses are accepted.
+
+        A mean of presses has no longer tail than one press has. Where few were left out together
+        to tell, one odd press among them must not widen the limit: it is at most that of one
+        press, over the median of one press times theirs.
+        """
+        if n_presses not in self._limits:
+            limit = None
+            if self._confidence is not None:
+                squares = left_out_squares(self._examples, self._manner, n_presses)
+                limit = largest_accepted(squares, self._confidence)
+                if n_presses == 1:
+                    self._median = float(np.median(squares)) if squares.size else 0.0
+                elif self._median > 0.0 and (one := self._limits[1]) is not None:
+                    limit = min(limit, one * float(np.median(squares)) / self._median)
+            self._limits[n_presses] = limit
+        return self._limits[n_presses]
+
+    def _identity(
+        self, order: list[int], squares: list[float], limit: float | None, behind: float
+    ) -> Identity:
         objects = [self._lookup.known.objects[k] for k in order]
-        limit = None if self._limit is None else math.sqrt(self._limit)
-        known = limit is None or distances[0] <= limit
+        known = limit is None or squares[0] <= limit
         single = len(objects) == 1
         return Identity(
             objects[0].name if known else UNKNOWN,
             objects[0].shape if known else "",
             known,
-            distances[0],
-            limit,
+            math.sqrt(squares[0]),
+            None if limit is None else math.sqrt(limit),
             objects[0].name,
             "" if single else objects[1].name,
-            None if single else distances[1],
+            None if single else math.sqrt(squares[1]),
             1.0 if single else -math.expm1(-0.5 * behind),
         )

@@ -50,26 +50,37 @@ class Discriminant(NamedTuple):
         Of the inverse covariance in the variates: precision = root @ root.T.
     log_determinants : ndarray, shape (K,)
         Of the covariances.
-    widening : ndarray, shape (K,)
-        By how much a further reading varies more than those that the mean was made of.
+    counts : ndarray of int, shape (K,)
+        How many readings each mean was made of.
     """
 
     space: Space
     means: Array
     roots: Array
     log_determinants: Array
-    widening: Array
+    counts: Labels
 
-    def __call__(self, coordinates: Array) -> Scores:
-        """Return the scores of readings in the space's coordinates, shape (n, T)."""
+    def __call__(self, coordinates: Array, n_presses: int = 1) -> Scores:
+        """Return the scores of readings in the space's coordinates, shape (n, T).
+
+        Parameters
+        ----------
+        coordinates : ndarray, shape (n, T)
+        n_presses : int
+            How many readings of one object each of them is the mean of: the more, the less it
+            varies.
+        """
         off = (coordinates @ self.space.variates)[None] - (self.means @ self.space.variates)[
             :, None
         ]
         squares = np.square(off @ self.roots).sum(axis=2).T
         within = np.square(off).sum(axis=2).T
         beside = np.maximum(_squared_distances(coordinates, self.means) - within, 0.0)
-        squares, beside = squares / self.widening, beside / self.widening
-        return Scores(squares + self.log_determinants, squares, beside)
+        varies = 1.0 / n_presses + 1.0 / self.counts
+        squares, beside = squares / varies, beside / varies
+        n_variates = self.space.variates.shape[1]
+        log_determinants = self.log_determinants + n_variates * np.log(varies)
+        return Scores(squares + log_determinants, squares, beside)
 
 
 def _squared_distances(rows: Array, means: Array) -> Array:
@@ -126,8 +137,7 @@ class Learned(NamedTuple):
             own = off[self.labels == k]
             prior = manner.prior_readings * np.eye(n_variates)
             covariances[k] = (own.T @ own + prior) / (n - 1.0 + manner.prior_readings)
-        widening = 1.0 + 1.0 / counts
-        log_determinants = np.linalg.slogdet(covariances)[1] + n_variates * np.log(widening)
+        log_determinants = np.linalg.slogdet(covariances)[1]
         roots = np.linalg.cholesky(np.linalg.inv(covariances))
         space = Space(self.space.whitening, variates)
-        return Discriminant(space, means, roots, log_determinants, widening)
+        return Discriminant(space, means, roots, log_determinants, counts)

@@ -35,6 +35,8 @@ class Identity:
     margin : float
         0 for a tie of the two, 1 if nothing else comes into question: 1 - distance /
         runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first.
+    n_presses : int
+        How many readings of the object the answer rests on.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Identity:
     runner_up: str
     runner_up_distance: float | None
     margin: float
+    n_presses: int = 1
     columns_shown: ClassVar[tuple[str, ...]] = (
         "name",
         "distance",

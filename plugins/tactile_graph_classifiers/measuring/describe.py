@@ -93,7 +93,7 @@ class Describe:
             If the footprint is empty, has no valid cell, or bears nothing.
         DataError
             If a cell of the footprint holds NaN or infinity.
-        ValueError
+        RuleError
             If image and mask differ in shape.
         """
         first = self._features(image, mask).measurements

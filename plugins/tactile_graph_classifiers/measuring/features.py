@@ -118,7 +118,7 @@ class FeaturesOf:
             If the footprint is empty, has no valid cell, or bears nothing.
         DataError
             If a cell of the footprint holds NaN or infinity.
-        ValueError
+        RuleError
             If image and mask differ in shape.
         """
         require_same_shape(image=image, mask=mask)

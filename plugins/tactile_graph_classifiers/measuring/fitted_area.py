@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
@@ -16,5 +19,13 @@ def fitted_area(
     features : Measurements
     shape : Circle, Ellipse, Rectangle or Polygon
         As a localiser found it; thesis section 4.4.3 takes the circle's radius for the area.
+
+    Raises
+    ------
+    Degenerate
+        If its area is no finite number.
     """
-    return features.replaced("area_cm2", shape.area_cm2)
+    area_cm2 = shape.area_cm2
+    if not math.isfinite(area_cm2):
+        raise Degenerate(f"the area of the fitted shape is {area_cm2:g} cm²")
+    return features.replaced("area_cm2", area_cm2)

@@ -77,7 +77,9 @@ def _correlations(load: Array, px: float, py: float) -> list[float]:
     correlation = fft.irfft2(power, shape)
     far_y, far_x = (np.minimum(np.arange(n), n - np.arange(n)) for n in shape)
     cell = min(px, py)
-    rings = (np.hypot(far_y[:, None] * (py / cell), far_x * (px / cell))).astype(np.intp).ravel()
-    n = np.bincount(rings, minlength=LAGS[-1] + 1)
-    sums = np.bincount(rings, correlation.ravel(), minlength=LAGS[-1] + 1)
+    far = np.hypot(far_y[:, None] * (py / cell), far_x * (px / cell))
+    beyond = LAGS[-1] + 1  # one bin for all: cells far from square would ask for endless ones
+    rings = np.minimum(far, beyond).astype(np.intp).ravel()
+    n = np.bincount(rings, minlength=beyond)
+    sums = np.bincount(rings, correlation.ravel(), minlength=beyond)
     return [float(sums[lag] / max(n[lag], 1) / sums[0]) for lag in LAGS]

@@ -8,8 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactile_graph_filters.contacts.contacts import Contact, Contacts
+from tactile_graph_filters.contacts.contacts import Contact, Contacts, contacts_of
 
+LARGEST_LOG = 709.0
+"""Beyond this no exponential is a number."""
 Pair = tuple[float, float]
 Six = tuple[float, float, float, float, float, float]
 
@@ -58,9 +60,14 @@ class AlignContacts:
             raise ValueError(f"matrix must not turn the pad into a line, got {matrix}")
 
     def __call__(self, contacts: Sequence[Contact]) -> Contacts:
-        """Return the contacts with their centres moved and their areas scaled."""
-        found = tuple([self._moved(c) for c in contacts])
-        return Contacts(found, len(found))
+        """Return the contacts with their centres moved and their areas scaled.
+
+        Raises
+        ------
+        DataError
+            If the area or a place of one is then not finite.
+        """
+        return contacts_of([self._moved(c) for c in contacts])
 
     def _moved(self, c: Contact) -> Contact:
         x_cm, y_cm = self._of(c.x_cm, c.y_cm)
@@ -70,7 +77,7 @@ class AlignContacts:
         growth = of_one + of_x * x + of_y * y + of_xx * x * x + of_xy * x * y + of_yy * y * y
         return replace(
             c,
-            area_cm2=c.area_cm2 * math.exp(growth),
+            area_cm2=c.area_cm2 * (math.exp(growth) if growth < LARGEST_LOG else math.inf),
             x_cm=x_cm,
             y_cm=y_cm,
             centroid_x_cm=at_x_cm,

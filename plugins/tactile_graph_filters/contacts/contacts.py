@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from math import isfinite
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.labels import label
@@ -78,11 +80,45 @@ class Contact:
         return part.with_values(np.where(self.mask.values, part.values, 0.0))
 
 
+SomeContact = TypeVar("SomeContact", bound=Contact)
+
+
 class Contacts(NamedTuple):
     """The contacts of a footprint."""
 
     contacts: tuple[Contact, ...]
     count: int  # type: ignore[assignment]  # hides tuple.count, which nobody asks a record for
+
+
+def contacts_of(found: Iterable[Contact]) -> Contacts:
+    """Return contacts as a step gives them; errors as of `all_placed`."""
+    kept = all_placed(found)
+    return Contacts(kept, len(kept))
+
+
+def all_placed(found: Iterable[SomeContact]) -> tuple[SomeContact, ...]:
+    """Return contacts whose area and places are numbers.
+
+    Parameters
+    ----------
+    found : iterable of Contact
+
+    Raises
+    ------
+    DataError
+        If the area or a place of one is not finite.
+    """
+    kept = tuple(found)
+    for c in kept:
+        # A sum of numbers is finite where all are, and where they do not nearly overflow.
+        if not isfinite(c.area_cm2 + c.x_cm + c.y_cm + c.centroid_x_cm + c.centroid_y_cm):
+            raise DataError(
+                f"contact {c.number}",
+                f"its area and place must be finite, got {c.area_cm2:g} cm² at "
+                f"({c.x_cm:g}, {c.y_cm:g}) cm, cells at ({c.centroid_x_cm:g}, "
+                f"{c.centroid_y_cm:g}) cm",
+            )
+    return kept
 
 
 def contacts(
@@ -114,7 +150,7 @@ def contacts(
 
     Raises
     ------
-    ValueError
+    RuleError
         If image and mask differ in shape.
     DataError
         If a cell of the mask holds NaN or infinity.

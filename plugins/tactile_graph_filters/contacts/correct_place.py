@@ -9,9 +9,9 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.wires import Image
-from tactile_graph_filters.contacts.contacts import Contact
+from tactile_graph_filters.contacts.contacts import Contact, all_placed
 from tactile_graph_filters.nan import require_finite
 
 
@@ -87,14 +87,14 @@ class CorrectPlace:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image has another shape or quantity than the pad.
         DataError
-            If a valid cell holds NaN or infinity.
+            If a valid cell holds NaN or infinity, or a contact comes to lie at no finite place.
         """
         if image.shape != self._place.shape or image.quantity != self._reading:
             rows, columns = self._place.shape
-            raise ValueError(
+            raise RuleError(
                 f"the correction is of {self._reading} on {rows} x {columns} elements, got "
                 f"{image.quantity} on {image.rows} x {image.columns}"
             )
@@ -107,11 +107,11 @@ class CorrectPlace:
         )
         places = origin + (found.centres + 0.5) * pitch
         stds = found.std_cells * pitch
-        placed = [
+        placed = all_placed(
             _placed(c, *place, *std)
             for c, place, std in zip(contacts, places.tolist(), stds.tolist(), strict=True)
-        ]
-        return PlacedContacts(tuple(placed), len(placed))
+        )
+        return PlacedContacts(placed, len(placed))
 
 
 def _placed(

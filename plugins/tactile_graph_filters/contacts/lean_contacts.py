@@ -10,8 +10,9 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
-from tactile_graph_filters.contacts.contacts import Contact, Contacts
+from tactile_graph_filters.contacts.contacts import Contact, Contacts, contacts_of
 
 Reals = NDArray[np.float64]
 
@@ -49,8 +50,10 @@ def lean_contacts(
 
     Raises
     ------
-    ValueError
+    RuleError
         If a contact reaches over the image.
+    DataError
+        If the area or a place of a contact is not finite.
 
     Notes
     -----
@@ -63,7 +66,7 @@ def lean_contacts(
     if not moved:
         return Contacts((), 0)
     shift_x, shift_y = -lean * _skewness(image, _owners(image, moved, reach_cells), len(moved))
-    found = tuple(
+    return contacts_of(
         replace(
             c,
             x_cm=c.x_cm + x,
@@ -73,7 +76,6 @@ def lean_contacts(
         )
         for c, x, y in zip(moved, shift_x.tolist(), shift_y.tolist(), strict=True)
     )
-    return Contacts(found, len(found))
 
 
 def _owners(image: Image, contacts: Sequence[Contact], reach_cells: float) -> NDArray[np.int64]:
@@ -84,7 +86,7 @@ def _owners(image: Image, contacts: Sequence[Contact], reach_cells: float) -> ND
     for number, contact in enumerate(contacts):
         top, bottom, left, right = contact.box
         if bottom > image.shape[0] or right > image.shape[1]:
-            raise ValueError(f"contact {contact.number} reaches over the image of {image.shape}")
+            raise RuleError(f"contact {contact.number} reaches over the image of {image.shape}")
         owner[top:bottom, left:right][contact.mask.values] = number
     far, (row, column) = ndimage.distance_transform_edt(owner < 0, return_indices=True)
     nearest: NDArray[np.int64] = np.where(far <= reach_cells, owner[row, column], -1)

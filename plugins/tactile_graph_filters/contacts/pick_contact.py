@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from annotated_types import Ge
 
 from tactile_graph.errors import Skip
-from tactile_graph_filters.contacts.contacts import Contact
+from tactile_graph_filters.contacts.contacts import Contact, contacts_of
 
 
 def pick_contact(
@@ -35,9 +35,12 @@ def pick_contact(
     ------
     Skip
         If there are fewer contacts.
+    DataError
+        If the area or a place of a contact is not finite.
     """
     if len(contacts) < rank:
         raise Skip(f"there are {len(contacts)} contacts, none of rank {rank}")
+    contacts = list(contacts_of(contacts).contacts)
     if by == "number":
         return contacts[rank - 1]
     ranked = sorted(contacts, key=lambda contact: (-getattr(contact, by), contact.number))

@@ -11,7 +11,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Lt
 from numpy.typing import NDArray
 
-from tactile_graph_filters.contacts.contacts import Contact, Contacts
+from tactile_graph_filters.contacts.contacts import Contact, Contacts, contacts_of
 
 
 def sharpen_contacts(
@@ -41,9 +41,13 @@ def sharpen_contacts(
         ``area_cm2``, centroid and centre are those of the fine cells, the centre weighted by
         what exceeds the share; cells, load and peak stay as they were. Contacts without a
         reading above 0 stay as they are.
+
+    Raises
+    ------
+    DataError
+        If the area or a place of a contact is not finite.
     """
-    found = tuple([_sharpened(c, share, finer) for c in contacts])
-    return Contacts(found, len(found))
+    return contacts_of([_sharpened(c, share, finer) for c in contacts])
 
 
 def _sharpened(contact: Contact, share: float, finer: int) -> Contact:

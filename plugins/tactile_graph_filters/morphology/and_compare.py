@@ -34,7 +34,7 @@ def and_compare(
 
     Raises
     ------
-    ValueError
+    RuleError
         If the two differ in shape.
 
     Notes

@@ -110,7 +110,7 @@ class SplitContacts:
 
         Raises
         ------
-        ValueError
+        RuleError
             If image and mask differ in shape.
         DataError
             If a cell of the mask holds NaN or infinity.

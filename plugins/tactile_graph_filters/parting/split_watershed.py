@@ -57,7 +57,7 @@ def split_watershed(
 
     Raises
     ------
-    ValueError
+    RuleError
         If image and mask differ in shape.
     DataError
         If a cell of the mask holds NaN or infinity.

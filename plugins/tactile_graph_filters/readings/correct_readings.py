@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import RuleError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import require_finite
@@ -62,16 +63,16 @@ class CorrectReadings:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image has another shape than the pad, or a quantity the pad says nothing of.
         DataError
             If a valid cell holds NaN or infinity.
         """
         if image.shape != self._good.shape:
             rows, columns = self._good.shape
-            raise ValueError(f"the pad has {rows} x {columns} elements, got {image.shape}")
+            raise RuleError(f"the pad has {rows} x {columns} elements, got {image.shape}")
         if image.quantity not in self._known:
-            raise ValueError(
+            raise RuleError(
                 f"the pad was learned from {self._reading}, got {image.quantity}: put this step "
                 "before what converts"
             )

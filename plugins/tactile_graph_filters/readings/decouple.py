@@ -10,7 +10,7 @@ from annotated_types import Gt
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
-from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.nan import finite, refuse_nan
 
 
 class Decouple:
@@ -59,7 +59,7 @@ class Decouple:
             If a valid cell holds NaN or infinity.
         """
         volts = image.filled(0.0)
-        if not all_finite.call(volts):
+        if not finite(volts):
             refuse_nan(image, infinite=True)
         found = self._circuit.inverse(volts / self._circuit.supply_v)
         if found.residual > self._max_residual:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
-from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.nan import finite, refuse_nan
 
 MAD_TO_SIGMA = 1.4826
 """Of a normal distribution: standard deviation over median absolute deviation."""
@@ -74,7 +74,7 @@ class FindBad:
 
     def _look(self, image: Image) -> None:
         """Take one frame into the running mean and variance (Welford 1962)."""
-        if not all_finite(image.values):
+        if not finite(image.values):
             refuse_nan(image, infinite=True)
         values = image.filled(0.0).astype(np.float64)
         self._seen += 1

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.errors import RuleError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_nan
@@ -64,6 +65,21 @@ def load_calibrated(path: Path) -> Calibrated:
     return points, settings.get("polynomial"), settings.get("up_to"), calibration.reading
 
 
+def beyond_range(image: Image, value: Image) -> str:
+    """Return what to say of cells that read more than what gave their grams covers."""
+    if value.valid is None:
+        return ""
+    read = ~value.valid if image.valid is None else image.valid & ~value.valid
+    n = int(np.count_nonzero(read))
+    if not n:
+        return ""
+    cells = "1 cell reads" if n == 1 else f"{n} cells read"
+    return (
+        f"{cells} more than the law, curve or polynomial covers, and what is summed leaves out "
+        "their load: it is a lower bound"
+    )
+
+
 class Force:
     """Return the grams on each element.
 
@@ -99,6 +115,7 @@ class Force:
     """
 
     stateless = True
+    notice = staticmethod(beyond_range)
 
     def __init__(
         self,
@@ -145,14 +162,14 @@ class Force:
 
         Raises
         ------
-        ValueError
+        RuleError
             If a force law is asked to read anything but siemens, or a calibration anything but
             what it was made of.
         """
         if self._quantity not in ("", image.quantity):
-            raise ValueError(f"the calibration reads {self._quantity}, got {image.quantity}")
+            raise RuleError(f"the calibration reads {self._quantity}, got {image.quantity}")
         if self._law is not None and image.quantity != "siemens":
-            raise ValueError(
+            raise RuleError(
                 f"a force law reads siemens, got {image.quantity}; decouple the image first,"
                 " or give curve or polynomial"
             )

@@ -8,9 +8,10 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
+from tactile_graph_filters.nan import finite, refuse_unbounded
 
 
 class Gain:
@@ -71,18 +72,24 @@ class Gain:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image has another number of rows or columns than there are gains.
+        DataError
+            If a valid cell holds NaN or infinity.
+        Degenerate
+            If a reading over its gain is too large for a number.
         """
         for needed, got, what in zip(self._needs, image.shape, ("rows", "columns"), strict=True):
             if needed not in (0, got):
-                raise ValueError(f"there are gains for {needed} {what}, got an image with {got}")
+                raise RuleError(f"there are gains for {needed} {what}, got an image with {got}")
         values, valid = image.values / self._divisor, image.valid
         if self._has_dead:
             alive = np.broadcast_to(~self._dead, image.shape)
             valid = alive.copy() if valid is None else valid & alive
         if valid is not None:
             values[~valid] = 0.0
+        if not finite(values):
+            refuse_unbounded(image, "a reading over its gain")
         return image.with_values(values, valid=valid)
 
 

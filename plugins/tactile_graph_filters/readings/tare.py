@@ -15,7 +15,7 @@ from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.morphology.elements import parse_element
 from tactile_graph_filters.morphology.erosion import make_plan, sweep
-from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.nan import finite, refuse_nan
 
 
 class Tare:
@@ -68,7 +68,7 @@ class Tare:
         DataError
             If a valid cell holds NaN or infinity, or the shape changed since the first frame.
         """
-        if not all_finite(image.values):
+        if not finite(image.values):
             refuse_nan(image, infinite=True)
         if self._baseline.size and self._baseline.shape != image.shape:
             raise DataError(

@@ -34,7 +34,7 @@ def valid_share(
 
     Raises
     ------
-    ValueError
+    RuleError
         If image and mask differ in shape.
     """
     if mask is not None:

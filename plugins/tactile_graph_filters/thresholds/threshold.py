@@ -11,7 +11,7 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_nan
@@ -161,14 +161,14 @@ class Threshold:
 
         Raises
         ------
-        ValueError
+        RuleError
             If only a level in another unit is known than the image is in.
         """
         in_volts = self._level_v is not None and image.quantity == "volt"
         level = self._level_v if in_volts else self._other
         if self.takes and image.quantity not in self.takes["image"]:
             wanted = " or ".join(self.takes["image"])
-            raise ValueError(f"{self.takes_by} is for images in {wanted}, got {image.quantity}")
+            raise RuleError(f"{self.takes_by} is for images in {wanted}, got {image.quantity}")
         if level is None:
             return levelled(image)
         empty = self._empty

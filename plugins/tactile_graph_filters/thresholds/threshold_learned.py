@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from annotated_types import Gt
 
+from tactile_graph.errors import RuleError
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.thresholds.threshold import footprint
@@ -45,9 +46,9 @@ class ThresholdLearned:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image holds another quantity than the pad was learned from.
         """
         if image.quantity != self._reading:
-            raise ValueError(f"the pad was learned from {self._reading}, got {image.quantity}")
+            raise RuleError(f"the pad was learned from {self._reading}, got {image.quantity}")
         return footprint(image, self._level)

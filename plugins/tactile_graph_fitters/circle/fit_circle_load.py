@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from annotated_types import Ge
 
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.steps import Quantity
 from tactile_graph.wires import Circle, Image
 from tactile_graph_fitters.circle.even_load import (
@@ -102,24 +102,26 @@ class FitCircleLoad:
 
         Raises
         ------
-        ValueError
-            If the cells are not square, the gap leaves no element, or a valid cell is not finite.
+        RuleError
+            If the cells are not square, or the gap leaves no element.
+        DataError
+            If a valid cell is not finite.
         Degenerate
             If fewer than 4 elements bear a load, these leave the disc open, or a load is too large
             to be summed.
         """
         (across, down), (x, y) = image.pitch_cm, image.origin_cm
         if abs(across - down) > 1e-9 * across:
-            raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+            raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
         if not self._gap_cm < across:
-            raise ValueError(
+            raise RuleError(
                 f"gap_cm: must be below the pitch of {across:g} cm, got {self._gap_cm:g}"
             )
         loads = np.array(image.values, np.float64)
         usable = np.ones(loads.shape, np.bool_) if image.valid is None else image.valid.copy()
         loads[~usable] = 0.0
         if not np.isfinite(loads).all():
-            raise ValueError("a valid cell holds NaN or infinity")
+            raise DataError("image", "a valid cell holds NaN or infinity")
         if loads.size and loads.max() > np.finfo(np.float64).max / loads.size**2:
             raise Degenerate(f"loads of up to {loads.max():.3g} are too large for their moments")
         loads[loads < self._least] = 0.0

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
@@ -25,6 +26,8 @@ SETTLING = 8  # steps at the end, each less than half the one before
 LONG = 10.0  # half axes, in extents of the points, that are tried doubled
 PAUSE = 8  # rounds after which they are again, where that led nowhere
 LARGEST = 1e3  # half axes, in extents of the points, beyond which they are no ellipse's
+DOUBTED = 1.5  # half axes, in extents of the points, from which on it is asked how sure they are
+UNSURE = 0.2  # standard deviation of such a half axis, in itself, from which on it says nothing
 
 Values = NDArray[np.float64]
 
@@ -46,7 +49,8 @@ def fit_ellipse(points: Points) -> FittedEllipse:
     ------
     Degenerate
         As `fit_ellipse_direct`, from whose ellipse the search starts; or if no minimum is found,
-        as where a parabola fits as well as any ellipse.
+        or one longer than the points reach by an amount they leave open (standard deviation above a
+        fifth of it): a parabola fits as well.
 
     Notes
     -----
@@ -57,7 +61,48 @@ def fit_ellipse(points: Points) -> FittedEllipse:
     large by about s**2 / (2 r), r being the radius of curvature there. Source: Ahn, Rauh and
     Warnecke 2001, 10.1016/S0031-3203(00)00152-7.
     """
-    return ellipse_from(points.xy_cm, geometric_fit)
+    found = ellipse_from(points.xy_cm, geometric_fit)
+    xy = points.xy_cm
+    if found.semi_major_cm > DOUBTED * float((xy.max(axis=0) - xy.min(axis=0)).max()):
+        std_cm = semi_major_std_cm(found, xy)
+        if not std_cm <= UNSURE * found.semi_major_cm:
+            raise Degenerate(
+                f"{found.n_points} points: no ellipse, a parabola fits as well (half axis "
+                f"{found.semi_major_cm:.3g} cm, standard deviation {std_cm:.3g} cm)"
+            )
+    return found
+
+
+def semi_major_std_cm(found: FittedEllipse, xy_cm: Values) -> float:
+    """Return the standard deviation of the major half axis, by the slopes of the distances.
+
+    Parameters
+    ----------
+    found : FittedEllipse
+        The nearest ellipse; its distances say how far points are off.
+    xy_cm : ndarray, shape (N, 2)
+        The points that it was fitted to.
+
+    Returns
+    -------
+    float
+        0 for points on the ellipse; infinite where they say nothing of its length.
+    """
+    a, b = found.semi_major_cm, found.semi_minor_cm
+    cos, sin = math.cos(found.angle_rad), math.sin(found.angle_rad)
+    x, y = xy_cm[:, 0] - found.x_cm, xy_cm[:, 1] - found.y_cm
+    u, v = (x * cos - y * sin) / a, (x * sin + y * cos) / b  # 1 from the centre on the ellipse
+    steep = np.hypot(u / a, v / b)
+    # Each half of what the equation of the ellipse changes by; lengths in half axes, so that the
+    # columns are alike in size.
+    along = (-u * u, -v * v, -u, -v, u * v * (b / a - a / b))
+    slopes = np.column_stack(along) / steep[:, None]
+    singular, rows = np.linalg.svd(slopes, full_matrices=False)[1:]
+    if not singular[-1] > 0.0:
+        return math.inf
+    n = len(xy_cm)
+    off_cm = found.rms_cm * math.sqrt(n / max(n - 5, 1))
+    return float(off_cm * np.linalg.norm(rows[:, 0] / singular) * a)
 
 
 @compiled_later

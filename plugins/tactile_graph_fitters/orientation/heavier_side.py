@@ -64,7 +64,7 @@ def heavier_side(
 
     Raises
     ------
-    ValueError
+    RuleError
         If image and mask differ in shape.
     Degenerate
         If the footprint is empty or bears no load.

@@ -48,6 +48,21 @@ class Orientation(NamedTuple):
         return math.degrees(self.angle_std_rad)
 
 
+def require_finite(axis: Orientation) -> None:
+    """Raise if nothing can be turned by an axis.
+
+    Raises
+    ------
+    Degenerate
+        If its angle or centre is NaN or infinite.
+    """
+    if not math.isfinite(axis.angle_rad + axis.x_cm + axis.y_cm):
+        raise Degenerate(
+            f"the axis must be finite, got {axis.angle_rad:g} rad at ({axis.x_cm:g}, "
+            f"{axis.y_cm:g}) cm"
+        )
+
+
 # Beside the class: a NamedTuple would take it for a field.
 Orientation.columns_shown = (  # type: ignore[attr-defined]
     "angle_deg", "x_cm", "y_cm", "elongation", "angle_std_deg", "ambiguous")  # fmt: skip

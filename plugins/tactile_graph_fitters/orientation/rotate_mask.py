@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask
-from tactile_graph_fitters.orientation.orientation import Orientation
+from tactile_graph_fitters.orientation.orientation import Orientation, require_finite
+
+MOST_CELLS = 1 << 24
+"""Of a turned mask."""
 
 
 def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
@@ -33,7 +36,8 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
     Raises
     ------
     Degenerate
-        If no cell is on.
+        If no cell is on, the axis is not finite, or the turned mask would take over 2**24 cells:
+        those far from square turn into endless ones.
 
     Notes
     -----
@@ -42,6 +46,7 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
     with ``cross3`` fills them.
     """
     (x, y), (px, py) = mask.origin_cm, mask.pitch_cm
+    require_finite(axis)
     values, left, top = rotated(
         np.ascontiguousarray(mask.values),
         (axis.x_cm - x) / px - 0.5,
@@ -51,6 +56,8 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
         px / py,
     )
     if values.size == 0:
+        if mask.values.any():
+            raise Degenerate(f"turned, cells of {px:g} by {py:g} cm would be too many for a mask")
         raise Degenerate("no cell is on: nothing to turn")
     return Mask(
         values, mask.pitch_cm, (axis.x_cm + (left - 0.5) * px, axis.y_cm + (top - 0.5) * py)
@@ -65,6 +72,8 @@ def rotated(
     values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
 ) -> Rotated:
     """Return the turned cells and the place of the first, in cells right and down of the centre.
+
+    No cells where none is on, or where they would be more than `MOST_CELLS`.
 
     ``column`` and ``row`` are those of the centre, ``aspect`` the pitch along x over that along y.
     """
@@ -90,7 +99,8 @@ def rotated(
             v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
             left, right = min(left, u), max(right, u)
             top, bottom = min(top, v), max(bottom, v)
-    if last < 0:
+    # Of floats: the product of two whole numbers may be too large for one.
+    if last < 0 or (bottom - top + 1.0) * (right - left + 1.0) > MOST_CELLS:
         return np.zeros((0, 0), np.bool_), 0, 0
     out = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
     for i in range(first, last + 1):

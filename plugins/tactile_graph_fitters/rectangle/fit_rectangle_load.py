@@ -98,7 +98,7 @@ class FitRectangleLoad:
 
         Raises
         ------
-        ValueError
+        RuleError
             If image and mask differ in shape.
         Degenerate
             If fewer than 3 cells are on, all are in one line, or no minimum is found.

@@ -95,7 +95,7 @@ def rectangle_from_ellipse(
     Raises
     ------
     Degenerate
-        If ``inside_cm`` leaves no side.
+        If the ellipse encloses nothing, or ``inside_cm`` leaves no side.
 
     Notes
     -----
@@ -106,6 +106,8 @@ def rectangle_from_ellipse(
     and read by the axes' ratio. Flatter ellipses than b / a = 0.017 are treated as of that.
     """
     a, b = ellipse.semi_major_cm, ellipse.semi_minor_cm
+    if not a > 0.0:
+        raise Degenerate(f"half axes of {a:.3g} by {b:.3g} cm enclose nothing: no rectangle")
     ratio = b / a
     length = 2.0 * a * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 1])) + 2.0 * inside_cm
     breadth = 2.0 * b * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 2])) + 2.0 * inside_cm

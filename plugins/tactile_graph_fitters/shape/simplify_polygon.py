@@ -66,7 +66,8 @@ class SimplifyPolygon:
         Raises
         ------
         Degenerate
-            If the polygon has fewer corners than asked for (than 3, with ``tolerance_cm``).
+            If the polygon has fewer corners than asked for (than 3, with ``tolerance_cm``), or one
+            that is not finite.
         """
         xy = polygon.xy_cm
         least = self._corners or 3
@@ -75,6 +76,8 @@ class SimplifyPolygon:
                 f"the polygon has {len(xy)} corners, fewer than the {least} it is to keep"
             )
         xy = np.ascontiguousarray(xy, dtype=np.float64)
+        if not np.isfinite(xy).all():
+            raise Degenerate("a corner of the polygon is not finite")
         kept = np.arange(len(xy))
         tolerance = -1.0 if self._tolerance is None else self._tolerance
         kept = kept[: thinned(xy, kept, len(xy), least, tolerance)]

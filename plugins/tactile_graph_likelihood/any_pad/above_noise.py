@@ -8,6 +8,7 @@ import numpy as np
 from annotated_types import Gt
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.thresholds.thresholded import Thresholded
 from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise
@@ -50,12 +51,12 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
 
     Raises
     ------
-    ValueError
+    DataError
         If a valid cell is not finite or beyond 1e100.
     """
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     if not np.abs(values).max(initial=0.0) <= LARGEST:
-        raise ValueError(f"readings must be finite and at most {LARGEST:g}")
+        raise DataError("image", f"readings must be finite and at most {LARGEST:g}")
     its, known = taught(pad, image), image.valid
     if its is not None:
         values = values - its.offset

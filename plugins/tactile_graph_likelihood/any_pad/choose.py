@@ -73,7 +73,7 @@ class Locate:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.

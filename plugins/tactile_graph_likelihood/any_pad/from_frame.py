@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
+from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
 
 LAW = 0.35
@@ -66,21 +65,6 @@ def learned(told: Noise, scatter: Values, touched: int, strays: float, law: floa
     return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
 
-def scatter_of_covered(model: Model, readings: Readings, p: Values) -> Values:
-    """Return ln sigma and the voids' log odds of the elements that an outline covers whole."""
-    rows, columns = readings.states.shape
-    box = window.call(model.kind, model.corners, p, readings.grid, rows, columns, 0.0)
-    whole = covered.call(model.kind, model.corners, p, readings.grid, box) >= 1.0
-    part = slice(box[0], box[0] + box[2]), slice(box[1], box[1] + box[3])
-    states, logs = readings.states[part][whole], readings.logs[part][whole]
-    shown, known = logs[states == ON], int(np.count_nonzero(states != UNKNOWN))
-    sigma = model.noise.sigma
-    if len(shown) >= FEWEST:
-        sigma = max(NORMAL * float(np.median(np.abs(shown - np.median(shown)))), LEAST_SIGMA)
-    voids = (known - len(shown) + model.noise.voids) / (known + 1.0)
-    return np.array([math.log(sigma), math.log(voids / (1.0 - voids))])
-
-
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     """Return the share of strays, by what reads beyond the box around an outline."""
     x, y = p[:2].tolist()
@@ -93,6 +77,21 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     bare = readings.states.size - inside.size
     found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
     return min(found, MOST_STRAYS)
+
+
+def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:
+    """Return whether an outline reaches more than half a pitch beyond the pad's edge.
+
+    Then nobody knows where on it its pressure is measured. A disc's rim says where it ends.
+    """
+    if kind == DISC:
+        return False
+    left, top, pitch = readings.grid[:3].tolist()
+    (x, y), (wide, high) = p[:2].tolist(), _half_extents(kind, p)
+    width, height = readings.size_cm
+    room_x = min(x - left, left + width - x) - wide
+    room_y = min(y - top, top + height - y) - high
+    return bool(min(room_x, room_y) < -0.5 * pitch)
 
 
 def _half_extents(kind: int, p: Values) -> tuple[float, float]:

@@ -12,8 +12,8 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
+    is_partly_hidden,
     learned,
-    scatter_of_covered,
     strays_beyond,
     variance_inflation,
 )
@@ -77,10 +77,10 @@ class AnyPad:
     Notes
     -----
     The outline is fitted with sigma and voids; also under each pressure that an even face leaves a
-    pattern of. On a pad of more than 1024 elements sigma and voids are those of what it covers
-    whole, and a pattern only widens the posterior. The likeliest of these fits is sampled with the
-    noise that it has found, an even face with the law's exponent; the others stand for themselves
-    as normal distributions, by their evidence over what neighbouring elements share.
+    pattern of. On a pad of more than 1024 elements a pattern only widens the posterior. The
+    likeliest of these fits is sampled with the noise that it has found, an even face with the law's
+    exponent; the others stand for themselves as normal distributions, by their evidence over what
+    neighbouring elements share.
     """
 
     told: Model
@@ -144,21 +144,24 @@ class AnyPad:
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
         large = readings.states.size > LARGE_PAD
-        model = self._search(self.told.noise) if large else self._fits[EVEN]
-        its, even = self, model.likeliest(readings, start=start)
-        if even.unsure:
+        its, model = self, self._fits[EVEN]
+        even = model.likeliest(readings, start=start)
+        if even.unsure and not large:
             even = model.likeliest(readings, before=even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         point = self.told.point_of(even)
         strays = strays_beyond(self.told, readings, point)
-        if strays > MANY * self.told.noise.strays and not large:
+        if strays > MANY * self.told.noise.strays:
             noise = replace(self.told.noise, strays=strays)
             its = replace(self, told=replace(self.told, noise=noise))
-            even = its._fits[EVEN].likeliest_near(readings, point)
-            even = its._fits[EVEN].likeliest(readings, before=even)
+            model = its._fits[EVEN]
+            even = model.likeliest_near(readings, point)
+        if even.unsure if large else its is not self:
+            even = model.likeliest(readings, before=even)
         found = {EVEN: even}
-        for part in [] if large else asked_by(even.fit):
+        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
+        for part in [] if large or hidden else asked_by(even.fit):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
@@ -206,7 +209,7 @@ class AnyPad:
 
         That has nine unknowns and more, for which few points are worse than none. Nor is a sample
         taken whose points are worth fewer than there are unknowns, as where strays explain all
-        there is: it would promise far too much.
+        there is, unless it promises less than a normal distribution around the top.
         """
         if part == EVEN or self.told.kind == DISC:
             try:
@@ -215,15 +218,15 @@ class AnyPad:
                 return self._normal(part, top)
             if found.equal_points > self._count:
                 return found
+            return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
         return self._normal(part, top)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
-        scatter = scatter_of_covered(self.told, readings, point) if large else point[-2:]
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, scatter, readings.touched, strays, self.law)
+        noise = learned(self.told.noise, point[-2:], readings.touched, strays, self.law)
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)

@@ -81,7 +81,7 @@ class LocateDisc(Located):
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or no disc on the pad explains what does.

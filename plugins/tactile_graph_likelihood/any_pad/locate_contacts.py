@@ -63,7 +63,7 @@ class LocateContacts:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise.

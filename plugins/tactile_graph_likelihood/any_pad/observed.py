@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import risen
 from tactile_graph_likelihood.geometry.outlines import Values
@@ -60,20 +60,23 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
 
     Raises
     ------
-    ValueError
-        If the cells are not nearly square, the gap leaves no element, or a valid cell is not finite
-        or beyond 1e100.
+    RuleError
+        If the cells are not nearly square, or the gap leaves no element.
+    DataError
+        If a valid cell is not finite or beyond 1e100.
     Degenerate
         If nothing shows.
     """
     across, down = image.pitch_cm
     if abs(across - down) > NEARLY * across:
-        raise ValueError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
+        raise RuleError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     if not gap_cm < across:
-        raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+        raise RuleError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
     above, least, shows, _, its = risen(image, pad)
+    if not above.size:
+        raise Degenerate("the image has no element: no outline fits")
     loads, least_loads, possible = _loads(image.quantity, above, least, pad)
     known = possible if image.valid is None else image.valid & possible
     if its is not None:

@@ -108,7 +108,9 @@ class FootprintByOrder:
         Raises
         ------
         ValueError
-            If ``start`` is of another shape, or the image's cells are not square.
+            If ``start`` is of another shape.
+        RuleError
+            If the image's cells are not square.
         Degenerate
             If nothing is touched, or no such outline on the pad explains what is; if volts are
             not the circuit's.

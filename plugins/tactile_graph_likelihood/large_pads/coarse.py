@@ -31,9 +31,8 @@ UNEVEN, VOID, STRAY = 0.3, 0.03, 0.01  # of blocks: sigma, share of voids, and o
 
 
 @compiled_as_is
-def block_of(grid: Values, logs: Values, states: States) -> int:
-    """Return how many elements wide blocks may be that still show what is touched."""
-    found = moments(grid, logs, states)
+def block_of(grid: Values, found: Values) -> int:
+    """Return how many elements wide blocks may be that still show what has such moments."""
     middle, off = 0.5 * (found[3] + found[5]), math.hypot(0.5 * (found[3] - found[5]), found[4])
     long = WIDE * math.sqrt(middle + off) / grid[2]
     broad = WIDE * math.sqrt(max(middle - off, 0.0)) / grid[2]
@@ -43,12 +42,14 @@ def block_of(grid: Values, logs: Values, states: States) -> int:
 class Blocks(NamedTuple):
     """The same question about an image in blocks, how many elements wide they are, and the load.
 
-    Of a small object a block is 1; the typical log load is NaN if not known.
+    Of a small object a block is 1; the typical log load is NaN if not known. ``moments`` are those
+    of all elements that are part of something solid.
     """
 
     problem: Problem
     block: int
     load: float
+    moments: Values
 
 
 @compiled_as_is
@@ -61,12 +62,13 @@ def coarsened(problem: Problem) -> Blocks:
     grid, logs, states = problem.grid, problem.logs, problem.states
     typical = typical_load(logs, states)
     if math.isnan(typical):
-        return Blocks(problem, 1, typical)
+        return Blocks(problem, 1, typical, np.zeros(7))
     body = solid(logs, states, typical, problem.noise[SIGMA])
-    block = block_of(grid, logs, body)
+    found = moments(grid, logs, body)
+    block = block_of(grid, found)
     if block == 1:
         rough = _read(problem, grid, logs, body, problem.noise, problem.estimated)
-        return Blocks(rough, 1, typical)
+        return Blocks(rough, 1, typical, found)
     blocks, shares = _blocks(body, block)
     noise = np.zeros(problem.noise.shape)
     noise[SIGMA], noise[VOIDS], noise[STRAYS] = UNEVEN, VOID, STRAY
@@ -74,7 +76,7 @@ def coarsened(problem: Problem) -> Blocks:
     wide = grid.copy()
     wide[2], wide[3] = block * grid[2], block * grid[2] - (grid[2] - grid[3])
     rough = _read(problem, wide, shares, blocks, noise, problem.estimated[:0])
-    return Blocks(rough, block, typical)
+    return Blocks(rough, block, typical, found)
 
 
 @compiled_as_is

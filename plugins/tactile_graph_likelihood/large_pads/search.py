@@ -8,23 +8,36 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
-from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.geometry.outline_prior import TURN
+from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
 from tactile_graph_likelihood.large_pads.by_rim import goodness_by_rim
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
     covered_around,
     empty_for,
+    keep_current,
     nothing_covered,
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.log_posterior import log_likelihood
+from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
-from tactile_graph_likelihood.single.problem import Problem
-from tactile_graph_likelihood.single.search import ATTEMPTS, POOR, SAME, TRIES, likeliest_start
+from tactile_graph_likelihood.single.problem import Problem, with_prior
+from tactile_graph_likelihood.single.search import (
+    ATTEMPTS,
+    POOR,
+    SAME,
+    TRIES,
+    UNLIKELY,
+    likeliest_start,
+    outline_of_moments,
+)
 
 STRIDE = 1.5  # pitches that an edge moves a round: rows it never felt lie beyond
+SETTLED = 0.005  # gain in log posterior still promised, at which a top is taken for the mean
+LEAST_DROP, MOST_DROP = 0.25, 1.0  # of a normal log posterior, half: a deviation from its top
 FEW_BESIDE, SHARE_BESIDE = 3.0, 0.02  # touched elements beside an outline that may be strays
 
 
@@ -73,8 +86,9 @@ def maximise_from_blocks(problem: Problem, block: int, p: Values, root: Values) 
         The log posterior at the top.
     """
     if block > 1 and problem.noise[FOAM] <= 0.0:
-        height = maximise(problem, empty_for(problem, p), p, root, ENOUGH, STRIDE)
-        if not touched_beside(problem, p):
+        whole = empty_for(problem, p)
+        height = maximise(problem, whole, p, root, ENOUGH, STRIDE)
+        if whole.runs.shape[0] > 0 or not touched_beside(problem, p):
             return height
     return maximise_on_large_pad(problem, STRIDE, p, root)
 
@@ -83,7 +97,7 @@ def maximise_from_blocks(problem: Problem, block: int, p: Values, root: Values) 
 def _start(
     problem: Problem, blocks: Blocks, start: Values, table: Values, tries: int, p: Values
 ) -> None:
-    """Write where to begin: near the top, if blocks show it.
+    """Write where to begin: near the top, if blocks or the moments of what is solid show it.
 
     Parameters
     ----------
@@ -118,10 +132,26 @@ def _start(
         if log_likelihood(problem, p) > log_likelihood(problem, moved):
             return
     p[: first + 1] = at
+    if given or tries > 0:
+        return
+    outline_of_moments(problem.kind, problem.corners, blocks.moments, 0.0, 0.0, at)
+    at[first] = blocks.load
+    moved = p.copy()
+    moved[: first + 1] = at
+    if _height(problem, moved) > _height(problem, p):
+        p[:] = moved
 
 
 @compiled_as_is
-def _fit(problem: Problem, p: Values) -> GoodnessOfFit:
+def _height(problem: Problem, p: Values) -> float:
+    """Return the log likelihood of a wide outline."""
+    whole = empty_for(problem, p)
+    keep_current(problem, whole, p)
+    return log_likelihood_at(problem, whole, p)
+
+
+@compiled_as_is
+def fit_of(problem: Problem, p: Values) -> GoodnessOfFit:
     """Return how well the image fits a large or small outline."""
     whole = covered_around(problem, p)
     if whole.runs.shape[0] == 0:
@@ -141,7 +171,8 @@ def find_mode_on_large_pad(
     for attempt in range(first, last):
         given, seen = start[:0], blocks
         if attempt == 0:
-            given, seen = start, Blocks(in_one_piece(blocks.problem), blocks.block, blocks.load)
+            piece = in_one_piece(blocks.problem)
+            given, seen = start, Blocks(piece, blocks.block, blocks.load, blocks.moments)
         _start(problem, seen, given, table, attempt * TRIES, trial)
         here = maximise_from_blocks(problem, blocks.block, trial, its_root)
         again = attempt > 0 and abs(here - height) < SAME
@@ -151,7 +182,52 @@ def find_mode_on_large_pad(
             for k in range(n):
                 root[k, :] = its_root[k]
         if height > -math.inf:
-            fit = _fit(problem, p)
-            if fit.surprise > POOR or again:
+            fit = fit_of(problem, p)
+            if fit.surprise > POOR or (again and fit.surprise > UNLIKELY):
                 return height, False, fit
     return height, last < ATTEMPTS, fit
+
+
+@compiled_as_is
+def settled(problem: Problem, p: Values, root: Values) -> float:
+    """Bring a wide outline to its top; return the height if the posterior is normal around it.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of more than 1024 elements.
+    p, root : ndarray, shape (K,) and (K, K)
+        Near the top; written, with the lower root of the information there.
+
+    Returns
+    -------
+    float
+        The log posterior at the top; -inf where the outline is not wide, or the posterior is
+        not as far down a deviation away along each axis as a normal one, as where a side lies in
+        a gap.
+    """
+    whole, n = empty_for(problem, p), p.shape[0]
+    if whole.runs.shape[0] == 0:
+        return -math.inf
+    height = maximise(problem, whole, p, root, SETTLED, math.inf)
+    prior, axes = problem.prior.copy(), np.zeros((n, n))
+    if period(problem.kind, problem.corners) > 0.0:
+        prior[TURN] = p[2 + sizes(problem.kind)]
+    near, trial = with_prior(problem, prior), np.empty(n)
+    for k in range(n):  # the columns of the inverse of the root's transpose
+        axes[k, k] = 1.0 / root[k, k]
+        for i in range(k - 1, -1, -1):
+            total = 0.0
+            for m in range(i + 1, k + 1):
+                total += root[m, i] * axes[m, k]
+            axes[i, k] = -total / root[i, i]
+    for place in range(2 * n):
+        way = 1.0 if place % 2 == 0 else -1.0
+        for m in range(n):
+            trial[m] = p[m] + way * axes[m, place // 2]
+        here = log_rest(near, trial)
+        if here > -math.inf:
+            here += log_likelihood_at(near, whole, trial)
+        if not LEAST_DROP < height - here < MOST_DROP:
+            return -math.inf
+    return height

@@ -64,6 +64,11 @@ class SeveralSettings(FootprintSettings):
     smallest_cm: Positive = 1.0
     largest_cm: Positive = 12.0
 
+    def expected(self, kinds: Sequence[Kind], most: int, more: float) -> Expected:
+        """Return what is expected on a pad."""
+        sizes, found = (self.smallest_cm, self.largest_cm), [KINDS[k] for k in dict.fromkeys(kinds)]
+        return Expected(found, sizes, ON_PAD[self.on_pad], most, more)
+
 
 SEVERAL = SeveralSettings()
 
@@ -96,7 +101,7 @@ class FitFootprints:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "rectangle", "ellipse", "triangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 3.0,
+        more: float = 2.5,
         settings: Annotated[
             SeveralSettings,
             Spread(
@@ -114,9 +119,7 @@ class FitFootprints:
         ] = SEVERAL,
     ) -> None:
         self.noise, self.gap_cm = settings.noise, settings.gap
-        sizes = settings.smallest_cm, settings.largest_cm
-        found = [KINDS[k] for k in dict.fromkeys(kinds)]
-        self.expected = Expected(found, sizes, ON_PAD[settings.on_pad], most, more)
+        self.expected = settings.expected(kinds, most, more)
 
     def __call__(
         self, image: Load, starts: Sequence[Circle | Ellipse | Rectangle | Polygon] = ()
@@ -133,7 +136,7 @@ class FitFootprints:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not square.
         Degenerate
             If nothing is touched, or no such outlines explain what is.

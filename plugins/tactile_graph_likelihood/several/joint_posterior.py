@@ -165,8 +165,11 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    expected = problem.load[r0:r1, c0:c1].copy()
-    total = problem.share[r0:r1, c0:c1].copy()
+    expected, total = np.empty((r1 - r0, c1 - c0)), np.empty((r1 - r0, c1 - c0))
+    for i in range(r1 - r0):
+        for j in range(c1 - c0):
+            expected[i, j] = problem.load[r0 + i, c0 + j]
+            total[i, j] = problem.share[r0 + i, c0 + j]
     before = terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total)
     for k in range(kinds.shape[0]):
         kind, n = kinds[k], corners[k]
@@ -196,9 +199,11 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     expected, total = problem.load.copy(), problem.share.copy()
     own = np.zeros((count, rows, cols))
     rise = np.zeros((count * WIDTH, rows, cols))
-    out.slope[:] = 0.0
-    out.matrix[:] = 0.0
-    at = np.empty(WIDTH)
+    at, size = np.empty(WIDTH), count * WIDTH
+    for x in range(size):
+        out.slope[x] = 0.0
+        for y in range(size):
+            out.matrix[x, y] = 0.0
     for k in range(count):
         kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
         for m in range(first + 1, WIDTH):
@@ -207,23 +212,21 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        here = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
-        scale = math.exp(points[k, first])
+        steps, scale = steps_of(kind, n, points[k], grid), math.exp(points[k, first])
         r, c = box[0], box[1]
-        for i in range(box[2]):
-            for j in range(box[3]):
-                own[k, r + i, c + j] = here[i, j]
-                expected[r + i, c + j] += scale * here[i, j]
-                total[r + i, c + j] += here[i, j]
-        steps = steps_of(kind, n, points[k], grid)
-        at[:] = points[k]
-        for m in range(first):
-            at[m] += steps[m]
-            moved = shares_of(kind, n, at, grid, noise, box, rows, cols)
-            at[m] = points[k, m]
+        for m in range(-1, first):  # at first where it lies: one call, which is compiled once
+            for x in range(WIDTH):
+                at[x] = points[k, x] + (steps[m] if x == m else 0.0)
+            here = shares_of(kind, n, at, grid, noise, box, rows, cols)
             for i in range(box[2]):
                 for j in range(box[3]):
-                    rise[k * WIDTH + m, r + i, c + j] = (moved[i, j] - here[i, j]) / steps[m]
+                    if m >= 0:
+                        moved = here[i, j] - own[k, r + i, c + j]
+                        rise[k * WIDTH + m, r + i, c + j] = moved / steps[m]
+                        continue
+                    own[k, r + i, c + j] = here[i, j]
+                    expected[r + i, c + j] += scale * here[i, j]
+                    total[r + i, c + j] += here[i, j]
     _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 

@@ -23,15 +23,9 @@ from tactile_graph_likelihood.any_pad.from_frame import (
 from tactile_graph_likelihood.any_pad.observed import observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.settings import ON_PAD
-from tactile_graph_likelihood.several.fit_footprints import (
-    KINDS,
-    Footprints,
-    Kind,
-    SeveralSettings,
-)
+from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.pad import Expected, OnPad, laid, likeliest
+from tactile_graph_likelihood.several.pad import OnPad, laid, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
@@ -92,15 +86,13 @@ class LocateObjects:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 2.0,
+        more: float = 1.0,
         settings: Annotated[
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,
     ) -> None:
         self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
-        sizes = settings.smallest_cm, settings.largest_cm
-        found = [KINDS[k] for k in dict.fromkeys(kinds)]
-        self._expected = Expected(found, sizes, ON_PAD[settings.on_pad], most, more)
+        self._expected = settings.expected(kinds, most, more)
 
     def __call__(self, image: Image) -> Footprints:
         """Return the outlines.
@@ -112,7 +104,7 @@ class LocateObjects:
 
         Raises
         ------
-        ValueError
+        RuleError
             If the image's cells are not nearly square.
         Degenerate
             If nothing rises above the noise, or no such outlines explain what does.
@@ -160,7 +152,8 @@ def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, fl
     bare = (its.share <= 0.0) & (problem.states != UNKNOWN)
     count = np.count_nonzero(bare & on) + TOLD_STRAYS * told.strays
     strays = min(float(count / (np.count_nonzero(bare) + TOLD_STRAYS)), MOST_STRAYS)
-    noise = learned(told, scatter_of(its, told), MANY, strays)
+    # A law's power would bend the loads of whole outlines, too, which are what parts them.
+    noise = learned(told, scatter_of(its, told), MANY, strays, law=0.0)
     vector, n = noise.vector(float(problem.grid[2])), found.outlines.count
     _, alike = goodness_of_load.call(its._replace(noise=vector), NUMBERS * n)
     touched = int(np.count_nonzero(on))

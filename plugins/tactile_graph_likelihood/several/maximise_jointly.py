@@ -31,6 +31,8 @@ LOOSE, GAP = 0.01, 6.0
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft search
 NO_STRAYS = 1e-12
+POSTERIOR = -1
+"""Rounds of a climb that is none: only the log posterior is asked for."""
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -80,12 +82,13 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
     step, root = np.empty(size), np.empty((size, size))
     out = Information(np.empty(size), np.empty((size, size)))
     slope, matrix = out
-    for k in range(kinds.shape[0]):
+    for k in range(kinds.shape[0] if most > 0 else 0):
         _pulled_in(kinds[k], corners[k], points[k], noise, prior)
     trial = points.copy()
     tried = Outlines(kinds, corners, trial)
     now = log_rest_of(problem, outlines)
-    now += gain(problem, outlines)
+    if now > -math.inf:
+        now += gain(problem, outlines)
     damping = 0.0
     for _ in range(most):
         slopes(problem, outlines, out)
@@ -118,7 +121,8 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
             damping = max(1.0, 10.0 * damping)
             continue
         gained, now = new - now, new
-        points[:] = trial
+        for x in range(size):
+            points[x // WIDTH, x % WIDTH] = trial[x // WIDTH, x % WIDTH]
         damping = 0.0 if part == 1.0 else 0.3
         if gained < 0.5 * enough:
             return now
@@ -126,31 +130,33 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
 
 
 @compiled_as_is
-def maximise_softly(problem: JointProblem, outlines: Outlines, most: int) -> None:
-    """Do the same with elements that feel a little beyond their edge, and with no strays.
+def softened(problem: JointProblem) -> JointProblem:
+    """Return a problem whose elements feel a little beyond their edge, and that knows no strays.
 
     Otherwise a touched element that no outline covers would not pull at all.
     """
     soft, strict = problem.grid.copy(), problem.noise.copy()
     soft[4], soft[5] = SOFT, problem.grid[2]
     strict[STRAYS] = NO_STRAYS
-    softened = JointProblem(
+    return JointProblem(
         soft, problem.logs, problem.states, strict, problem.prior, problem.load, problem.share
     )
-    maximise_jointly(softened, outlines, most, 0.5)
 
 
 @compiled_as_is
-def laplace_evidence(problem: JointProblem, outlines: Outlines, matrix: Values) -> float:
-    """Return the log evidence around a mode by Laplace's method; write the information there."""
+def laplace_evidence(
+    problem: JointProblem, outlines: Outlines, total: float, matrix: Values
+) -> float:
+    """Return the log evidence around a mode by Laplace's method; write the information there.
+
+    ``total`` is the log posterior at the mode.
+    """
     kinds, corners, points = outlines
     noise, prior = problem.noise, problem.prior
     slope, root = np.empty(matrix.shape[0]), np.empty(matrix.shape)
     out = Information(slope, matrix)
-    total = log_rest_of(problem, outlines)
     if total == -math.inf:
         return total
-    total += gain(problem, outlines)
     slopes(problem, outlines, out)
     add_rest(problem, outlines, GAP, out)
     if not cholesky(matrix, root):
@@ -176,14 +182,17 @@ def settle(
 ) -> float:
     """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
 
-    With no rounds they stay where they are; otherwise as in `maximise_softly`, in ``soft`` rounds,
-    and `maximise_jointly`. The information is written to ``matrix``.
+    With no rounds they stay where they are; with `POSTERIOR` as ``most`` it is the log posterior
+    that is returned. At first the problem is `softened`, for ``soft`` rounds. The information is
+    written to ``matrix``.
     """
-    if soft > 0:
-        maximise_softly(problem, outlines, soft)
-    if most > 0:
-        maximise_jointly(problem, outlines, most, enough)
-    return laplace_evidence(problem, outlines, matrix)
+    now, stages = -math.inf, (softened(problem), problem)
+    for stage in range(0 if soft > 0 else 1, 2):  # one call, which is compiled once
+        rounds, least = (soft, 0.5) if stage == 0 else (most, enough)
+        now = maximise_jointly(stages[stage], outlines, rounds, least)
+    if most == POSTERIOR:
+        return now
+    return laplace_evidence(problem, outlines, now, matrix)
 
 
 @compiled_as_is

@@ -18,9 +18,10 @@ from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     add_outline,
 )
+from tactile_graph_likelihood.several.ladder import LEAST_PIECE
 from tactile_graph_likelihood.several.partings import components
 from tactile_graph_likelihood.several.scene import Configuration, joined
-from tactile_graph_likelihood.several.search import LEAST_PIECE, Search
+from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import LIGHT_EDGE
@@ -32,8 +33,11 @@ MARGIN = 2
 """Cells around a part that are looked at with it."""
 
 TEMPER = 2.0
-"""How many times less evidence between kinds, numbers of outlines and other outlines is worth: none
-of them is quite what lies there."""
+"""How many times less evidence between kinds and other outlines is worth: none of them is quite
+what lies there."""
+
+DOUBT = 4.0
+"""The same between numbers of outlines, for the probability that is stated: searches miss some."""
 
 LOADS = 1.5
 """Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
@@ -128,7 +132,7 @@ class OnPad:
     def count_probability(self) -> float:
         """Return the probability of this number among all that the search came upon."""
         here = self.counts[self.outlines.count]
-        odds = [math.exp(min((log - here) / TEMPER, 50.0)) for log in self.counts.values()]
+        odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in self.counts.values()]
         return 1.0 / sum(odds)
 
     def under(self, noise: Values, shared: float) -> OnPad:
@@ -201,7 +205,7 @@ def likeliest(
     begins = split(starts, scenes) if starts else [None] * len(scenes)
     every = [s.divisions(expected.most, b) for s, b in zip(scenes, begins, strict=True)]
     worths = [
-        {n: scene.worth(found) for n, found in divisions.items()}
+        {n: scene.of_number(found) for n, found in divisions.items()}
         for scene, divisions in zip(scenes, every, strict=True)
     ]
     logs, choice = chosen(worths, expected.most)

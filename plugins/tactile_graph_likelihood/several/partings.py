@@ -21,6 +21,7 @@ ANGLES = 12
 OWN = 1.0 / 12.0  # variance of an element's own extent, in pitches
 HALF_AXIS = 1.87  # half axis of a sketch over the standard deviation along it
 THINNEST = 0.05  # variance across a sketch over the mean one
+CLIMBED = 7  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
 SAME = 0.6
 """Distance, in pitches, of the centres of sketches that are the same."""
 
@@ -139,7 +140,8 @@ def partings(
     """Write the best pairs of sketches for a piece beside others, and the evidence of each.
 
     At each of 12 angles the piece is cut where the halves fill their moments' ellipses best, and
-    where the neck is narrowest; the halves' moments are where a pair begins.
+    where the neck is narrowest; the halves' moments are where a pair begins. Only those that fill
+    their ellipses best of all are climbed from.
 
     Parameters
     ----------
@@ -157,7 +159,7 @@ def partings(
     index, place = np.full((rows + 2, cols + 2), -1, np.int64), np.empty(n, np.int64)
     for i in range(n):
         index[piece.row[i] + 1, piece.column[i] + 1] = i
-    starts, worth = np.zeros((2 * ANGLES, 2, WIDTH)), np.full(2 * ANGLES, -math.inf)
+    starts, area = np.zeros((2 * ANGLES, 2, WIDTH)), np.full(2 * ANGLES, math.inf)
     for t in range(ANGLES):
         sums = summed(piece, t, problem.logs, place)
         ways = cut_at(piece, t, sums, place, index, least)
@@ -166,7 +168,16 @@ def partings(
             if k > 0:
                 sketch_of(sums[k], problem.grid, starts[s, 0])
                 sketch_of(sums[n] - sums[k], problem.grid, starts[s, 1])
-                worth[s] = settle_sketches(problem, starts[s], 0, 1)
+                area[s] = spread(sums[k]) + spread(sums[n] - sums[k])
+    worth = np.full(2 * ANGLES, -math.inf)
+    for _ in range(CLIMBED + evidence.shape[0]):
+        fullest = 0
+        for s in range(2 * ANGLES):
+            if area[s] < area[fullest]:
+                fullest = s
+        if area[fullest] < math.inf:
+            area[fullest] = math.inf
+            worth[fullest] = settle_sketches(problem, starts[fullest], 0, 1)
     for m in range(evidence.shape[0]):
         evidence[m], best = -math.inf, 0
         for s in range(2 * ANGLES):

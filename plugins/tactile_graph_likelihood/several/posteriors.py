@@ -9,10 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR, Values, sizes
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.geometry.outlines import Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
-from tactile_graph_likelihood.several.scene import Configuration
+from tactile_graph_likelihood.several.scene import Configuration, area_of
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
@@ -142,6 +143,8 @@ def posteriors_of(part: Found) -> list[Posterior]:
     out = []
     for k, kinds in enumerate(every):
         some = scene.sampled(found, k)
+        if some.log_evidence == -math.inf:
+            raise Degenerate("no outline near the likeliest one is possible: none can be told")
         n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
         alone = np.asarray(np.linalg.inv(matrix[here, here]), dtype=np.float64)
@@ -190,6 +193,8 @@ def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
         else:
             fits.append(scene.as_kind(kind, own, beside))
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
+    if not fits:
+        raise Degenerate("an outline is possible as none of the kinds: none can be told")
     logs = np.array([fit.log_evidence for fit in fits]) / (TEMPER * scene.shared)
     chances = np.exp(logs - logs.max())
     return Kinds(fits, fits[int(logs.argmax())], chances / chances.sum())
@@ -222,19 +227,9 @@ def _off(found: Configuration, one: Configuration, n: int) -> Values:
     """Return how far an outline lies off another, in the other's numbers, all sizes alike."""
     off, own = np.zeros(n), sizes.call(int(one.kinds[0]))
     off[:2] = found.points[0, :2] - one.points[0, :2]
-    ratio = math.sqrt(_area(found) / _area(one))
+    ratio = math.sqrt(area_of(found) / area_of(one))
     off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
     return off
-
-
-def _area(found: Configuration) -> float:
-    """Return the area of one outline, in cm2."""
-    kind, n, p = int(found.kinds[0]), int(found.corners[0]), found.points[0]
-    if kind == REGULAR:
-        return float(0.5 * n * p[2] * p[2] * math.sin(2.0 * math.pi / n))
-    if kind == RECTANGLE:
-        return float(4.0 * p[2] * p[3])
-    return float(math.pi * p[2] * (p[2] if kind == DISC else p[3]))
 
 
 def _wider(alone: Values, together: Values) -> Values:

@@ -78,9 +78,9 @@ def sample_beside(
         if proposals < PROPOSALS:
             if not cholesky(proposal, roots[proposals]):
                 break
-            centres[proposals, :] = aim
             levels[proposals] = constant
             for k in range(n):
+                centres[proposals, k] = aim[k]
                 levels[proposals] -= math.log(roots[proposals, k, k])
             proposals += 1
         now = proposals - 1

@@ -22,7 +22,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     Outlines,
     add_outline,
 )
-from tactile_graph_likelihood.several.maximise_jointly import settle
+from tactile_graph_likelihood.several.maximise_jointly import POSTERIOR, settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.even_points import even_points
@@ -76,6 +76,12 @@ class Configuration:
         """Return them but for some."""
         keep = [k for k in range(self.count) if k not in left_out]
         return Configuration(self.kinds[keep], self.corners[keep], self.points[keep], 0.0)
+
+    def log_sizes_and_loads(self) -> tuple[Values, Values]:
+        """Return the logarithms of the roots of areas, and of loads."""
+        sizes = [0.5 * math.log(area_of(self, k)) for k in range(self.count)]
+        at = [unknowns.call(int(k), int(n)) for k, n in zip(self.kinds, self.corners, strict=True)]
+        return np.array(sizes), self.points[np.arange(self.count), at]
 
     def with_one(self, k: int, other: Configuration) -> Configuration:
         """Return them with another outline in the place of one."""
@@ -163,7 +169,7 @@ class Scene:
             for start in starts
         ]
         if len(begun) > 1:
-            begun.sort(key=lambda it: -self.settled(it, beside, 0)[0].log_evidence)
+            begun.sort(key=lambda it: -self.settled(it, beside, POSTERIOR)[0].log_evidence)
         return self.settled(begun[0], beside, ROUNDS, soft)[0]
 
     def worth(self, found: Configuration) -> float:
@@ -212,6 +218,16 @@ def like(kind: tuple[int, int], other: Configuration) -> list[Values]:
         return [_row(p[0], p[1], corner, angle + k * turn, p[n]) for k in range(TURNS)]
     scale = 1.0 / ROUND if kind[0] == RECTANGLE else 1.0
     return [_row(p[0], p[1], scale * first, scale * second, angle, p[n])]
+
+
+def area_of(found: Configuration, k: int = 0) -> float:
+    """Return the area of one outline, in cm2."""
+    kind, n, p = int(found.kinds[k]), int(found.corners[k]), found.points[k]
+    if kind == REGULAR:
+        return float(p[2] * p[2] * _filled(n))
+    if kind == RECTANGLE:
+        return float(4.0 * p[2] * p[3])
+    return float(math.pi * p[2] * (p[2] if kind == DISC else p[3]))
 
 
 def _filled(corners: int) -> float:

@@ -22,7 +22,7 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import covered_around
-from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad
+from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad, fit_of, settled
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
@@ -39,6 +39,9 @@ from tactile_graph_likelihood.single.search import ATTEMPTS, NEAR, find_mode, mo
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
+
+WIDE_POINTS = 4 * BLOCK
+"""Where sampling ends of an outline that is looked at by its rim: it should have been normal."""
 
 SMALLEST_PITCHES = 0.4
 
@@ -210,8 +213,18 @@ class Model:
     def _sampled(
         self, readings: Readings, problem: Problem, table: Values, mode: Mode, loose: float = 0.0
     ) -> Posterior:
-        large = problem.states.size > LARGE_PAD
-        whole = covered_around.call(problem, mode.p) if large else None
+        whole = None
+        if problem.states.size > LARGE_PAD:
+            p, root = mode.p.copy(), mode.root.copy()
+            if (height := settled.call(problem, p, root)) > -math.inf:
+                top = Mode(p, root, height)
+                evidence = height + _log_volume(problem.kind, top)
+                fit = fit_of.call(problem, p)
+                likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
+                return self.normal_around(likeliest, len(p))
+            whole = covered_around.call(problem, mode.p)
+            if len(whole.runs):
+                table = table[:WIDE_POINTS]
         worth = self.precision**-2
         sample = sample_around.call(problem, whole, table, BLOCK, worth, loose, *mode)
         if len(sample.points):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
@@ -114,26 +114,27 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
 
     Raises
     ------
-    ValueError
-        If the cells are not square, the gap leaves no element, or a valid cell is not finite or
-        beyond 1e100.
+    RuleError
+        If the cells are not square, or the gap leaves no element.
+    DataError
+        If a valid cell is not finite or beyond 1e100.
     Degenerate
         If nothing is touched.
     """
     across, down = image.pitch_cm
     if abs(across - down) > 1e-9 * across:
-        raise ValueError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+        raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
     if not gap_cm < across:
-        raise ValueError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+        raise RuleError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
     if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
         least = max(least, faint * _loaded(values, least, logs, states))
     touched = split.call(values, least, logs, states)
     if touched < 0:
-        raise ValueError("a valid cell holds NaN or infinity")
+        raise DataError("image", "a valid cell holds NaN or infinity")
     if values.size and values.max() > LARGEST:
-        raise ValueError(f"readings must be at most {LARGEST:g}, got {values.max():g}")
+        raise DataError("image", f"readings must be at most {LARGEST:g}, got {values.max():g}")
     if image.valid is not None:
         states[~image.valid] = UNKNOWN
         touched = int((states == ON).sum())

@@ -26,6 +26,7 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
+from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI
 from tactile_graph_likelihood.single.evaluate import goodness_at, log_likelihood_at
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import (
@@ -42,8 +43,13 @@ from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
 from tactile_graph_likelihood.single.problem import Problem, over_the_edge, with_prior
 
-SHIFTS = (-1.2, -0.8, -0.4, 0.4, 0.8, 1.2)  # of one side, in pitches
+SHIFTS = (-1.2, -0.8, -0.4, -0.15, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
+HOPELESS, FARTHER = 9.0, 1.4
+"""Nats by which a side may be less likely beyond the pad's edge and still be moved on, and by what
+factor."""
+SURE = 0.85  # probability from which on a side is looked for there: objects mostly lie whole
+WIDE = 0.2  # of the mean way squared, added to a proposal's variance: how far is unknown
 PROPOSALS = 8
 FIRST = 1.6  # the first proposal's, over the inverse information: a gap lets an edge slide
 
@@ -102,6 +108,18 @@ class Sample(NamedTuple):
     fit: GoodnessOfFit
 
 
+class Beyond(NamedTuple):
+    """Where sides may lie that are beyond the pad's edge, and nobody knows how far.
+
+    ``point`` and ``wider`` are centre, and more variance, of points to be looked at, where sides
+    lie there rather than not; ``slack`` the variance of those that may.
+    """
+
+    point: Values
+    wider: Values
+    slack: Values
+
+
 @compiled_as_is
 def log_volume(kind: int, p: Values, root: Values) -> float:
     """Return ln of the volume that a normal mode of a posterior takes, of its own height.
@@ -128,7 +146,7 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
 @compiled_as_is
 def widen_to_other_ends(
     problem: Problem, whole: CoveredWhole | None, mode: Mode, covariance: Values
-) -> None:
+) -> Beyond:
     """Widen a covariance, in place, towards each side's other likely places.
 
     A void at an end of an outline looks like the end itself.
@@ -141,38 +159,97 @@ def widen_to_other_ends(
     covariance : ndarray, shape (K, K)
         Of the posterior around it.
 
+    Returns
+    -------
+    Beyond
+        Where sides may lie that no element says anything of.
+
     Notes
     -----
     Each side of a rectangle, each end of an ellipse's axes, is moved by itself, by up to 1.2
-    pitches. The outer product of each move is added, by the square root of how likely it is.
+    pitches. The outer product of each move is added, by the square root of how likely it is. Then
+    it is moved on while that is not hopeless. How likely it lies out there follows from the area
+    under the posterior along the way, over that of a normal one around the mode.
     """
-    kind, grid, p = problem.kind, problem.grid, mode.p
+    kind, p, n = problem.kind, mode.p, mode.p.shape[0]
+    beyond = Beyond(p.copy(), np.zeros((n, n)), np.zeros((n, n)))
     if kind not in (RECTANGLE, ELLIPSE, OVAL):
-        return
-    at = as_ellipse(p) if kind == OVAL else p
-    move, trial = np.zeros(5), p.copy()
-    for place in range(4 * len(SHIFTS)):
-        side, shift = place // len(SHIFTS), SHIFTS[place % len(SHIFTS)]
-        axis = side // 2
-        way = 1.0 if side % 2 == 0 else -1.0
-        turn = at[4] + 0.5 * math.pi * axis
-        half = 0.5 * shift * grid[2]
-        move[0], move[1] = way * half * math.cos(turn), -way * half * math.sin(turn)
-        move[2], move[3], move[4] = half * (1 - axis), half * axis, 0.0
-        for k in range(5):
-            trial[k] = at[k] + move[k]
-        if kind == OVAL:
-            to_oval(trial)
+        return beyond
+    move, unit, trial = np.zeros(5), np.zeros(5), p.copy()
+    for side in range(4):
+        place, shift, top = 0, SHIFTS[0], mode.height
+        area = mean = square = 0.0
+        while True:
+            here = _with_side_moved(problem, whole, p, side, shift, move, trial)
+            if place < len(SHIFTS):
+                _add_outer(covariance, math.exp(FLATTER * min(here - mode.height, 0.0)), move)
+                top = max(top, here)
+            elif here < top - HOPELESS:
+                break
+            else:
+                part = (1.0 - 1.0 / FARTHER) * shift * math.exp(here - top)
+                area += part
+                mean += part * shift
+                square += part * shift * shift
             for k in range(5):
-                move[k] = trial[k] - p[k]
-        here = log_rest(problem, trial)
-        if here == -math.inf:
-            continue
+                unit[k] = move[k] / shift
+            place += 1
+            shift = SHIFTS[place] if place < len(SHIFTS) else FARTHER * shift
+        if area > 0.0:
+            chance = area / (area + ROOT_TWO_PI / _length_of(mode.root, unit))
+            mean, square = mean / area, square / area
+            if chance < SURE:
+                _add_outer(beyond.slack, chance * square, unit)
+            else:
+                _add_outer(beyond.wider, square - mean * mean + WIDE * mean * mean, unit)
+                for k in range(5):
+                    beyond.point[k] += mean * unit[k]
+    return beyond
+
+
+@compiled_as_is
+def _length_of(root: Values, move: Values) -> float:
+    """Return a move's length in standard deviations, all else held."""
+    squared = 0.0
+    for k in range(move.shape[0]):
+        along = 0.0
+        for m in range(k, move.shape[0]):
+            along += root[m, k] * move[m]
+        squared += along * along
+    return math.sqrt(squared)
+
+
+@compiled_as_is
+def _add_outer(matrix: Values, share: float, move: Values) -> None:
+    """Add a share of a vector's outer product with itself to the first rows and columns."""
+    for k in range(move.shape[0]):
+        for m in range(move.shape[0]):
+            matrix[k, m] += share * move[k] * move[m]
+
+
+@compiled_as_is
+def _with_side_moved(
+    problem: Problem, whole: CoveredWhole | None, p: Values, side: int, shift: float, move: Values,
+    trial: Values,
+) -> float:  # fmt: skip
+    """Return the log posterior with a side moved outwards by pitches; write move and point."""
+    kind = problem.kind
+    at = as_ellipse(p) if kind == OVAL else p
+    axis, half = side // 2, 0.5 * shift * problem.grid[2]
+    way = 1.0 if side % 2 == 0 else -1.0
+    turn = at[4] + 0.5 * math.pi * axis
+    trial[0] = at[0] + way * half * math.cos(turn)
+    trial[1] = at[1] - way * half * math.sin(turn)
+    trial[2], trial[3] = at[2] + half * (1 - axis), at[3] + half * axis
+    trial[4] = at[4]
+    if kind == OVAL:
+        to_oval(trial)
+    for k in range(5):
+        move[k] = trial[k] - p[k]
+    here = log_rest(problem, trial)
+    if here > -math.inf:
         here += log_likelihood_at(problem, whole, trial)
-        share = math.exp(FLATTER * min(here - mode.height, 0.0))
-        for k in range(5):
-            for m in range(5):
-                covariance[k, m] += share * move[k] * move[m]
+    return here
 
 
 @compiled_as_is
@@ -227,7 +304,7 @@ def _next_covariance(draws: Draws, count: int, first: Values, centre: Values) ->
 @compiled_as_is
 def importance_sample(
     problem: Problem, whole: CoveredWhole | None, plan: Plan, mode: Values, covariance: Values,
-    draws: Draws,
+    beyond: Beyond, draws: Draws,
 ) -> tuple[int, float, float]:  # fmt: skip
     """Sample the posterior around its mode.
 
@@ -238,6 +315,8 @@ def importance_sample(
     plan : Plan
     mode, covariance : ndarray, shape (K,) and (K, K)
         Of the first proposal; it is drawn wider.
+    beyond : Beyond
+        Where the second proposal is made, if sides lie there rather than not.
     draws : Draws
         Written.
 
@@ -254,11 +333,19 @@ def importance_sample(
     centre, wanted = mode.copy(), FIRST * covariance
     draws.mean[:] = mode
     least = block * (1 if kind == DISC else 2 if kind == OVAL else 4)
+    far = beyond.wider[0, 0] + beyond.wider[1, 1] > 0.0
+    if far:
+        least *= 2
     count, made, renewed, evidence, equal = 0, 0, 0, -math.inf, 0.0
     while count + block <= most:
         before = count
         if made == 0 or (count >= 2 * renewed and made < PROPOSALS):
-            if made > 0:
+            if made == 1 and far:
+                for k in range(n):
+                    centre[k] = beyond.point[k]
+                    for m in range(n):
+                        wanted[k, m] += beyond.wider[k, m]
+            elif made > 0:
                 wanted = _next_covariance(draws, count, covariance, centre)
             if not _propose(proposals, made, centre, wanted):
                 break
@@ -309,25 +396,29 @@ def sample_around(
         there were no more pad beyond its edge than before it; ``p`` and ``root`` are written.
     """
     if height == -math.inf:
-        height = maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
-    plan, mode = Plan(table, block, worth), Mode(p, root, height)
-    kind, n, count = problem.kind, mode.p.shape[0], plan.table.shape[0]
+        maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
+    plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
     prior = problem.prior.copy()
     if period(kind, problem.corners) > 0.0:
-        prior[TURN] = mode.p[2 + sizes(kind)]
+        prior[TURN] = p[2 + sizes(kind)]
     near = with_prior(problem, prior)
+    # the search may have been told another noise, and another prior beyond the pad's edge
+    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
     draws = Draws(
         np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
     )
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):
         covariance[k, k] += loose
-    widen_to_other_ends(near, whole, mode, covariance)
-    used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, draws)
+    beyond = widen_to_other_ends(near, whole, mode, covariance)
+    used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, beyond, draws)
     fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
     if equal <= 0.0:
         used = 0
     else:
+        for k in range(n):
+            for m in range(n):
+                draws.covariance[k, m] += beyond.slack[k, m]
         fit = goodness_at(problem, whole, draws.mean)
     likeliest, top = mode.p.copy(), mode.height
     if kind == OVAL:

@@ -36,7 +36,8 @@ LIGHT_EDGE = 0.25  # ln of a full element's load over the mean, whose edge is pa
 ATTEMPTS = 3
 NEAR = -1
 SAME = 0.5  # log posterior within which another attempt has found the same
-POOR = -1.5  # surprise from which on there is no further attempt
+POOR, UNLIKELY = -1.5, -3.0
+"""Surprise from which on there is no further attempt, and none once two have found the same."""
 TRIES = 24  # outlines tried around the moments own, in attempts after the first
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
@@ -251,6 +252,6 @@ def find_mode(
                 root[k, :] = its_root[k]
         if height > -math.inf:
             fit = goodness_of_fit(problem, p)
-            if fit.surprise > POOR or again:
+            if fit.surprise > POOR or (again and fit.surprise > UNLIKELY):
                 return height, False, fit
     return height, last < ATTEMPTS, fit

@@ -91,7 +91,7 @@ class LineContacts:
 
         Raises
         ------
-        ValueError
+        RuleError
             If image and regions differ in shape.
         DataError
             If a cell of an object holds NaN or infinity and is not marked as invalid.

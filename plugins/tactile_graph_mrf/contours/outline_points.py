@@ -53,7 +53,7 @@ def outline_points(
 
     Raises
     ------
-    ValueError
+    RuleError
         If image and mask differ in shape.
 
     Notes

@@ -12,8 +12,11 @@ import click
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.pipeline.graph import Node
     from tactile_graph.wires.frame import Frame
     from tactile_graph_sources.inspection.look import Looked
 
@@ -21,11 +24,24 @@ MOST_SHOWN = 6
 
 
 class _Works(NamedTuple):
-    """Which pipelines take a frame, and the first reason of those that do not."""
+    """Which pipelines take a frame, and the first reason of those that do not.
+
+    ``levels`` are the nodes of each that can find a level above the noise of a whole recording.
+    """
 
     names: tuple[str, ...]
     about: dict[str, str]
     reasons: dict[str, str]
+    levels: dict[str, str]
+
+
+class _Tried(NamedTuple):
+    """A pipeline, why it does not take a frame, and its node that finds a level, if any."""
+
+    name: str
+    about: str
+    trouble: str
+    level: str
 
 
 @click.command()
@@ -38,7 +54,9 @@ class _Works(NamedTuple):
     help="A setting of the source 'recording', such as rows=12; can be repeated.",
 )
 @click.option("--picture", type=click.Path(path_type=Path), help="Draw it (.png, .svg, .pdf).")
-@click.option("--json", "as_json", is_flag=True, help="Print a JSON object a file, for programs.")
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print a JSON object a file and sensor, for programs."
+)
 def inspect(
     files: tuple[Path, ...], settings: tuple[str, ...], picture: Path | None, as_json: bool
 ) -> None:
@@ -46,38 +64,63 @@ def inspect(
 
     The format and how it was recognised, frames, grid, pitch, quantity, rate, range, noise,
     offset, broken cells, contacts; what of it is assumed; a picture; commands ready to paste.
+    Where a file holds several sensors, all this of each.
     """
     from tactile_graph.errors import TactileGraphError
     from tactile_graph_sources.commands.any_source import reader_settings
-    from tactile_graph_sources.inspection.look import look_into
+    from tactile_graph_sources.inspection.look import look_into_all
     from tactile_graph_sources.inspection.picture import save_picture
-    from tactile_graph_sources.inspection.words import data_of
 
     if picture is not None and len(files) > 1:
         raise click.UsageError("--picture draws one recording; give one FILE")
     told = reader_settings(settings)
-    failed: TactileGraphError | None = None
-    for k, path in enumerate(files):
+    n_failed = 0
+    for path in files:
         try:
-            looked = look_into(path, told)
+            found = look_into_all(path, told)
         except TactileGraphError as error:
             if len(files) == 1:
                 raise
-            failed = error
-            say(json.dumps({"file": str(path), "error": str(error)}) if as_json else error)
+            found = {"": error}
+        n_failed += _show(path, found, settings, as_json)
+        if picture is not None:
+            read = [one for one in found.values() if not isinstance(one, TactileGraphError)]
+            if read:
+                save_picture(read, picture)
+                say(f"picture: {picture}", err=as_json)
+    if n_failed:
+        click.get_current_context().exit(1)
+
+
+def _show(
+    path: Path,
+    found: Mapping[str, Looked | TactileGraphError],
+    settings: Sequence[str],
+    as_json: bool,
+) -> int:
+    """Print what was found of each sensor of a file; return how many could not be read."""
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph_sources.inspection.words import data_of
+
+    names = [name for name in found if name]
+    if names and not as_json:
+        say(f"{path}: {len(names)} sensors, each read alone: {', '.join(names)}")
+    for k, (name, looked) in enumerate(found.items()):
+        chosen = [*settings, f"sensor={name}"] if name else settings
+        if not as_json and (k or names):
+            say()
+        if isinstance(looked, TactileGraphError):
+            told = {"file": str(path), "sensor": name, "error": str(looked)}
+            say(json.dumps(told) if as_json else f"{name}: {looked}" if name else looked)
             continue
         works = _works(looked.sensors[0].frames[0])
         if as_json:
-            say(json.dumps({**data_of(looked), "commands": _commands(looked, works, settings)}))
+            commands = [*_commands(looked, works, chosen), _levelled(looked, works, chosen)]
+            commands = [command for command in commands if command]
+            say(json.dumps({**data_of(looked), "sensor": name, "commands": commands}))
         else:
-            if k:
-                say()
-            _tell(looked, works, settings)
-        if picture is not None:
-            save_picture(looked, picture)
-            say(f"picture: {picture}", err=as_json)
-    if failed is not None:
-        click.get_current_context().exit(1)
+            _tell(looked, works, chosen)
+    return sum(isinstance(looked, TactileGraphError) for looked in found.values())
 
 
 def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
@@ -85,15 +128,23 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
 
     for line in lines_of(looked):
         say(line)
-    for line in shades_of(looked.sensors[0]):
-        say(line)
+    for sensor in looked.sensors:
+        for line in shades_of(sensor):
+            say(line)
     say("  takes it:")
-    for command in _commands(looked, works, settings)[: MOST_SHOWN + 1]:
+    for command in _commands(looked, works, settings):
         say(f"    {command}")
     if len(works.names) > MOST_SHOWN:
         say(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
+    levelled = _levelled(looked, works, settings)
+    if levelled:
+        say("  with one level for all frames, above the noise of the whole recording:")
+        say(f"    {levelled}")
     for reason, names in works.reasons.items():
         say(f"  not {names}: {reason}")
+    labels = [sensor.label for sensor in looked.sensors if sensor.label]
+    if len(labels) > 1:
+        say(f"  one sensor alone: add --with sensor={shlex.quote(labels[0])}")
     if looked.pitch_assumed:
         say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
 
@@ -103,27 +154,44 @@ def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[st
     told = "".join(f" --with {shlex.quote(s)}" for s in settings)
     path = shlex.quote(str(looked.path))
     runs = [f"tactile-graph run {name} {path}{told}" for name in works.names[:MOST_SHOWN]]
-    target = shlex.quote(looked.path.stem + ".zarr")
+    chosen = looked.chosen.replace("/", "-")
+    target = shlex.quote("-".join(filter(None, (looked.path.stem, chosen))) + ".zarr")
     return [*runs, f"tactile-graph convert {path} {target}{told}"]
+
+
+def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
+    """Return the command by which the plainest pipeline takes one level for all frames.
+
+    Empty where none does, or there is only one frame.
+    """
+    name = next((n for n in works.names if works.levels[n]), "")
+    if not name or looked.n_frames < 2:
+        return ""
+    path = str(looked.path)
+    source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
+    value = f"{{{source}}}" if settings else path
+    told = "".join(f" --with {shlex.quote(s)}" for s in settings)
+    setting = shlex.quote(f"{works.levels[name]}.noise_of={value}")
+    return f"tactile-graph run {name} {shlex.quote(path)}{told} --set {setting}"
 
 
 def _works(frame: Frame) -> _Works:
     """Return which of the installed pipelines take a frame such as this."""
-    names, about = [], {}
+    names, about, levels = [], {}, {}
     reasons: dict[str, list[str]] = {}
-    for name, text, trouble in _tried(frame):
-        about[name] = text
+    for name, text, trouble, level in _tried(frame):
+        about[name], levels[name] = text, level
         if trouble:
             reasons.setdefault(trouble, []).append(name)
         else:
             names.append(name)
     # The plainest first: what says of itself that it is for any recording.
     names.sort(key=lambda n: ("any" not in about[n], n))
-    return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()})
+    return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()}, levels)
 
 
-def _tried(frame: Frame) -> Iterator[tuple[str, str, str]]:
-    """Yield each pipeline's name, what it is about, and why it does not take the frame."""
+def _tried(frame: Frame) -> Iterator[_Tried]:
+    """Yield each pipeline, and why it does not take the frame."""
     from tactile_graph.api.pipeline import load
     from tactile_graph.engine.plan import make_plan
     from tactile_graph.engine.runner import check_frame
@@ -134,15 +202,27 @@ def _tried(frame: Frame) -> Iterator[tuple[str, str, str]]:
     for name in found.names("pipelines"):
         try:
             pipeline = load(name, found).with_source("recording", path="recording")
-            about = pipeline.about
+            about, level = pipeline.about, _level_node(pipeline)
         except TactileGraphError:
             continue  # what cannot be loaded says so wherever it is asked for
         try:
             check_frame(frame.image, make_plan(pipeline, tuple(pipeline.outputs)))
         except TactileGraphError as error:
-            yield name, about, _reason(str(error))
+            yield _Tried(name, about, _reason(str(error)), level)
         else:
-            yield name, about, ""
+            yield _Tried(name, about, "", level)
+
+
+def _level_node(pipeline: Pipeline) -> str:
+    """Return the node that finds a level above noise, and may do so for all frames; or empty."""
+    nodes = pipeline.nodes.items()
+    found = (n for n, node in nodes if node.settings.get("level") == "auto" and _takes_noise(node))
+    return next(found, "")
+
+
+def _takes_noise(node: Node) -> bool:
+    signature = node.signature
+    return signature is not None and any(s.name == "noise_of" for s in signature.settings)
 
 
 def _reason(text: str) -> str:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.errors import TactileGraphError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.measure import Measured, measure
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.recording import opened
@@ -52,6 +54,8 @@ class Looked:
         Damaged records, frames of garbage and whatever else was counted.
     troubles : tuple of (str, str)
         Place and what was wrong there.
+    chosen : str
+        The sensor that was read of several.
     """
 
     path: Path
@@ -62,11 +66,35 @@ class Looked:
     assumed: tuple[str, ...]
     counts: dict[str, int]
     troubles: tuple[tuple[str, str], ...]
+    chosen: str = ""
 
     @property
     def pitch_assumed(self) -> bool:
         """Whether nobody said the pitch."""
         return any("pitch" in a for a in self.assumed)
+
+
+def look_into_all(path: Path, settings: Mapping[str, Any]) -> dict[str, Looked | TactileGraphError]:
+    """Return what a recording is and holds; where it holds several sensors, each by its name.
+
+    A recording of one sensor has the name ``""``. A sensor that cannot be read has its error.
+
+    Raises
+    ------
+    TactileGraphError
+        As `recording`, but for several sensors of which none is asked for.
+    """
+    try:
+        return {"": look_into(path, settings)}
+    except SeveralSensorsError as several:
+        names = several.sensors
+    found: dict[str, Looked | TactileGraphError] = {}
+    for name in names:
+        try:
+            found[name] = replace(look_into(path, {**settings, "sensor": name}), chosen=name)
+        except TactileGraphError as error:
+            found[name] = error
+    return found
 
 
 def look_into(path: Path, settings: Mapping[str, Any]) -> Looked:

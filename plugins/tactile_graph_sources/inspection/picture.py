@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,8 +21,8 @@ _MARKS = {"dead": ("x", "white"), "stuck": ("o", "red"), "noisy": ("^", "orange"
 _UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 
 
-def save_picture(looked: Looked, path: Path) -> None:
-    """Write the picture of a recording, a row for each of its sensors.
+def save_picture(looked: Sequence[Looked], path: Path) -> None:
+    """Write the picture of a recording that was looked into for each of its sensors, a row each.
 
     Raises
     ------
@@ -35,16 +36,17 @@ def save_picture(looked: Looked, path: Path) -> None:
     write_whole(path, figure_bytes(figure_of(looked), kind))
 
 
-def figure_of(looked: Looked) -> Figure:
+def figure_of(looked: Sequence[Looked]) -> Figure:
     """Return the picture as a figure."""
     from matplotlib.figure import Figure
 
-    n = len(looked.sensors)
+    rows = [(one, sensor) for one in looked for sensor in one.sensors]
+    n = len(rows)
     figure = Figure(figsize=(12.0, 3.9 * n + 0.4), layout="constrained")
-    figure.suptitle(f"{looked.path.name}: {looked.format}", fontsize=10)
+    figure.suptitle(f"{looked[0].path.name}: {looked[0].format}", fontsize=10)
     axes = figure.subplots(n, 3, squeeze=False)
-    for row, sensor in zip(axes, looked.sensors, strict=True):
-        _frame(row[0], sensor)
+    for row, (one, sensor) in zip(axes, rows, strict=True):
+        _frame(row[0], sensor, one.chosen or sensor.label)
         _peaks(row[1], sensor)
         _load(row[2], sensor)
     return figure
@@ -55,10 +57,10 @@ def _unit(sensor: Sensor) -> str:
     return _UNITS.get(quantity, quantity)
 
 
-def _frame(axes: Axes, sensor: Sensor) -> None:
+def _frame(axes: Axes, sensor: Sensor, label: str) -> None:
     frame = fullest(sensor)
     _grid(axes, sensor, np.asarray(frame.image.filled(np.nan)))
-    axes.set_title(f"{sensor.label} frame {frame.index}, the fullest".strip(), fontsize=9)
+    axes.set_title(f"{label} frame {frame.index}, the fullest".strip(), fontsize=9)
 
 
 def _peaks(axes: Axes, sensor: Sensor) -> None:

@@ -51,7 +51,7 @@ def data_of(looked: Looked) -> dict[str, Any]:
 
 def lines_of(looked: Looked) -> Iterator[str]:
     """Yield what was found in lines for people."""
-    yield str(looked.path)
+    yield f"{looked.path}{f', sensor {looked.chosen}' if looked.chosen else ''}"
     yield _line("format", looked.format + (f" ({looked.why})" if looked.why else ""))
     for what in looked.assumed:
         yield _line("assumed", what.replace("whose pitch is assumed to be 1 cm", "a pitch of 1 cm"))

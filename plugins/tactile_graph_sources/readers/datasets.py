@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -10,13 +11,18 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.layout import unit_of
-from tactile_graph_sources.readers.tables.names import named
+from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described
 
 MOST_VALUES = 500_000_000
+_NUMBERED = re.compile(r"(.*?)(\d{1,9})(/\D*)?")
+_FRAME_WORDS = {w for w, role in ROLES.items() if role == "frame" and len(w) > 2}
+_FRAME_WORDS |= {"arr", "img", "matrix", "map", "t"}
+"""What numbered matrices are called that are frames, not sensors."""
 
 
 class Held(NamedTuple):
@@ -33,7 +39,6 @@ class Held(NamedTuple):
     times : ndarray, shape (n,), optional
         None where there are none.
     times_name : str
-    origin_cm : (float, float), optional
     """
 
     values: NDArray[Any]
@@ -41,7 +46,6 @@ class Held(NamedTuple):
     said: Described
     times: NDArray[Any] | None = None
     times_name: str = ""
-    origin_cm: tuple[float, float] | None = None
 
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
@@ -59,7 +63,6 @@ def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
         yield reading.frame(
             matrix,
             pitch_cm=said.pitch_cm,
-            origin_cm=held.origin_cm,
             quantity=said.quantity,
             factor=said.factor,
             time_s=float(times[k]) * factor if times is not None and timed else None,
@@ -83,7 +86,7 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
         If there is none, or several could be meant, or the one is too large.
     """
     where, asked = str(reading.path), reading.told.sensor
-    stacks = [n for n, s in shapes.items() if len(s) in (2, 3) and min(s) > 1]
+    stacks = [n for n, s in shapes.items() if is_stack(s)]
     listed = one_of(f"{n} {s}" for n, s in shapes.items())
     if asked:
         if asked not in shapes:
@@ -93,11 +96,38 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
     elif not stacks:
         raise DataError(where, f"no matrix or stack of matrices in it; its {word}s: {listed}")
     elif len(stacks) > 1:
-        raise DataError(where, f"several {word}s could be it ({listed}); name one with sensor")
+        told = f"several {word}s could be it ({listed}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
     name = asked or stacks[0]
     if int(np.prod(shapes[name])) > MOST_VALUES:
         raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")
     return name
+
+
+def is_stack(shape: tuple[int, ...]) -> bool:
+    """Return whether an array of such a shape may be a matrix or matrices, of one channel each."""
+    axes = [n for n in shape[1:] if n != 1] if len(shape) > 3 else shape
+    if len(shape) > 3:
+        return len(axes) == 2
+    return len(shape) in (2, 3) and min(shape) > 1
+
+
+def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
+    """Return the names of matrices that are the frames of one recording, in their order.
+
+    They are alike but for a number, as ``frame_07`` or ``arr_7`` is, and of one shape; none where
+    anything else could be a stack as well.
+    """
+    found = {n: _NUMBERED.fullmatch(n) for n, s in shapes.items() if is_stack(s)}
+    stems = {(m[1].lower(), m[3]) if m else None for m in found.values()}
+    one_shape = len({shapes[n] for n in found}) == 1
+    if len(found) < 2 or len(stems) > 1 or None in stems or not one_shape:
+        return []
+    stem = next((m[1].lower() for m in found.values() if m), "")
+    word = re.split(r"[\W_]+", stem.strip("/_-. "))[-1].removesuffix("s")
+    if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
+        return []
+    return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)
 
 
 def time_among(names: Iterable[str]) -> str:

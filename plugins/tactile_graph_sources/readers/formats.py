@@ -23,6 +23,7 @@ from tactile_graph_sources.readers import (
     xsensor,
 )
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.others import remedy_for, remedy_without_header
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables import flat, long, stacked
 
@@ -75,7 +76,8 @@ def reader_of(head: Head) -> Reader:
     """
     reader = next((r for r in READERS if r.recognises(head)), None)
     if reader is None:
+        formats = f"{remedy_without_header(head)}formats that are read: {known()}"
         raise DataError(
-            str(head.path), f"no recording: {head.found()}; formats that are read: {known()}"
+            str(head.path), f"no recording: {head.found()}; {remedy_for(head) or formats}"
         )
     return reader

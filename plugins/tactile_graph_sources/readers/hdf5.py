@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
@@ -10,21 +10,19 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, time_among
+from tactile_graph_sources.readers import node_images
+from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, numbered, time_among
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.matlab import frames_first
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.tables.preamble import Described, described
+from tactile_graph_sources.readers.tables.preamble import described
 
 NAME = "HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)"
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
-NODE_IMAGES = "tactile-graph node images"
-"""What the files say that ``tactile-graph run -o images.h5`` writes."""
 LARGE, MOST_TIMES = 64_000_000, 200
 """Bytes that may be unpacked however few are written, and how many times these."""
 MOST_ITEMS, DEEPEST = 2_000, 40
-_OWN = {"kind", "quantity", "pitch_cm", "origin_cm"}
 
 
 def recognises(head: Head) -> bool:
@@ -42,7 +40,15 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If h5py is not installed, the file is damaged, or no stack or several could be meant.
     """
-    held = _held(reading, _h5py(reading))
+    h5py = _h5py(reading)
+    if _is_of_nodes(reading, h5py):
+        with h5py.File(reading.path, "r") as file:
+            names: list[str] = []
+            file.visit(names.append)
+            nodes = [n for n in names if f"{n}/values" in names]
+            yield from node_images.read_node(reading, file, nodes)
+        return
+    held = _held(reading, h5py)
     if reading.head.raw.startswith(_MATLAB):
         # It counts the other way round.
         held = held._replace(values=frames_first(reading, held.values.T, held.what, held.times))
@@ -61,16 +67,27 @@ def _h5py(reading: Reading) -> ModuleType:
     return module
 
 
+def _is_of_nodes(reading: Reading, h5py: ModuleType) -> bool:
+    """Return whether a run wrote the file; one that is damaged is told by who reads it."""
+    try:
+        with h5py.File(reading.path, "r") as file:
+            return bool(file.attrs.get("format") == node_images.FORMAT)
+    except Exception:  # HDF5 has a dozen kinds of errors over damaged files
+        return False
+
+
 def _held(reading: Reading, h5py: ModuleType) -> Held:
     where = str(reading.path)
     try:
         with h5py.File(reading.path, "r") as file:
             sets = _datasets(where, h5py, file)
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
-            name = chosen(reading, {n: d.shape for n, d in numbers.items()}, "dataset")
-            for one in (name, time_among(numbers)):
+            shapes = {n: d.shape for n, d in numbers.items()}
+            frames = [] if reading.told.sensor else numbered(shapes)
+            name = frames[0] if frames else chosen(reading, shapes, "dataset")
+            for one in (*(frames or [name]), time_among(numbers)):
                 _check_size(where, one, numbers.get(one))
-            values = numbers[name][()]
+            values = np.stack([numbers[n][()] for n in frames]) if frames else numbers[name][()]
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
             attributes = {**file.attrs, **numbers[name].attrs}
@@ -79,12 +96,9 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
         raise
     except Exception as error:  # HDF5 has a dozen kinds of errors over damaged files
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
-    said, origin_cm = described(lines), None
-    if attributes.get("format") == NODE_IMAGES and attributes.keys() >= _OWN:
-        said, origin_cm = _place(attributes)
-        if attributes["kind"] == "mask":
-            values = np.where(values > 1, np.nan, values)  # no value in that frame
-    return Held(values, f"dataset {name!r}", said, times, time, origin_cm)
+    said = described(lines)
+    what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
+    return Held(values, what, said, times, time)
 
 
 def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:
@@ -122,10 +136,3 @@ def _check_size(where: str, name: str, dataset: Any) -> None:
             f"dataset {name!r} unpacks to {bytes_ / 1e6:,.0f} MB, of which {packed / 1e6:,.1f} are "
             f"written; allowed are {MOST_TIMES} times that beyond {LARGE / 1e6:g} MB",
         )
-
-
-def _place(attributes: Mapping[str, Any]) -> tuple[Described, tuple[float, float]]:
-    """Return what a stack says of itself that a run has written."""
-    (x, y), (left, top) = attributes["pitch_cm"], attributes["origin_cm"]
-    said = Described(pitch_cm=(float(x), float(y)), quantity=str(attributes["quantity"]))
-    return said, (float(left), float(top))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tactile_graph_sources.readers.told import Told
 
 if TYPE_CHECKING:
+    from tactile_graph_sources.readers.tables.labelled import Labels
     from tactile_graph_sources.readers.tables.layout import Layout
 
 SAMPLE = 1 << 20
@@ -54,7 +55,16 @@ class Head:
         """How the numbers lie in a plain table; None where it is no table."""
         from tactile_graph_sources.readers.tables.decide import layout_of
 
-        return layout_of(self.lines, self.told, self.whole)
+        labels = self.labels
+        lines = self.lines if labels is None else [labels.plain(line) for line in self.lines]
+        return layout_of(lines, self.told, self.whole, () if labels is None else labels.names)
+
+    @cached_property
+    def labels(self) -> Labels | None:
+        """How lines of a text are written that hold names beside their numbers."""
+        from tactile_graph_sources.readers.tables.labelled import labels_of
+
+        return labels_of(self.lines)
 
     def first(self, n: int = 60) -> list[str]:
         """Return the first ``n`` lines that are not blank."""

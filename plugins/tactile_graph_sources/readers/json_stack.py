@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +16,7 @@ from tactile_graph.errors import DataError, one_of
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.dialect import clock_s
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import unit_of
 from tactile_graph_sources.readers.tables.names import ROLES, named
@@ -22,6 +25,7 @@ from tactile_graph_sources.readers.tables.preamble import Described, described
 NAME = "JSON of frames"
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
+_NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
 
@@ -169,24 +173,59 @@ def entries_of(where: str, content: Any) -> Entries:
         return Entries(content, None, "", Described(), what)
     if len(content[0]) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
-    key = _only(where, [k for k, v in content[0].items() if isinstance(v, list)])
-    time = next((k for k in content[0] if _is_time(k)), "")
-    objects = [e if isinstance(e, dict) else {} for e in content]
+    objects = [_with_rows(_flattened(e)) if isinstance(e, dict) else {} for e in content]
+    first = objects[0]
+    lists = [k for k, v in first.items() if isinstance(v, list)]
+    if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
+        raise DataError(
+            where,
+            "its JSON holds an object for each cell; save it as a table, in Python: "
+            f"pandas.read_json('{Path(where).name}').to_csv('out.csv', index=False)",
+        )
+    key = _only(where, lists)
+    time = next((k for k in first if _is_time(k)), "")
     times = [e.get(time) for e in objects] if time else None
-    said = _said(content[0])
+    said = _said(first)
     return Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
+
+
+def _flattened(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object with what objects within it hold beside its own, their names in front."""
+    flat: dict[str, Any] = {}
+    for key, value in entry.items():
+        inner = value if isinstance(value, dict) else {}
+        flat |= {f"{key}.{k}": v for k, v in inner.items()} if inner else {key: value}
+    return flat
+
+
+def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object in which lists that are numbered and alike are one: ``r0``, ``r1``, …."""
+    found = {
+        k: m for k, v in entry.items() if isinstance(v, list) and (m := _NUMBERED.fullmatch(k))
+    }
+    stems = {m[1].lower() for m in found.values()}
+    shapes = {a.shape if (a := _array(entry[k])) is not None else None for k in found}
+    if len(found) < 2 or len(stems) > 1 or None in shapes or len(shapes) > 1:
+        return entry
+    stem = stems.pop()
+    if stem and ROLES.get(stem.strip("_- ")) not in ("row", "frame"):
+        return entry
+    names = sorted(found, key=lambda k: int(found[k][2]))
+    rest = {k: v for k, v in entry.items() if k not in found}
+    return {**rest, f"{names[0]} to {names[-1]}": [entry[k] for k in names]}
 
 
 def _of_object(where: str, content: dict[str, Any]) -> Entries:
     if len(content) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
+    content = _with_rows(_flattened(content))
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)
     deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
     key = _only(where, deep or lists)
     inner = entries_of(where, lists[key])
-    said = _said(content)
+    said = _said(content) if _said(content) != Described() else inner.said
     if inner.times is None and times is not None and len(times) == len(inner.values):
         return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
     return inner._replace(said=said, why=f"{key!r}: {inner.why}")
@@ -206,11 +245,18 @@ def _only(where: str, keys: Any) -> str:
 
 
 def _is_time(key: str) -> bool:
+    key = key.rpartition(".")[2]
     return "time" in named((key, "")).roles or ROLES.get(key.lower()) == "time"
 
 
 def _said(content: dict[str, Any]) -> Described:
-    return described(f"{k}: {v}" for k, v in content.items() if isinstance(v, str | int | float))
+    if {"width", "height"} <= content.keys():
+        content = {**content, "columns": content["width"], "rows": content["height"]}
+    return described(
+        f"{k.rpartition('.')[2]}: {v}"
+        for k, v in content.items()
+        if isinstance(v, str | int | float)
+    )
 
 
 def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
@@ -225,7 +271,7 @@ def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
 def _time_factor(reading: Reading, entries: Entries) -> float:
     if not entries.times:
         return 1.0
-    factor = named((entries.time_name, "")).time_factor
+    factor = named((entries.time_name.rpartition(".")[2], "")).time_factor
     if factor is not None:
         return factor
     times = [t for t in entries.times if isinstance(t, int | float) and abs(t) < 1e300]
@@ -238,6 +284,10 @@ def _time(entries: Entries, k: int, factor: float) -> float | None:
     if not entries.times:
         return None if entries.said.frame_s is None else k * entries.said.frame_s
     time = entries.times[k]
+    if isinstance(time, str):
+        first = next((c for t in entries.times if (c := clock_s(str(t))) is not None), None)
+        at = clock_s(time)
+        return None if at is None or first is None else round(at - first, 6)
     if isinstance(time, bool) or not isinstance(time, int | float):
         return None
     time_s = float(time) * factor if abs(time) < 1e300 else np.inf

@@ -13,6 +13,7 @@ from typing import Any
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.cdr import decoder_of
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.json_stack import Entries, entries_of, frames_of
 from tactile_graph_sources.readers.mcap_chunks import check_chunks
@@ -48,7 +49,9 @@ def read(reading: Reading) -> Iterator[Frame]:
         raise DataError(where, f"no readable topic {asked!r}, there are {listed}{near}")
     if len(fit) != 1:
         told = f"several topics could be it ({one_of(fit)}); name one with sensor"
-        raise DataError(where, told if fit else f"no topic that is read; its topics: {listed}")
+        if fit:
+            raise SeveralSensorsError(where, told, fit)
+        raise DataError(where, f"no topic that is read; its topics: {listed}")
     ((name, topic),) = fit.items()
     reading.sensors[name] = None
     for what in topic.damage:

@@ -25,7 +25,10 @@ def _words(error: Exception) -> str:
     if "mmap length" in text:
         return "the file is cut off: it holds less than its header says"
     if "Python objects" in text:
-        return "it holds Python objects, not numbers"
+        return (
+            "it holds Python objects, not numbers; save frames of one shape, in Python: "
+            "numpy.save('out.npy', numpy.stack(frames))"
+        )
     return text
 
 
@@ -42,6 +45,14 @@ def read(reading: Reading) -> Iterator[Frame]:
         array = np.load(reading.path, mmap_mode="r", allow_pickle=False)
     except Exception as error:  # NumPy raises a dozen kinds over a damaged header
         raise DataError(str(reading.path), f"its array cannot be read: {_words(error)}") from error
+    if array.dtype.names:
+        name = next((n for n in array.dtype.names if array.dtype[n].shape), array.dtype.names[0])
+        fields = ", ".join(array.dtype.names)
+        raise DataError(
+            str(reading.path),
+            f"its array has fields ({fields}); save the one with the cells alone: "
+            f"numpy.save('out.npy', array[{name!r}])",
+        )
     values = stack_of(reading, array, "its array")
     reading.report.expect(len(values))
     for matrix in values:

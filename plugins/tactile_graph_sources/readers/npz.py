@@ -14,9 +14,19 @@ from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import QUANTITIES, Frame
 from tactile_graph_sources.readers import capcontact
 from tactile_graph_sources.readers.archive import opened
+from tactile_graph_sources.readers.choice import SeveralSensorsError
+from tactile_graph_sources.readers.datasets import (
+    Held,
+    frames_of,
+    is_stack,
+    numbered,
+    time_among,
+)
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.others import document_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
+from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.truth import Truth, truth_from_json
 
 MOST_MEMBERS = 1000
@@ -46,10 +56,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         elif "values" in arrays.names:
             yield from _ours(reading, arrays)
         else:
-            values = _stack(reading, arrays, _only(reading, arrays))
-            reading.report.expect(len(values))
-            for matrix in values:
-                yield reading.frame(matrix)
+            yield from frames_of(reading, _foreign(reading, arrays))
 
 
 class Archive:
@@ -61,6 +68,9 @@ class Archive:
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise DataError(where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
+        document = document_in([m.filename for m in members])
+        if document:
+            raise DataError(where, document)
         arrays = [m for m in members if m.filename.endswith(".npy")]
         self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
 
@@ -127,32 +137,47 @@ class Archive:
         return array
 
 
-def _stack(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
-    """Return an array as a stack of matrices; what it is by its head alone is looked at first."""
+def _checked(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
+    """Return an array of which its head alone, looked at first, says that it may be a stack."""
     what = f"array {name!r}"
     shape, dtype = arrays.outline(name)
     try:
         stack_of(reading, np.broadcast_to(np.zeros((), dtype), shape), what)
     except ValueError as error:  # a shape that no array has
         raise DataError(arrays.where, f"{what} cannot be read: {error}") from error
-    return stack_of(reading, arrays.load(name), what)
+    return arrays.load(name)
 
 
-def _only(reading: Reading, arrays: Archive) -> str:
+def _foreign(reading: Reading, arrays: Archive) -> Held:
+    """Return the only stack of another's archive, its times beside it."""
+    values, what = _only(reading, arrays)
+    outlines = {name: arrays.outline(name) for name in arrays.names}
+    stamps = {
+        n for n, (s, t) in outlines.items() if s[:1] == values.shape[:1] == s and t.kind in "iuf"
+    }
+    time = time_among(stamps)
+    return Held(values, what, Described(), arrays.load(time) if time else None, time)
+
+
+def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     where, asked = str(reading.path), reading.told.sensor
     if asked:
         if asked not in arrays.names:
             near = did_you_mean(asked, arrays.names)
             raise DataError(where, f"no array {asked!r}, there are {one_of(arrays.names)}{near}")
         reading.sensors[asked] = None
-        return asked
+        return _checked(reading, arrays, asked), f"array {asked!r}"
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    stacks = [n for n, (s, t) in outlines.items() if len(s) in (2, 3) and t.kind in "buif"]
+    shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
+    stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
+    if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
+        return np.stack([arrays.load(n) for n in frames]), f"arrays {frames[0]!r} to {frames[-1]!r}"
     if len(stacks) == 1:
-        return stacks[0]
+        return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}"
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
-        raise DataError(where, f"several arrays could be it ({shapes}); name one with sensor")
+        told = f"several arrays could be it ({shapes}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
@@ -170,7 +195,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
 
 def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
-    values = _stack(reading, arrays, "values")
+    values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
     n = len(values)
     valid = arrays.optional("valid", values.shape, "b")
     times = arrays.optional("time_s", (n,), "fiu")

@@ -119,13 +119,13 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
     import imageio.v3 as iio
 
     where = f"{reading.path}:{name}" if name else str(reading.path)
-    n = 0
+    n, plugin = 0, _plugin(content)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
             _check_size(where, content)
-            for page in iio.imiter(content, plugin=_plugin(content)):
-                for matrix in _matrices(np.asarray(page)):
+            for page in iio.imiter(content, plugin=plugin):
+                for matrix in _matrices(np.asarray(page), plugin):
                     yield _grey(where, matrix)
                     n += 1
         except DataError:
@@ -172,9 +172,13 @@ def _plugin(content: bytes) -> str:
     return "tifffile"
 
 
-def _matrices(page: NDArray[Any]) -> Iterator[NDArray[Any]]:
-    """Yield the pictures of what may be a stack of pages that TIFF holds together."""
-    if page.ndim == 4 or (page.ndim == 3 and page.shape[2] not in (3, 4)):
+def _matrices(page: NDArray[Any], plugin: str) -> Iterator[NDArray[Any]]:
+    """Yield the pictures of what may be a stack of pages that TIFF holds together.
+
+    In other pictures a third axis is that of colours, or of grey and how much shines through.
+    """
+    stacked = page.ndim == 3 and page.shape[2] not in (3, 4) and plugin == "tifffile"
+    if page.ndim == 4 or stacked:
         yield from page
     else:
         yield page

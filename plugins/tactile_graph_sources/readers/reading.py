@@ -49,10 +49,15 @@ class Reading:
         self._fresh: set[str] = set()
 
     def text(self) -> Iterator[tuple[int, str]]:
-        """Yield line numbers from 1 and lines without their ends, whatever ends them."""
+        """Yield line numbers from 1 and lines without their ends, whatever ends them.
+
+        Names that stand before each number or row of numbers are left out.
+        """
+        labels = self.head.labels
         with self.path.open(encoding=self.head.encoding, errors="backslashreplace") as file:
             for number, line in enumerate(file, 1):
-                yield number, line.rstrip("\n")
+                text = line.rstrip("\n")
+                yield number, text if labels is None else labels.plain(text)
 
     def count_bytes(self, needle: bytes) -> int:
         """Return how often ``needle`` stands in the file, to say how many frames to expect."""

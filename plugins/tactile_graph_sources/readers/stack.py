@@ -10,9 +10,15 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.evidence import row_lengths
 
-SMALLEST_SURE_SQUARE = 36
+SMALLEST_SURE_SQUARE, LEAST_FRAMED = 36, 16
 LONGEST_UNTOLD = 4
+MOST_CHANNELS = 4
+FEWEST_ALONG, MOST_ALONG = 4, 100
+ALIKE, UNLIKE = 2.5, 4.0
+"""Times the difference of neighbours along one axis that those along another are, at most where
+they are axes of one kind, and at least where not."""
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -24,7 +30,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     ----------
     reading : Reading
         Its settings ``rows`` and ``columns`` decide where the axes could be read two ways: an
-        (N, rows x columns) array is N frames and a (rows, columns, N) one is turned.
+        (N, rows x columns) array is N frames, in the ``order`` that is told, and one of
+        (rows x columns, N) or (rows, columns, N) is turned.
     array : ndarray
         Numbers on 2 or 3 axes.
     name : str
@@ -39,9 +46,15 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.dtype.kind not in "buif":
         raise DataError(where, f"{name} holds {array.dtype}, not real numbers")
     rows, columns = reading.told.rows, reading.told.columns
+    if array.ndim > 3:
+        array = without_single_axes(array)
     if rows is not None and columns is not None:
-        if array.ndim == 2 and array.shape != (rows, columns) and array.shape[1] == rows * columns:
-            array = array.reshape(-1, rows, columns)
+        n_cells = rows * columns
+        if array.ndim == 2 and array.shape != (rows, columns) and n_cells in array.shape:
+            lines = array if array.shape[1] == n_cells else array.T
+            by_column = reading.told.order == "columns"
+            array = lines.reshape(-1, *((columns, rows) if by_column else (rows, columns)))
+            array = array.transpose(0, 2, 1) if by_column else array
         elif array.ndim == 3 and array.shape[:2] == (rows, columns) != array.shape[1:]:
             array = np.moveaxis(array, -1, 0)
     if array.ndim in (2, 3) and 0 in array.shape:
@@ -49,7 +62,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     if array.ndim not in (2, 3):
         raise DataError(
             where,
-            f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read",
+            f"{name} has shape {array.shape}; a matrix or matrices along the first axis are read: "
+            f"save it as {_as_matrices(array.shape)}",
         )
     if rows is None or columns is None:
         _refuse_two_readings(where, array, name)
@@ -60,6 +74,37 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     return array
 
 
+def _as_matrices(shape: tuple[int, ...]) -> str:
+    """Return how an array of one axis, or of more than three, becomes matrices."""
+    if len(shape) < 4:
+        return "array.reshape(-1, rows, columns)"
+    if shape[-1] <= MOST_CHANNELS:
+        return "array[..., 0], or another of its last axis"
+    return f"array.reshape(-1, {shape[-2]}, {shape[-1]}), or each sensor alone"
+
+
+def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array without the axes of one channel: (N, rows, columns, 1), (N, 1, rows, …)."""
+    extra = [k for k in range(1, array.ndim) if array.shape[k] == 1]
+    return array.squeeze(tuple(extra[: array.ndim - 3])) if array.ndim > 3 and extra else array
+
+
+def _lies_last(array: NDArray[Any]) -> bool:
+    """Return whether the frames may lie along the last axis, by how neighbours differ.
+
+    Those along rows and along columns differ alike, those along time more or less than they.
+    """
+    if min(array.shape) < FEWEST_ALONG:
+        return False
+    values = np.nan_to_num(array[:MOST_ALONG, :MOST_ALONG, :MOST_ALONG].astype(np.float64))
+    values = np.clip(values, -1e30, 1e30)
+    first, middle, last = (float(np.mean(np.abs(np.diff(values, axis=k)))) for k in range(3))
+    if min(first, middle) <= 0.0:
+        return False
+    alike = max(first, middle) < ALIKE * min(first, middle)
+    return alike and (last > UNLIKE * max(first, middle) or last < min(first, middle) / UNLIKE)
+
+
 def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
     """Refuse an array whose axes another reading fits as well or better; it is named."""
     shape = array.shape
@@ -68,6 +113,15 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
         side = isqrt(cells)
         square = side * side == cells and lines not in (1, cells)
         long = max(shape) > LONGEST_UNTOLD * min(shape)
+        for what, in_a_row in (("row", array), ("column", array.T)):
+            lengths = row_lengths(in_a_row[:MOST_ALONG].astype(np.float64)) if lines > 1 else []
+            if lengths and in_a_row.shape[1] >= LEAST_FRAMED:
+                (n, m), each = lengths[0], in_a_row.shape[0]
+                raise DataError(
+                    where,
+                    f"{name} has shape {shape}: one matrix, or {each} frames of {n} x {m} with "
+                    f"their cells in a {what}, as they lie together; give rows and columns",
+                )
         if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
             as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
             raise DataError(
@@ -84,6 +138,7 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
             f"{columns} colours; give rows and columns, or save one colour",
         )
     last_is_time = (n == rows != columns) or columns > LAST_IS_TIME * max(n, rows)
+    last_is_time = last_is_time or _lies_last(array)
     if last_is_time and min(n, rows) > 1:
         raise DataError(
             where,

@@ -71,6 +71,12 @@ def length_unit(name: str) -> float | None:
     return _CENTIMETRES.get(unit)
 
 
+def without_length_unit(name: str) -> tuple[str, str]:
+    """Return a name and the unit of length that it ends with: ``pitch mm``; empty where none."""
+    stem, _, unit = name.rpartition(" ")
+    return (stem, unit) if stem and unit in _CENTIMETRES else (name, "")
+
+
 def length_cm(text: str, unit: str = "") -> float | None:
     """Return a length in cm, as ``"5.08 mm"`` gives 0.508; None where it is no positive length.
 

@@ -50,6 +50,8 @@ def complete_file(ctx: click.Context, param: click.Parameter, incomplete: str) -
 def check(files: tuple[str, ...], kind: str, watched: bool, repair: bool) -> None:
     """Report all that is wrong with files of pipelines, pads, presets or scenes, and with stores.
 
+    Of a pipeline the pad, scene, preset or recording that its source names is opened too.
+
     Installed ones go by name; without any, all that are installed are checked.
     """
     from tactile_graph.cli.terminal import console
@@ -125,11 +127,16 @@ def _right(target: Target) -> Text:
     from rich.text import Text
 
     from tactile_graph.api.pipeline import load
+    from tactile_graph.cli.source_files import problems_of_source
 
     found = registry.installed()
     kind = target.kind or kind_of(found, target.name)
     if kind == PIPELINE:
-        return _right_pipeline(load(target.name, found))
+        pipeline = load(target.name, found)
+        problems = problems_of_source(found, pipeline.source) if pipeline.source else []
+        if problems:
+            raise PipelineError(problems)
+        return _right_pipeline(pipeline)
     known = file_kind(found, kind)
     told = known.tell(known.read(target.name))
     return Text.assemble((f"{target.name}: right", "bold green"), f"  {kind}: {told}")

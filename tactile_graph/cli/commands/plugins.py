@@ -7,18 +7,36 @@ from typing import Any
 
 import click
 
+from tactile_graph.cli.endings import NOT_DONE
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.mistakes import near_groups
 
 OWN = "tactile-graph"
+EVERY = "-"
+"""Stands for no name."""
 NARROW = 80
 """Columns of a terminal below which what is offered goes before how long it took to import."""
 
 
-@click.command()
-def plugins() -> None:
+@click.command(epilog="Exit codes of --check: 0 all is right, 2 something is not.")
+@click.option(
+    "--check", "checked", metavar="[NAME]", is_flag=False, flag_value=EVERY, default=None,
+    help="Import all that a plugin offers, try its steps on some thirty frames from ordinary to "
+    "absurd, and tell what is wrong, a line each. Without a name, of every plugin of others.",
+)  # fmt: skip
+def plugins(checked: str | None) -> None:
     """List the plugins: package, version, import time, what they offer, what is wrong."""
+    if checked is not None:
+        from tactile_graph.cli.plugin_check import show_checked
+
+        if not show_checked(registry.installed(), "" if checked == EVERY else checked):
+            click.get_current_context().exit(NOT_DONE)
+        return
+    _list()
+
+
+def _list() -> None:
     from rich import box
     from rich.table import Table
     from rich.text import Text

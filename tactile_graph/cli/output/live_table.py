@@ -96,6 +96,7 @@ class LiveTable:
         known = frame.truth is not None
         self.blocks = [_block(o, errors=known and bool(o.errors)) for o in outputs]
         self.hidden = self._fit()
+        self._failed: dict[str, tuple[str, int]] = {}
         self._head()
 
     def _fit(self) -> list[Column]:
@@ -133,7 +134,7 @@ class LiveTable:
             line.append(set_cell_size(_cut(name, _width(cells)), _width(cells)), style=style)
 
     def row(self, result: Result) -> None:
-        """Print a frame's row; where an output has no value, why."""
+        """Print a frame's row; where an output has no value, why: the same failure in full once."""
         frame = result.frame
         lead = {"frame": frame.index, "time_s": frame.time_s, "label": frame.label}
         line = Text(GAP.join(c.text(lead[c.column.key]) for c in self.lead))
@@ -143,7 +144,9 @@ class LiveTable:
             if outcome.__class__ in NO_VALUE:
                 last = i == len(self.blocks) - 1
                 room = self.console.width - cell_len(line.plain) if last else block.width
-                line.append(*_reason(outcome, room, 0 if last else block.width))
+                text = self._why(block.output.output, outcome, frame.index)
+                text = _cut(text, room).ljust(0 if last else block.width)
+                line.append(text, style="red" if isinstance(outcome, Failed) else "yellow")
             else:
                 values = values_of(result, block.output)
                 for j, cell in enumerate(block.all):
@@ -152,15 +155,20 @@ class LiveTable:
                     line.append(cell.text(values.get(cell.column.key)), style=style)
         self._print(line)
 
+    def _why(self, output: str, outcome: Any, frame: int) -> str:
+        reason = " ".join(outcome.reason.split())
+        if not isinstance(outcome, Failed):
+            return f"skipped: {reason}"
+        told, first = self._failed.setdefault(output, (reason, frame))
+        if told != reason:
+            self._failed[output] = (reason, frame)
+        elif first != frame:
+            reason = f"as in frame {first}"
+        return f"failed: {reason}"
+
     def _print(self, line: Text) -> None:
         line.rstrip()
         self.console.print(line, no_wrap=True, overflow="ignore", crop=False)
-
-
-def _reason(outcome: Any, room: int, width: int) -> tuple[str, str]:
-    failed = isinstance(outcome, Failed)
-    text = f"{'failed' if failed else 'skipped'}: {' '.join(outcome.reason.split())}"
-    return _cut(text, room).ljust(width), "red" if failed else "yellow"
 
 
 def _block(output: OutputColumns, errors: bool) -> _Block:

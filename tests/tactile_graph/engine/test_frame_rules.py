@@ -31,7 +31,8 @@ def level(
 def finer(
     mask: Mask, *, factor: Annotated[int, Ge(1)] = 2
 ) -> Annotated[Mask, Grid.like("mask", finer_by="factor")]:
-    return Mask(mask.values.repeat(factor, 0).repeat(factor, 1))
+    x_cm, y_cm = mask.pitch_cm
+    return Mask(mask.values.repeat(factor, 0).repeat(factor, 1), (x_cm / factor, y_cm / factor))
 
 
 def sixteen(image: Annotated[Image, Grid(rows=16, columns=16)]) -> int:

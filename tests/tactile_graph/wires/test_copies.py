@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from helpers_graphs import registry
-from tactile_graph import Circle, Frame, Image, Mask, load, loads
+from tactile_graph import Circle, Frame, Image, Mask, Points, load, loads
 from tactile_graph.errors import UsageError
 from tactile_graph.wires.frame import TrueObject
 
@@ -42,6 +42,13 @@ def test_a_mask_is_the_same_and_frozen(way: Callable[[Any], Any]) -> None:
     assert (again.values == mask.values).all()
     assert (again.count, again.pitch_cm) == (3, (1.3, 1.3))
     assert not again.values.flags.writeable
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_points_are_the_same_and_frozen(way: Callable[[Any], Any]) -> None:
+    again = way(Points(np.array([[1.0, 2.0], [3.0, 4.0]])))
+    assert again.xy_cm.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    assert not again.xy_cm.flags.writeable
 
 
 @pytest.mark.parametrize("way", WAYS)

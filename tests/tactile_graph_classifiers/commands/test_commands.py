@@ -92,6 +92,45 @@ def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(reco
 
 
 @pytest.mark.slow
+def test_recordings_of_several_presses_are_named_once_each(recordings):
+    learned(recordings)
+    both = (recordings["large"], recordings["strange"])
+    code, text = answer("identify", *both, "--together", "recording")
+    lines = text.splitlines()
+    assert code == 0
+    assert lines[0].split() == [
+        "recording", "presses", "object", "distance", "runner-up", "margin"
+    ]  # fmt: skip
+    assert lines[1].split()[:3] == ["large.npz", "12", "large"]
+    assert lines[2].split()[:3] == ["strange.npz", "12", "unknown"]
+    assert lines[2].endswith("(truly strange)")
+    assert lines[3:] == ["large: 1, unknown: 1", "right: 1 of 2"]
+    code, text = answer("identify", recordings["large"], recordings["large"], "--together", "all")
+    assert text.splitlines()[1].split()[:3] == ["all", "24", "large"]
+    code, text, told = run("identify", both[0], "--together", "all", "--pipeline", "identify")
+    assert (code, text) == (2, "")
+    assert "'mahalanobis' of node 'identity' names each reading by itself" in told
+
+
+@pytest.mark.slow
+def test_presses_of_several_objects_are_not_named_together(recordings):
+    learned(recordings)
+    scene = "scene={in_turn: [[{shape: disc, name: %s, weight_g: 500, radius_cm: 3.8}], []%s]}"
+    source = ("identify", "--source", "simulate", "--together", "recording", "--frames", 6,
+              "--with")  # fmt: skip
+    code, text, told = run(*source, scene % ("small", ""))
+    assert (code, told) == (0, "left out: 3 frames: when touched is false\n")
+    assert text.splitlines()[1].split()[:3] == ["recording", "3", "small"]
+    other = ", [{shape: disc, name: large, weight_g: 2500, radius_cm: 6.9}]"
+    code, text, told = run(*source, scene % ("small", other))
+    assert code == 2
+    assert "--together: recording holds several objects: large, small; name one object" in told
+    code, text, told = run(*source, "scene={objects: []}")
+    assert code == 2
+    assert "the source gave no frame in which an object could be named" in told
+
+
+@pytest.mark.slow
 def test_export_and_import_move_objects_between_databases(recordings):
     learned(recordings)
     assert answer("objects", "--export", "o.yaml")[1] == "o.yaml: 2 objects exported\n"

@@ -128,6 +128,47 @@ def test_a_reading_at_or_below_0_is_borne_where_all_learned_ones_are_above():
     assert not one(reading(-5.0, 0.0)).known
 
 
+@pytest.mark.slow
+def test_several_presses_find_strangers_that_one_does_not():
+    learned, tested = split(many(8, seed=4, n=45), 25)
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    fives = {name: [[measured(row) for row in rows[at : at + 5]] for at in range(0, 20, 5)]
+             for name, rows in tested.items()}  # fmt: skip
+    like = Measurements.replaced  # the like of a known object differs in one feature
+    strange = [[like(press, "f0", press.values[0] + 1.5) for press in five]
+               for some in fives.values() for five in some]  # fmt: skip
+    alone = [not one(press).known for five in strange for press in five]
+    together = [not one.together(five).known for five in strange]
+    assert np.mean(alone) < 0.5
+    assert np.mean(together) > 0.85
+    own = [(one.together(five), name) for name, some in fives.items() for five in some]
+    assert np.mean([found.known for found, _ in own]) > 0.85
+    assert all(found.nearest == name for found, name in own)
+
+
+@pytest.mark.slow
+def test_presses_are_named_by_their_mean_whatever_their_order():
+    learned, tested = split(many(6, seed=5, n=30), 25)
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    presses = [measured(row) for row in tested["object 2"]]
+    found, turned = one.together(presses), one.together(presses[::-1])
+    assert found.n_presses == turned.n_presses == 5
+    assert (found.name, turned.name) == ("object 2", "object 2")
+    assert found.distance == pytest.approx(turned.distance)
+    assert one.together(presses[:1]) == one(presses[0])
+    assert one(presses[0]).n_presses == 1
+
+
+@pytest.mark.slow
+def test_of_more_presses_than_were_learned_from_the_limit_is_that_of_fewer():
+    learned, tested = split(many(6, seed=5, n=40), 8)  # 8 readings: 2 may be left out
+    one = CanonicalDiscriminant(database=export_of(learned, NAMES))
+    presses = [measured(row) for row in tested["object 2"]]
+    two, many_more = one.together(presses[:2]), one.together(presses)
+    assert two.limit == many_more.limit != one(presses[0]).limit
+    assert many_more.name == "object 2"
+
+
 def test_the_order_of_objects_changes_no_answer():
     objects = many(6, seed=9)
     other = dict(reversed(objects.items()))
@@ -203,6 +244,11 @@ def test_scores_are_those_of_the_gaussian_densities():
         assert scores.unlikeliness[0, k] == pytest.approx(wanted)
         beside = (at[k] @ at[k] - off @ off) / (1.0 + 1.0 / 25.0)
         assert scores.beside[0, k] == pytest.approx(beside, abs=1e-6)
+        less = (1.0 / 4.0 + 1.0 / 25.0) / (1.0 + 1.0 / 25.0)  # a mean of four varies so much less
+        assert it(row, 4).squares[0, k] == pytest.approx(square / less)
+        assert it(row, 4).unlikeliness[0, k] == pytest.approx(
+            square / less + np.linalg.slogdet(less * covariance)[1]
+        )
 
 
 def test_runs_of_successive_readings_are_left_out_together():
@@ -210,6 +256,8 @@ def test_runs_of_successive_readings_are_left_out_together():
                      "b": [[1.0, 2.0]]}, ("weight", "area_cm2"))  # fmt: skip
     assert some.runs.tolist() == [*np.repeat(np.arange(10), 2), -1]
     assert len(left_out_squares(some, Manner(0.1, 8, 16.0))) == 20
+    # 20 readings make 6 runs of 3 or 4, and each run one mean of three
+    assert len(left_out_squares(some, Manner(0.1, 8, 16.0), 3)) == 6
 
 
 def test_a_choice_says_how_well_it_did():

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from helpers_classifiers import digital_disc, image_and_mask
 from helpers_modes import held
-from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph_classifiers.measuring.feature_sums import feature_sums
 from tactile_graph_classifiers.measuring.features import NAMES, FeaturesOf
 from tactile_graph_classifiers.measuring.measurements import Measurements
@@ -131,7 +131,7 @@ def test_a_footprint_that_bears_nothing_has_no_weight():
 def test_image_and_mask_of_different_shape_are_refused():
     image, _ = image_and_mask([[1, 1]])
     _, mask = image_and_mask([[1]])
-    with pytest.raises(ValueError, match="the same shape"):
+    with pytest.raises(RuleError, match="the same shape"):
         features(image, mask)
 
 

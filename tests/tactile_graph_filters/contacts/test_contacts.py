@@ -8,7 +8,7 @@ from scipy import ndimage
 
 from helpers_filters import ORIGIN, PITCH, drawn, image_of, masks, random_mask
 from helpers_modes import held
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.contacts import Contact, contacts
 from tactile_graph_filters.contacts.labels import label
@@ -98,7 +98,7 @@ def test_nan_in_a_contact_is_refused():
 
 
 def test_different_shapes_are_refused():
-    with pytest.raises(ValueError, match="must have the same shape"):
+    with pytest.raises(RuleError, match="must have the same shape"):
         contacts(image_of([[1.0]]), drawn("##"))
 
 

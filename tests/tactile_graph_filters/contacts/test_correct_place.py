@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, loads
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.contacts.correct_place import CorrectPlace, PlacedContact
@@ -70,7 +70,7 @@ def test_a_pad_without_a_correction_or_another_image_is_refused(pad: str, tmp_pa
     with pytest.raises(UsageError, match=r"bare.yaml' has no correction of place"):
         CorrectPlace(pad=str(bare))
     step = CorrectPlace(pad=pad)
-    with pytest.raises(ValueError, match="of raw on 12 x 16 elements, got raw on 4 x 4"):
+    with pytest.raises(RuleError, match="of raw on 12 x 16 elements, got raw on 4 x 4"):
         step(Image(np.zeros((4, 4)), (1.0, 1.0), (0.0, 0.0), "raw"), ())
 
 

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers_filters import drawn, image_of
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.contacts.lean_contacts import lean_contacts
@@ -104,5 +105,5 @@ def test_no_contacts_and_contacts_without_load_stay_as_they_are():
 
 def test_an_image_too_small_for_the_contacts_is_refused():
     _, found = contacts_in(finger(17.0, 14.0, 0.0))
-    with pytest.raises(ValueError, match=r"reaches over the image of \(3, 4\)"):
+    with pytest.raises(RuleError, match=r"reaches over the image of \(3, 4\)"):
         lean_contacts(image_of(np.zeros((3, 4))), found)

@@ -1,6 +1,7 @@
 import pytest
 
 from helpers_filters import drawn, image_of, mask_of, random_mask, same_grid
+from tactile_graph.errors import RuleError
 from tactile_graph_filters.images.low_pass import LowPass
 from tactile_graph_filters.morphology.and_compare import and_compare
 
@@ -35,5 +36,5 @@ def test_an_image_is_on_from_the_level_on_and_never_where_invalid():
 
 
 def test_different_shapes_are_refused():
-    with pytest.raises(ValueError, match=r"must have the same shape, got \(1, 2\) and \(2, 1\)"):
+    with pytest.raises(RuleError, match=r"must have the same shape, got \(1, 2\) and \(2, 1\)"):
         and_compare(mask_of([[1, 1]]), mask_of([[1], [1]]))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from helpers_filters import drawn, image_of, mask_of, masks
 from helpers_objects import discs, footprint, frames
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.parting.basins import basins, taps_of
@@ -154,7 +154,7 @@ def test_readings_without_load_split_by_their_cells_alone(value):
 
 
 def test_different_shapes_are_refused():
-    with pytest.raises(ValueError, match="must have the same shape"):
+    with pytest.raises(RuleError, match="must have the same shape"):
         SPLIT(image_of([[1.0]]), drawn("##"))
 
 

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 
 from helpers_filters import drawn, image_of, mask_of, masks
 from helpers_objects import discs, footprint
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph_filters.parting.split_watershed import split_watershed
 
 PAIR = discs(40, 60, (20, 18, 12), (20, 41, 12))
@@ -76,7 +76,7 @@ def test_every_cell_is_in_exactly_one_contact(mask):
 
 
 def test_different_shapes_are_refused():
-    with pytest.raises(ValueError, match="must have the same shape"):
+    with pytest.raises(RuleError, match="must have the same shape"):
         split_watershed(image_of([[1.0]]), drawn("##"))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import DataError, RuleError, UsageError
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.correct_readings import CorrectReadings
 from tactile_graph_filters.thresholds.threshold_learned import ThresholdLearned
@@ -67,9 +67,9 @@ def test_what_came_in_invalid_stays_so(pad: str) -> None:
 
 def test_other_shapes_quantities_and_numbers_are_refused(pad: str) -> None:
     step = CorrectReadings(pad=pad)
-    with pytest.raises(ValueError, match=r"the pad has 4 x 5 elements, got \(3, 3\)"):
+    with pytest.raises(RuleError, match=r"the pad has 4 x 5 elements, got \(3, 3\)"):
         step(image(np.zeros((3, 3))))
-    with pytest.raises(ValueError, match="was learned from volt, got counts"):
+    with pytest.raises(RuleError, match="was learned from volt, got counts"):
         step(image(np.zeros(SHAPE), "counts"))
     values = np.zeros(SHAPE)
     values[2, 3] = np.nan
@@ -84,7 +84,7 @@ def test_the_level_is_the_learned_one(pad: str) -> None:
     values[2, 1:4] = 5.9, 6.0, 13.0
     assert ThresholdLearned(pad=pad)(image(values)).values[2].tolist() == [0, 0, 1, 1, 0]
     assert ThresholdLearned(pad=pad, times=2.0)(image(values)).count == 1
-    with pytest.raises(ValueError, match="was learned from volt, got raw"):
+    with pytest.raises(RuleError, match="was learned from volt, got raw"):
         ThresholdLearned(pad=pad)(image(values, "raw"))
 
 

@@ -49,7 +49,7 @@ def test_invalid_cells_stay_invalid():
 
 
 def test_a_law_reads_nothing_but_siemens():
-    with pytest.raises(ValueError, match="a force law reads siemens, got volt; decouple"):
+    with pytest.raises(RuleError, match="a force law reads siemens, got volt; decouple"):
         Force()(image_of([[1.0]]))
 
 
@@ -131,3 +131,18 @@ def test_loads_below_the_floor_are_put_to_0_as_by_the_reference(grams, floor_g):
         with np.errstate(invalid="ignore"):
             assert which(got, floor_g) == finite
         assert np.array_equal(got, expected, equal_nan=True)
+
+
+def test_cells_beyond_the_calibrated_range_carry_a_notice():
+    pipeline = loads(
+        "pipeline: p\nabout: x\nnodes:\n"
+        "  grams: {step: force, in: frame, with: {polynomial: [0, 100], up_to: 3}}\n"
+        "  load: {step: load, in: grams}\noutputs: [load]\n"
+    )
+    within = Frame.of([[1.0, 2.0], [0.0, 3.0]], quantity="volt")
+    beyond = Frame.of([[1.0, 4.0], [0.0, 3.5]], quantity="volt")
+    broken = Frame.of([[1.0, np.nan], [0.0, 3.0]], quantity="volt")
+    assert pipeline.run(within).notices == {}
+    assert pipeline.run(beyond).notices["grams"].startswith("2 cells read more than the law")
+    assert pipeline.run(beyond)["load"].n_left_out == 2
+    assert pipeline.run(broken).notices == {}

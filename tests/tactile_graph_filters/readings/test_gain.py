@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from helpers_filters import image_of, same_grid
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph_filters.readings.gain import Gain
 
 
@@ -57,5 +57,5 @@ def test_gains_that_make_no_sense_are_refused(settings, words):
 
 
 def test_an_image_of_another_size_is_refused():
-    with pytest.raises(ValueError, match="gains for 3 rows, got an image with 2"):
+    with pytest.raises(RuleError, match="gains for 3 rows, got an image with 2"):
         Gain(rows=[1.0, 1.0, 1.0])(image_of([[1.0], [1.0]]))

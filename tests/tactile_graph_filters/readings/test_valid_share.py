@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.valid_share import valid_share
 
@@ -28,5 +29,5 @@ def test_of_no_cell_the_share_is_whole():
 
 
 def test_another_grid_is_refused():
-    with pytest.raises(ValueError, match="shape"):
+    with pytest.raises(RuleError, match="shape"):
         valid_share(Image(np.zeros((2, 2))), Mask(np.ones((2, 3), bool)))

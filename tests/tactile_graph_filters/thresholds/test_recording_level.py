@@ -9,7 +9,7 @@ import pytest
 
 from helpers_cli import call
 from tactile_graph import load
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import DataError, RuleError, UsageError
 from tactile_graph.wires import Image
 from tactile_graph_filters.thresholds.noise_level import noise_level
 from tactile_graph_filters.thresholds.recording_level import recording_level
@@ -83,7 +83,7 @@ def test_it_belongs_to_auto_and_to_images_of_its_unit(recording: Path) -> None:
     with pytest.raises(ValueError, match="noise_of belongs to level: auto, got level 3"):
         Threshold(level=3, noise_of=recording)
     counts = Image(np.ones((2, 2)), quantity="counts")
-    with pytest.raises(ValueError, match="noise_of is for images in raw, got counts"):
+    with pytest.raises(RuleError, match="noise_of is for images in raw, got counts"):
         Threshold(level="auto", noise_of=recording)(counts)
     volts = Image(np.ones((2, 2)), quantity="volt")
     both = Threshold(level_v=0.5, level="auto", noise_of=recording)

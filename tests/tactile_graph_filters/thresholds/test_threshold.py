@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 import references_filters as references
 from helpers_filters import image_of, same_grid
-from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_filters.thresholds.threshold import Threshold, any_at_least, at_least
 
@@ -123,7 +123,7 @@ def test_of_both_levels_one_is_for_volts_and_one_for_all_else():
 
 
 def test_a_level_in_volts_alone_is_for_volts():
-    with pytest.raises(ValueError, match="level_v is for images in volt, got gram"):
+    with pytest.raises(RuleError, match="level_v is for images in volt, got gram"):
         Threshold(level_v=1.0)(Image(np.ones((1, 2)), quantity="gram"))
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_fitters.circle.even_load import OK, Readings, even_disc
 from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad
@@ -134,11 +134,11 @@ def test_where_no_disc_is_to_be_had_it_says_why():
 
 def test_wrong_images_are_refused():
     values = np.ones((4, 4))
-    with pytest.raises(ValueError, match=r"square cells, got a pitch of 1 by 2 cm"):
+    with pytest.raises(RuleError, match=r"square cells, got a pitch of 1 by 2 cm"):
         FitCircleLoad()(Image(values, (1.0, 2.0), quantity="gram"))
-    with pytest.raises(ValueError, match=r"gap_cm: must be below the pitch of 0\.2 cm, got 0\.3"):
+    with pytest.raises(RuleError, match=r"gap_cm: must be below the pitch of 0\.2 cm, got 0\.3"):
         FitCircleLoad()(Image(values, (0.2, 0.2), quantity="gram"))
-    with pytest.raises(ValueError, match="NaN or infinity"):
+    with pytest.raises(DataError, match="NaN or infinity"):
         FitCircleLoad()(Image(np.full((4, 4), np.nan), quantity="gram"))
 
 

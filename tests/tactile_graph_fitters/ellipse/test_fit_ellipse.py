@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from helpers_rectangles import off_rad, points, seeds, some_ellipse, turned
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Points
-from tactile_graph_fitters.ellipse.fit_ellipse import equations, fit_ellipse
+from tactile_graph_fitters.ellipse.fit_ellipse import equations, fit_ellipse, semi_major_std_cm
 from tactile_graph_fitters.ellipse.fit_ellipse_direct import fit_ellipse_direct
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances, nearest
 
@@ -160,3 +160,37 @@ def test_the_slope_is_that_of_the_squared_distances():
         step[k] = 1e-6
         high, low = (equations.loops(uv, p + s, normal, other) for s in (step, -step))
         assert slope[k] == pytest.approx((high - low) / 4e-6, abs=1e-6)
+
+
+def arc(rng: np.random.Generator, span_rad: float, std_cm: float) -> Points:
+    t = np.linspace(0.0, span_rad, 40)
+    along, across = 5.0 * np.cos(t), 3.0 * np.sin(t)
+    xy = np.column_stack([3.0 + along * 0.8 + across * 0.6, 4.0 - along * 0.6 + across * 0.8])
+    return Points(xy + rng.normal(0.0, std_cm, xy.shape))
+
+
+def test_the_length_scatters_as_its_deviation_says() -> None:
+    rng = np.random.default_rng(5)
+    clouds = [arc(rng, 2 * math.pi, 0.05) for _ in range(60)]
+    found = [fit_ellipse(p) for p in clouds]
+    told = [semi_major_std_cm(f, p.xy_cm) for f, p in zip(found, clouds, strict=True)]
+    assert np.std([f.semi_major_cm for f in found]) == pytest.approx(np.median(told), rel=0.3)
+
+
+def test_an_outline_whose_length_its_strays_leave_open_is_none() -> None:
+    """A broken footprint of 15 x 5 cm: the nearest ellipses were up to 4 m long."""
+    rng = np.random.default_rng(7)
+    longest_cm, refused = 0.0, 0
+    for _ in range(60):
+        xy = rng.uniform((0.0, 0.0), (15.0, 5.0), (30, 2))
+        try:
+            longest_cm = max(longest_cm, 2.0 * fit_ellipse(Points(xy)).semi_major_cm)
+        except Degenerate:
+            refused += 1
+    assert refused < 60
+    assert longest_cm < 60.0
+
+
+def test_a_short_arc_of_an_ellipse_is_one_where_its_points_are_sharp() -> None:
+    found = fit_ellipse(arc(np.random.default_rng(1), 0.6, 0.0))
+    assert found.semi_major_cm == pytest.approx(5.0, rel=1e-6)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_rectangles import covered
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.wires import Image, Mask, Rectangle
 from tactile_graph_fitters.orientation.heavier_side import heavier_side
 
@@ -68,5 +68,5 @@ def test_an_empty_footprint_and_one_without_load_are_refused():
 
 
 def test_image_and_mask_must_be_of_one_grid():
-    with pytest.raises(ValueError, match=r"same shape, got \(4, 4\)"):
+    with pytest.raises(RuleError, match=r"same shape, got \(4, 4\)"):
         heavier_side(Image(np.ones((4, 4))), BLOCK)

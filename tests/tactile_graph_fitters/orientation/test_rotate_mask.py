@@ -79,3 +79,9 @@ def test_it_turns_as_the_reference_does(seed, angle):
         got = which(values, *settings_)
         np.testing.assert_array_equal(got[0], expected[0])
         assert got[1:] == expected[1:]
+
+
+def test_cells_far_from_square_make_no_endless_mask() -> None:
+    mask = Mask(np.ones((4, 4), dtype=np.bool_), (1e-6, 1e6))
+    with pytest.raises(Degenerate, match=r"turned, cells of 1e-06 by 1e\+06 cm would be too many"):
+        rotate_mask(mask, Orientation(0.5, 0.0, 0.0, 1.0, 0.0, False))

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 
 import references_fitters as references
 from helpers_rectangles import covered, off_rad, seeds
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.wires import Image, Mask, Rectangle
 from tactile_graph_fitters.rectangle.fit_rectangle_load import FitRectangleLoad
 from tactile_graph_fitters.rectangle.rectangle_likelihood import OFF, ON, UNKNOWN, cost
@@ -145,7 +145,7 @@ def test_a_footprint_without_load_is_refused_in_words():
 
 
 def test_image_and_mask_must_be_of_one_grid():
-    with pytest.raises(ValueError, match=r"same shape, got \(4, 4\) and \(5, 5\)"):
+    with pytest.raises(RuleError, match=r"same shape, got \(4, 4\) and \(5, 5\)"):
         FitRectangleLoad()(Mask(np.ones((5, 5), bool)), Image(np.ones((4, 4))))
 
 

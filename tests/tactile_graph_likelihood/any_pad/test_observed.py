@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph.errors import Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.observed import (
@@ -100,12 +100,12 @@ def test_elements_have_no_gap_where_the_pitch_is_not_the_pads():
         (
             Image(np.ones((4, 4)), (1.0, 2.0), (0.0, 0.0), "raw"),
             None,
-            ValueError,
+            RuleError,
             "nearly square cells",
         ),
-        (image_of(np.ones((4, 4))), 1.3, ValueError, "gap_cm: must be below the pitch"),
-        (image_of(np.full((4, 4), 1e101)), None, ValueError, "must be finite and at most"),
-        (image_of(np.full((4, 4), np.nan)), None, ValueError, "must be finite and at most"),
+        (image_of(np.ones((4, 4))), 1.3, RuleError, "gap_cm: must be below the pitch"),
+        (image_of(np.full((4, 4), 1e101)), None, DataError, "must be finite and at most"),
+        (image_of(np.full((4, 4), np.nan)), None, DataError, "must be finite and at most"),
         (image_of(np.zeros((4, 4))), None, Degenerate, "no reading rises above the noise"),
     ],
 )

@@ -54,6 +54,13 @@ def test_two_that_touch_are_told_apart():
     assert held >= 0.6
 
 
+def test_two_that_touch_are_told_apart_on_a_pad_more_even_than_told():
+    """Its scatter is not put down to the law: that would bend what each presses with."""
+    right, error, _ = looked_at("gains 0.2", 2, touching=True)
+    assert right >= 0.8
+    assert error < 0.3
+
+
 def test_readings_of_any_unit_and_offset_give_the_same_answer():
     """Within what they state of themselves: rounding leads the search by another way."""
     (frame,) = frames_of("noise 0.2 mV", 2, False, Asked(1, 4))

@@ -1,14 +1,12 @@
-"""What a search looks at: kinds of the same area, and what outlines leave unexplained."""
+"""What a search looks at: kinds of the same area, and whose each element is."""
 
 import numpy as np
 import pytest
 
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
-from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
 from tactile_graph_likelihood.several.scene import TURNS, Configuration, like
-from tactile_graph_likelihood.several.search import Search, dilated
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.several.search import Search
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
@@ -19,13 +17,6 @@ def only(kind, corners, *numbers):
     point = np.zeros((1, 6))
     point[0, : len(numbers)] = numbers
     return Configuration(np.array([kind]), np.array([corners]), point, 0.0)
-
-
-def load_of(problem, discs):
-    lain = problem._replace(load=0.0 * problem.load, share=0.0 * problem.load)
-    for k in range(len(discs)):
-        add_outline.call(lain, Outlines(np.full(2, DISC), np.zeros(2, np.int64), discs), k)
-    return lain.load
 
 
 @pytest.mark.parametrize(
@@ -49,19 +40,6 @@ def test_an_outline_of_another_kind_has_about_the_same_area_place_and_load(own, 
         assert 4.2 in row
 
 
-def test_what_outlines_explain_leaves_little_and_what_they_miss_leaves_much():
-    problem = problem_of_discs(3)
-    search = Search(problem, KINDS, 3.0, 1.0)
-    both = search.unexplained(load_of(problem, DISCS))
-    one = search.unexplained(load_of(problem, DISCS[:1]))
-    right = np.zeros((16, 16), bool)
-    right[:, 7:] = True
-    assert (both >= 0.0).all()
-    assert one[right].sum() > both[right].sum() + 40.0
-    unknown = np.full_like(problem.states, UNKNOWN)
-    assert not Search(problem._replace(states=unknown), KINDS, 3.0, 1.0).unexplained(both).any()
-
-
 def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():
     search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
     found = Configuration(np.full(2, DISC), np.zeros(2, np.int64), DISCS, 0.0)
@@ -72,7 +50,10 @@ def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():
     assert (own[~search.on] == -1).all()
 
 
-def test_a_mask_is_dilated_over_corners():
-    mask = np.zeros((4, 4), bool)
-    mask[0, 0] = True
-    assert dilated(mask).sum() == 4
+def test_of_two_numbers_alike_likely_outlines_that_are_alike_are_likelier():
+    search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
+    alike = Configuration(np.full(2, DISC), np.zeros(2, np.int64), DISCS, 0.0)
+    points = DISCS * [[1.0, 1.0, 3.0, 1.5, 1.0, 1.0], [1.0, 1.0, 0.5, 0.5, 1.0, 1.0]]
+    unlike = Configuration(np.full(2, DISC), np.zeros(2, np.int64), points, 0.0)
+    assert search.worth(alike) == search.worth(unlike)
+    assert search.rank(alike) > search.rank(unlike) + 3.0

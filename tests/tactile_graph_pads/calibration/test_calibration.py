@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.force import Force
 from tactile_graph_pads.calibration.calibration import (
@@ -171,5 +171,5 @@ def test_the_step_force_reads_the_file_itself(kind: str, tmp_path: Path) -> None
 def test_the_step_force_refuses_another_quantity_than_the_file_was_made_of(tmp_path: Path) -> None:
     write_calibration(tmp_path / "c.yaml", made("isotonic"))
     step = Force(calibration=tmp_path / "c.yaml")
-    with pytest.raises(ValueError, match="the calibration reads volt, got counts"):
+    with pytest.raises(RuleError, match="the calibration reads volt, got counts"):
         step(Image(np.ones((2, 2)), quantity="counts"))

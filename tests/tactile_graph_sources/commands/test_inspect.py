@@ -142,3 +142,52 @@ def test_the_noise_of_whole_counts_is_that_before_they_were_rounded(
     np.save(tmp_path / "a.npy", np.rint(RNG.normal(50.0, sigma, (200, 12, 12))))
     (sensor,) = looked(tmp_path / "a.npy")["sensors"]
     assert sensor["noise"] == pytest.approx(sigma, rel=0.25)
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    """Two sensors of other grids in a table, the right one loaded later than the left."""
+    left, right = film(12, 5, 6), film(12, 4, 5, seed=1)
+    named = [f"{side}_r{r}c{c}" for side, f in (("left", left), ("right", right))
+             for r, c in np.ndindex(f.shape[1:])]  # fmt: skip
+    rows = (np.concatenate([left[k].ravel(), right[k].ravel()]) for k in range(12))
+    lines = [",".join(f"{v:.0f}" for v in row) for row in rows]
+    path = tmp_path / "pair.csv"
+    path.write_text("\n".join([",".join(named), *lines]) + "\n")
+    return path
+
+
+@pytest.mark.slow
+def test_of_several_sensors_each_is_shown_with_commands_that_choose_it(
+    pair: Path, tmp_path: Path
+) -> None:
+    text = run(pair, "--picture", tmp_path / "pair.png")
+    assert text.startswith(f"{pair}: 2 sensors, each read alone: left, right\n")
+    assert "grid      5 rows x 6 columns" in text
+    assert "grid      4 rows x 5 columns" in text
+    assert (tmp_path / "pair.png").read_bytes().startswith(b"\x89PNG")
+    found = [json.loads(line) for line in run(pair, "--json").splitlines()]
+    assert [one["sensor"] for one in found] == ["left", "right"]
+    for one, shape in zip(found, ([5, 6], [4, 5]), strict=True):
+        assert one["sensors"][0]["shape"] == shape
+        command = next(c for c in one["commands"] if " run contacts " in c)
+        assert command.endswith(f" --with sensor={one['sensor']}")
+        levelled = one["commands"][-1]
+        assert f'footprint.noise_of={{path: "{pair}", sensor: {one["sensor"]}}}' in levelled
+        for each in (command, levelled):
+            done = CliRunner().invoke(cli, shlex.split(each)[1:])
+            assert done.exit_code == 0, done.output
+
+
+@pytest.mark.slow
+def test_a_sensor_that_cannot_be_read_does_not_hide_the_others(tmp_path: Path) -> None:
+    np.savez(tmp_path / "two.npz", flat=np.ones((30, 256)), whole=film(12, 6, 10))
+    text = run(tmp_path / "two.npz", code=1)
+    assert "flat: " in text
+    assert "give rows and columns" in text
+    assert "grid      6 rows x 10 columns" in text
+    first, second = (
+        json.loads(line) for line in run(tmp_path / "two.npz", "--json", code=1).splitlines()
+    )
+    assert (first["sensor"], second["sensor"]) == ("flat", "whole")
+    assert "give rows and columns" in first["error"]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from helpers_dialects import (
     Dialect,
@@ -20,9 +20,8 @@ from helpers_dialects import (
     mutated,
     picture,
 )
+from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
-from tactile_graph import load
-from tactile_graph.cli import cli
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph_sources.readers.head import Head
@@ -31,9 +30,10 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.told import Told
 
 FILES = dialects()
+MORE = more_dialects(hdf5=find_spec("h5py") is not None)
 
 
-@pytest.mark.parametrize("dialect", FILES, ids=lambda d: d.name)
+@pytest.mark.parametrize("dialect", [*FILES, *MORE], ids=lambda d: d.name)
 def test_a_file_is_read_right_or_refused_with_what_to_say(dialect: Dialect, tmp_path: Path) -> None:
     found = became(dialect, tmp_path)
     assert found.fits(dialect), found
@@ -311,28 +311,6 @@ def test_hdf5_gives_its_stack_with_times_and_attributes(tmp_path: Path) -> None:
     assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(12)])
     assert (frames[0].image.quantity, frames[0].image.pitch_cm) == ("kilopascal", (0.5, 0.5))
     assert report.counts == {"recordings read as HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)": 1}
-
-
-def test_a_stack_that_a_run_wrote_lies_where_its_node_lay(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
-    monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(
-        cli, ["run", "circle-3", "--only", "frame", "--only", "eroded", "-o", "kept.h5"]
-    )
-    assert done.exit_code == 0, done.output
-    truth = list(load("circle-3").stream(only=["eroded"]))
-    for sensor, node in (("frame/values", "frame"), ("eroded/values", "eroded")):
-        frames, _ = frames_of(Path("kept.h5"), sensor=sensor)
-        for frame, result in zip(frames, truth, strict=True):
-            image = result.frame.image if node == "frame" else result["eroded"]
-            np.testing.assert_array_equal(frame.image.values, image.values)
-            assert frame.image.pitch_cm == image.pitch_cm
-            assert frame.image.origin_cm == image.origin_cm
-            assert frame.image.quantity == ("volt" if node == "frame" else "binary")
-    with pytest.raises(DataError, match="matrix or matrices along the first axis are read"):
-        frames_of(Path("kept.h5"), sensor="eroded/outcome")
 
 
 def test_several_stacks_of_hdf5_are_asked_about(tmp_path: Path) -> None:

@@ -40,7 +40,10 @@ def test_arrays_that_cannot_be_read_say_why(tmp_path: Path) -> None:
         "its array cannot be read: the file is cut off: it holds less than its header says"
     )
     np.save(path, np.array([[1, None]], dtype=object))
-    assert refused(path) == "its array cannot be read: it holds Python objects, not numbers"
+    assert refused(path) == (
+        "its array cannot be read: it holds Python objects, not numbers; save frames of one shape, "
+        "in Python: numpy.save('out.npy', numpy.stack(frames))"
+    )
     np.save(path, np.zeros((0, 4, 4)))
     assert refused(path) == "its array has shape (0, 4, 4): it holds no cell"
 

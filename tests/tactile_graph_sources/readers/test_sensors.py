@@ -142,7 +142,9 @@ def test_every_command_that_reads_names_the_sensors_and_takes_the_choice(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("two.csv").write_text(wide(("left", "right"), (LEFT, RIGHT), NAMES["numbers"]))
-    for command in (["run", "contacts"], ["inspect"], ["convert"]):
+    assert "2 sensors, each read alone: left, right" in call("inspect", "two.csv").stdout
+    assert call("inspect", "two.csv", "--with", "sensor=right").exit_code == 0
+    for command in (["run", "contacts"], ["convert"]):
         command += ["two.csv", "out.npz"] if command == ["convert"] else ["two.csv"]
         got = call(*command)
         assert got.exit_code == 2

@@ -15,36 +15,27 @@ A table seldom says what it is. The rules, in order:
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from math import isqrt
 
 import numpy as np
 
-from tactile_graph_sources.readers.tables.evidence import (
-    CLEAR,
-    row_length_clarity,
-    row_lengths,
-    spacing,
-)
-from tactile_graph_sources.readers.tables.extra import without_extra
-from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
+from tactile_graph_sources.readers.tables.by_numbers import unplaced
+from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, timed
-from tactile_graph_sources.readers.tables.names import ColumnsTold
-from tactile_graph_sources.readers.tables.sensors import of_one_sensor
-from tactile_graph_sources.readers.tables.table import ENDLESS, Table, table_of
+from tactile_graph_sources.readers.tables.names import ColumnsTold, named
+from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
+from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.readers.units import length_unit
 
-SMALLEST_SURE_SQUARE = 64
-MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
-LONGEST_UNTOLD = 4
-"""Times its breadth: a matrix longer than that is more likely many frames."""
+FEWEST_NAMED = 4
 _CLOCK = "clock"
 
 
-def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
+def layout_of(
+    lines: Sequence[str], told: Told, whole: bool, names: Sequence[str] = ()
+) -> Layout | None:
     """Return how the numbers lie; None where the lines are no table of numbers.
 
     Parameters
@@ -54,9 +45,11 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     told : Told
     whole : bool
         Whether there are no more lines.
+    names : sequence of str
+        Of the columns, where each line says them.
     """
     try:
-        table = table_of(lines, told.of_columns, whole)
+        table = table_of(lines, told.of_columns, whole, names)
     except ValueError as error:
         return Layout("unclear", trouble=str(error))
     if table is None:
@@ -64,11 +57,17 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
     try:
         table, sensor = of_one_sensor(table, told)
+    except NoneNamedError as error:
+        return replace(base, trouble=str(error), sensors=error.names)
     except ValueError as error:
         return replace(base, trouble=str(error))
     base = replace(base, sensor=sensor)
     roles = _roles(table, told.of_columns)
-    trouble = _unnamed_value(table, roles) or _strange_column(table, roles)
+    trouble = (
+        _unnamed_value(table, roles)
+        or _strange_column(table, roles)
+        or _cells_by_line(table, roles)
+    )
     if trouble:
         return replace(base, trouble=trouble)
     if table.named.is_long:
@@ -90,7 +89,7 @@ def layout_of(lines: Sequence[str], told: Told, whole: bool) -> Layout | None:
     if table.named.places:
         return _placed(base, table, told)
     told = told.with_said(table.said.rows, table.said.columns)
-    return _unplaced(base, table, told)
+    return unplaced(base, table, told)
 
 
 # -- columns by their names --------------------------------------------------------------------
@@ -133,8 +132,30 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
     if not words:
         return ""
     k = words[0]
-    text = table.texts[0][k].strip()[:30]
-    return f"line {table.first_line}, column {k + 1}: {text!r} is no number"
+    wrong = next((j for j, x in enumerate(table.rows[:, k]) if np.isnan(x)), 0)
+    text = table.texts[wrong][k].strip()[:30]
+    line = "" if wrong else f"line {table.first_line}, "
+    return (
+        f"{line}column {k + 1}: {text!r} is no number; write numbers with a decimal point and "
+        "without marks between thousands, or say which columns are cells, such as cells=2-65"
+    )
+
+
+def _cells_by_line(table: Table, roles: dict[str, int]) -> str:
+    """Return what to ask where each line is named as a cell, so that its numbers are its times."""
+    for k in table.words:
+        texts = [row[k] for row in table.texts]
+        if k in roles.values() or k in table.clocks or len(texts) < FEWEST_NAMED:
+            continue
+        places = named(texts).places
+        rows, columns = ({p[axis] for p in places} for axis in (0, 1))
+        if len(places) == len(texts) > len(rows) * len(columns) / 2 and len(columns) > 1:
+            return (
+                f"its lines look like cells ({texts[0].strip()}, {texts[1].strip()}, …) and its "
+                "columns like frames; exchange them (in a spreadsheet: paste, transposed), so that "
+                "each line is a frame"
+            )
+    return ""
 
 
 def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tuple[str, ...]:
@@ -214,131 +235,3 @@ def _placed(base: Layout, table: Table, told: Told) -> Layout:
     return replace(
         base, kind="flat", shape=(rows, columns), places=() if plain else order, why=by_names
     )
-
-
-def _ordered(base: Layout, table: Table, shape: tuple[int, int]) -> tuple[int, ...]:
-    """Return the places of cells whose names have a number each; empty where they come in order."""
-    numbers = table.named.numbers
-    if not numbers or len(numbers) != shape[0] * shape[1]:
-        return ()
-    rank = {n: k for k, n in enumerate(sorted(numbers))}
-    order = tuple(rank[n] for n in numbers)
-    return () if order == tuple(range(len(order))) else order
-
-
-# -- no names of cells: by settings, groups and the numbers themselves ------------------------
-
-
-def _unplaced(base: Layout, table: Table, told: Told) -> Layout:
-    base = without_extra(base, table, told)
-    if told.rows is None and told.columns is None and _is_scan(table, base):
-        return replace(base, trouble=_scan_question())
-    if base.trouble:
-        return base
-    width, (groups, run) = len(base.cells), table.groups
-    index = table.named.names[base.roles["frame"]] if "frame" in base.roles else "?"
-    # What pandas writes before each line numbers frames or the rows of one matrix alike.
-    lead = bool(base.roles) and not (table.named.names and not index and len(base.roles) == 1)
-    kind, rows, why = _decide(table, base, told, lead)
-    if kind == "stacked":
-        return replace(
-            base,
-            kind=kind,
-            rows=rows,
-            blank_run=run if len(groups) > 1 else ENDLESS,
-            roles={},
-            why=why,
-        )
-    if kind == "unclear":
-        return replace(base, trouble=base.trouble or why)
-    return _flat(base, table, told, width, why)
-
-
-def _decide(table: Table, base: Layout, told: Told, lead: bool) -> tuple[str, int, str]:
-    """Return the kind of table, the rows of a matrix where it is stacked, and why."""
-    width, groups = len(base.cells), table.groups[0]
-    usual = Counter(groups).most_common(1)[0][0] if groups else 0
-    n, said = sum(groups), "rows and columns are told"
-    if told.columns is not None:
-        if width != told.columns or told.rows == 1:
-            return "flat", 0, said
-        clear = told.rows or len(groups) > 1 or table.whole
-        question = f"how many lines of {width} values make a matrix? give rows"
-        return ("stacked", told.rows or usual, said) if clear else ("unclear", 0, question)
-    if told.rows is not None:
-        if usual == told.rows > 1:
-            return "stacked", usual, said
-        if width % told.rows == 0 or len(groups) < 2:
-            return "flat", 0, said
-    if len(groups) > 1 and usual > 1:
-        return "stacked", usual, f"blank lines or frame lines after every {usual} rows"
-    if lead:
-        return "flat", 0, "a time or a number before the values"
-    return _by_numbers(table, base, n)
-
-
-def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
-    """Return what `_decide` returns where nothing but the numbers can tell."""
-    cells = table.rows[:, base.cells]
-    width = cells.shape[1]
-    square = _is_square(width)
-    lengths = row_lengths(cells) if n > 1 else []
-    framed = bool(lengths) and width >= 16
-    long = max(n, width) > LONGEST_UNTOLD * min(n, width)
-    matrix_like = n > 1 and not long and n <= MOST_LINES_UNTOLD and table.whole
-    question = (
-        f"{n} lines of {width} values could be one matrix or a frame a line"
-        + (f" (of {lengths[0][0]} x {lengths[0][1]} cells, as they lie)" if framed else "")
-        + "; give the settings rows and columns"
-    )
-    if n == width:
-        return ("unclear", 0, question) if framed else ("stacked", n, "as many lines as columns")
-    if square and not matrix_like:
-        return "flat", 0, f"{width} values a line, a square number"
-    if square:
-        clarity = row_length_clarity(cells, isqrt(width))
-        if clarity < CLEAR or (np.isnan(clarity) and width >= SMALLEST_SURE_SQUARE):
-            return "flat", 0, f"{width} values a line, which lie together as a square"
-        return "unclear", 0, question
-    if matrix_like and width <= MOST_COLUMNS_UNTOLD and not framed:
-        return "stacked", n, f"{n} lines of {width} values"
-    return "unclear", 0, question
-
-
-def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layout:
-    """Return the layout of frames of ``width`` cells a line, their shape told, named or square."""
-    base = replace(base, kind="flat", why=why)
-    if (told.rows or told.columns) and told.fits(width) is None:
-        return base  # the error names the settings
-    found = shape_of_cells(table.rows[:, base.cells], told)
-    if found.shape is None:
-        return replace(base, trouble=found.trouble)
-    return replace(
-        base,
-        shape=found.shape,
-        places=_ordered(base, table, found.shape),
-        assumed=(*base.assumed, *found.assumed),
-    )
-
-
-def _is_scan(table: Table, base: Layout) -> bool:
-    """Return whether lines of three or four values are places on a grid and what was there."""
-    if len(base.cells) not in (3, 4) or len(table.rows) < 4:
-        return False
-    places = table.rows[:, list(base.cells[-3:-1])]
-    if not np.isfinite(places).all() or (places % 1 != 0).any() or (places < 0).any():
-        return False
-    seen = np.unique(places, axis=0)
-    sizes = [len(np.unique(places[:, k])) for k in (0, 1)]
-    return min(sizes) > 1 and len(seen) * 2 > sizes[0] * sizes[1] and len(seen) > 3
-
-
-def _scan_question() -> str:
-    return (
-        "its lines could be rows of a matrix, or cells as row, column and value; put a header "
-        "such as 'row,column,value' before them, or give rows and columns"
-    )
-
-
-def _is_square(n: int) -> bool:
-    return n > 1 and isqrt(n) ** 2 == n

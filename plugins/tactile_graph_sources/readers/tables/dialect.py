@@ -24,6 +24,19 @@ _CLOCK = re.compile(
 )
 _DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
+_GROUPED = {
+    ".": re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+(?:,\d+)?"),
+    ",": re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d+)?"),
+}
+"""Numbers whose thousands are set apart, by what sets them apart."""
+_SURELY_GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
+_SURELY_DECIMAL = re.compile(r"[-+]?(?:0\d*|\d+),(?:\d{1,2}|\d{4,})")
+FEWEST_GROUPED = 5
+
+
+def without_rules(line: str) -> str:
+    """Return a line of a table without the bars at its ends."""
+    return line.strip().removeprefix("|").removesuffix("|")
 
 
 def unquoted(text: str) -> str:
@@ -44,7 +57,7 @@ def is_row(line: str) -> bool:
     """Return whether a line is a row of numbers, be a date, label or bracket among them or not."""
     if is_numeric(line):
         return True
-    words = _WORD.findall(line.translate(_BRACKETS).replace('"', ""))
+    words = _WORD.findall(_CLOCK.sub("", line).translate(_BRACKETS).replace('"', ""))
     n = sum(1 for w in words if _NUMBER.fullmatch(w))
     return n >= 3 and 5 * n >= 3 * len(words)
 
@@ -73,13 +86,15 @@ class Dialect(NamedTuple):
     """How a line is taken apart.
 
     ``separator`` None is any white space. ``brackets`` are left out. ``arrow`` parts the time
-    that a serial monitor puts before each line from the line itself.
+    that a serial monitor puts before each line from the line itself. ``thousands`` is what stands
+    between the thousands of a number, where anything does.
     """
 
     separator: str | None = ","
     decimal_comma: bool = False
     brackets: bool = False
     arrow: bool = False
+    thousands: str = ""
 
     @classmethod
     def of(cls, lines: Sequence[str]) -> Dialect:
@@ -92,13 +107,20 @@ class Dialect(NamedTuple):
             return cls.of(plain)._replace(brackets=brackets, arrow=arrow)
         for separator in (";", "\t", "|"):
             if 2 * sum(separator in line for line in lines) > len(lines):
-                rest = "".join(lines)
-                return cls(separator, "," in rest)
+                rest = separator.join(lines)
+                fields = rest.split(separator) if "," in rest and "." in rest else []
+                grouped = any(_SURELY_GROUPED.fullmatch(unquoted(f)) for f in fields)
+                return cls(separator, "," in rest, thousands="." if grouped else "")
         if 2 * sum("," in line for line in lines) <= len(lines):
             return cls(None)
         words = [line.split() for line in lines]
         spaced = all(len(w) > 1 and all(map(_DECIMAL_COMMA.fullmatch, w)) for w in words)
-        return cls(None, True) if spaced else cls(",")
+        if spaced:
+            return cls(None, True)
+        quoted = _quoted(lines)
+        grouped = len(quoted) >= FEWEST_GROUPED and all(map(_GROUPED[","].fullmatch, quoted))
+        decimal = not grouped and any(_SURELY_DECIMAL.fullmatch(f) for f in quoted)
+        return cls(",", decimal, thousands="," if grouped else "")
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
@@ -107,12 +129,20 @@ class Dialect(NamedTuple):
             return [stamp.strip(), *self._replace(arrow=False).fields(rest)]
         if self.brackets:
             line = line.translate(_BRACKETS)
+        if self.separator == "|":
+            line = without_rules(line)
         if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
             # Of thousands, or decimal? Kept together it is told as no number, never as two.
-            return next(csv.reader([line]))
+            fields = next(csv.reader([line]))
+            if self.decimal_comma:
+                return [f.replace(",", ".") for f in fields]
+            return [_ungrouped(f, ",") for f in fields] if self.thousands == "," else fields
         if '"' in line:
             line = line.replace('"', "")
-        if self.decimal_comma:
+        if self.thousands == ".":
+            fields = [_ungrouped(f, ".") for f in line.split(self.separator)]
+            return [f.replace(",", ".") for f in fields]
+        if self.decimal_comma and self.separator != ",":
             line = line.replace(",", ".")
         return line.split(self.separator)
 
@@ -145,6 +175,17 @@ class Dialect(NamedTuple):
         return fields
 
 
+def _quoted(lines: Sequence[str]) -> list[str]:
+    """Return the fields with a comma in them, which stand within quotes."""
+    quoted = [line for line in lines if _QUOTED_COMMA.search(line) is not None]
+    return [f.strip() for line in quoted for f in next(csv.reader([line])) if "," in f]
+
+
+def _ungrouped(field: str, mark: str) -> str:
+    """Return a field without what stands between its thousands."""
+    return field.replace(mark, "") if _GROUPED[mark].fullmatch(field.strip()) else field
+
+
 def refuse_underscore(line: str) -> None:
     """Refuse a line with ``_``: Python reads 1_0 as 10, no device writes that.
 
@@ -175,4 +216,6 @@ def _float(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"{text.strip()[:40]!r} is no number") from None
+        raise ValueError(
+            f"{text.strip()[:40]!r} is no number; a cell without a value is left empty, or NaN"
+        ) from None

@@ -12,6 +12,10 @@ CLEAR = 0.85
 """A lag at which cells differ by less than this share of those beside it is a row's length."""
 EVEN = 3.0
 MOST_CELLS, MOST_FRAMES = 1 << 14, 100
+MOST_LINES, FEWEST_ROWS = 400, 3
+FAR_APART = 0.7
+NEARLY, HALF_WAY = 1.1, 0.6
+"""How unlike lines may be that are alike again: times the next line, and the most unlike before."""
 
 
 def rises(column: Numbers) -> bool:
@@ -107,6 +111,49 @@ def row_lengths(cells: Numbers) -> list[tuple[int, int]]:
     # Twice a row's length is a lag of likeness too, but one of less.
     clear.sort(key=lambda c: _difference(cells, c))
     return [(n // c, c) for c in clear]
+
+
+def is_one_row(cells: Numbers, columns: int) -> bool:
+    """Return whether cells of a line lie together as one row does, not as rows of ``columns``.
+
+    Then those ``columns`` apart differ much more than neighbours, and no less than those one more
+    or one less apart.
+    """
+    cells = _sound(cells)
+    clarity = _clarity(cells, columns)
+    return clarity > CLEAR and _difference(cells, 1) < FAR_APART * _difference(cells, columns)
+
+
+def line_period(cells: Numbers) -> int | None:
+    """Return after how many lines they are as alike again as one line is to the next.
+
+    Rows of matrices are, after lines that are unlike; frames are not, as each is most like the
+    next one.
+
+    Parameters
+    ----------
+    cells : ndarray, shape (lines, cells)
+
+    Returns
+    -------
+    int or None
+        None where no number of lines stands out.
+    """
+    n = len(cells)
+    if n < 2 * FEWEST_ROWS:
+        return None
+    cells = np.clip(np.nan_to_num(cells[:MOST_LINES]), -1e9, 1e9)
+    lags = np.arange(1, len(cells) // 2 + 2)
+    apart = np.array([np.mean(np.abs(cells[k:] - cells[:-k])) for k in lags])
+    unlike = np.maximum.accumulate(apart)
+    again = (apart <= NEARLY * apart[0]) & (apart < HALF_WAY * unlike)
+    found = np.flatnonzero(again[FEWEST_ROWS - 1 : -1])
+    if not len(found):
+        return None
+    first = int(found[0]) + FEWEST_ROWS - 1
+    # The first dip's bottom: what lies twice as far is one of the next matrix.
+    bottom = first + int(np.argmin(apart[first : first + first // 2 + 1]))
+    return int(lags[bottom])
 
 
 def _difference(cells: Numbers, lag: int) -> float:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph.wires.image import QUANTITIES
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
@@ -52,6 +53,8 @@ def read(reading: Reading) -> Iterator[Frame]:
         If rows and columns are needed and not told, or do not fit.
     """
     layout = reading.head.layout or Layout("unclear")
+    if layout.sensors:
+        raise SeveralSensorsError(str(reading.path), layout.trouble, layout.sensors)
     if layout.trouble:
         raise DataError(str(reading.path), layout.trouble)
     own = _own_word(reading.head, len(layout.cells))

@@ -37,6 +37,10 @@ class Layout:
         Of a stacked matrix.
     blank_run : int
         Blank lines that end a matrix.
+    breaks : frozenset of str
+        Signatures of other lines that do.
+    header_line : str
+        The line that numbers the columns of a matrix; empty without one.
     time_factor : float
         From the column of time to seconds.
     time_format : str
@@ -52,6 +56,8 @@ class Layout:
     why, assumed : str, tuple of str
         How it was recognised, and what nobody said.
     trouble : str
+    sensors : tuple of str
+        Those of which one is to be named, where that is the trouble.
     """
 
     kind: str
@@ -64,6 +70,8 @@ class Layout:
     places: tuple[int, ...] = ()
     rows: int = 0
     blank_run: int = 1
+    breaks: frozenset[str] = frozenset()
+    header_line: str = ""
     time_factor: float = 1.0
     time_format: str = ""
     spacing: tuple[float, float] = (1.0, 1.0)
@@ -73,6 +81,7 @@ class Layout:
     why: str = ""
     assumed: tuple[str, ...] = ()
     trouble: str = ""
+    sensors: tuple[str, ...] = ()
 
 
 def of_sensor(layout: Layout, line: str) -> bool:

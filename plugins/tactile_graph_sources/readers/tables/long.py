@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
@@ -20,6 +21,8 @@ from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 NAME = "table, one cell a line (row, column, value)"
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
+FEWEST_OF_GRID = 0.02
+"""Share of a grid's cells that must be there for numbers to be places on it."""
 STRAY, FAR = 0.1, 1.0
 """Share of the usual number of cells of a row that makes it one of them, and how far beyond the
 others, in their own extent, a row must lie to be none."""
@@ -55,6 +58,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
     columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
+    _refuse_scattered(reading, layout, (rows, columns), cells)
     frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
     reading.recognised(f"{layout.why}; {how}", layout.assumed)
     said = layout.said
@@ -62,12 +66,13 @@ def read(reading: Reading) -> Iterator[Frame]:
     reading.report.expect(len(numbers))
     order = np.argsort(group, kind="stable")
     ends = np.cumsum(np.bincount(group))
+    left_out = _unlisted(reading, cells, row * columns + column, group)
     for k in np.argsort(starts):
         mine = order[ends[k - 1] if k else 0 : ends[k]]
         place = (row[mine] - first) * columns + column[mine] - first
         on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
         kept = _first_of_each(reading, f"frame {numbers[k]:g}", place, on_grid, lines[mine])
-        values = np.full(rows * columns, np.nan)
+        values = np.full(rows * columns, left_out)
         values[place[kept]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]
         yield reading.frame(
@@ -77,6 +82,44 @@ def read(reading: Reading) -> Iterator[Frame]:
             quantity=said.quantity,
             factor=said.factor,
         )
+
+
+def _refuse_scattered(
+    reading: Reading, layout: Layout, shape: tuple[int, int], cells: Cells
+) -> None:
+    """Refuse cells that are next to none of the grid they would span, unless its shape is told.
+
+    Raises
+    ------
+    DataError
+        If what is taken for places are more likely values.
+    """
+    n_places, said = len(np.unique(cells[:, 2:4], axis=0)), layout.said
+    if (reading.told.rows or said.rows) and (reading.told.columns or said.columns):
+        return
+    if n_places < FEWEST_OF_GRID * shape[0] * shape[1]:
+        raise DataError(
+            str(reading.path),
+            f"its header names row, column and value, but the {n_places} places in it are next to "
+            f"none of {shape[0]} x {shape[1]} cells: are they values? Give it another header, or "
+            "rows and columns where they are places",
+        )
+
+
+def _unlisted(
+    reading: Reading, cells: Cells, place: NDArray[np.intp], group: NDArray[np.intp]
+) -> float:
+    """Return the value of cells that a frame does not list: 0 where only loaded ones are listed.
+
+    They are where no value is 0 or less and frames differ in what they list; a cell that is broken
+    is missing in all.
+    """
+    n_listed = np.bincount(group)
+    sparse = bool((cells[:, 4] > 0).all()) and np.mean(n_listed < len(np.unique(place))) > 0.5
+    if sparse and len(np.unique(n_listed)) > 1:
+        reading.assume("cells that are not listed taken as 0, as only values above 0 are listed")
+        return 0.0
+    return math.nan
 
 
 def _without_strays(
@@ -224,7 +267,7 @@ def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
         or any(line.count(separator) != layout.width - 1 for line in lines)
     ):
         return None
-    if layout.dialect.decimal_comma:
+    if layout.dialect.decimal_comma and separator != ",":
         text = text.replace(",", ".")
     try:
         numbers = np.array(list(map(float, text.split(separator))))

@@ -26,14 +26,15 @@ SECONDS = {
 _ROLES = {
     "frame": "frame frame_index frameindex index frame_no frame_number n nr no num sample scan seq "
     "packet bild bildnr image trame cuadro fotograma muestra quadro #",
-    "time": "time t timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
+    "time": "time t ts timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
     "datetime date_time clock zeit zeitstempel uhrzeit temps heure horodatage tiempo hora tempo "
-    "ora timestamps",
-    "row": "row r y i rows row_index zeile reihe ligne rang fila riga line",
-    "column": "column col c x j columns col_index column_index spalte colonne columna colonna",
+    "ora timestamps zeitpunkt instant momento tijd tid czas",
+    "row": "row r y i rows row_index zeile reihe ligne rang fila riga line linha rij rad wiersz",
+    "column": "column col c x j columns col_index column_index spalte colonne columna colonna "
+    "coluna kolom kolumn kolumna",
     "value": "value v val values pressure reading force counts count raw adc z wert messwert druck "
     "kraft valeur pression valor presión presion fuerza valore pressione voltage volts signal "
-    "p intensity amplitude resistance spannung tension",
+    "p intensity amplitude resistance spannung tension pressão waarde druk värde wartość",
 }
 ROLES = {word: role for role, words in _ROLES.items() for word in words.split()}
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\]\d][^\]]*)\]|\(([^)\d][^)]*)\)|[_/ ]([^\W\d_]+\d?))$")
@@ -50,6 +51,8 @@ _NUMBER = re.compile(r"\D*(\d{1,7})\D*")
 FEWEST_CELLS = 3
 MOST_NARROW = 8
 """Columns of a table that may hold one cell a line, whatever else it holds."""
+_OF_LINES = ("frame", "time", "row")
+"""What a column may say of a whole line of cells."""
 _LETTERS = frozenset("nrycxijvzp")
 _RANGE = re.compile(r"(\d{1,7})\s*-\s*(\d{1,7})?|(\d{1,7})")
 
@@ -192,7 +195,7 @@ def named(header: Sequence[str]) -> Named:
         role = ROLES.get(name.lower()) or ROLES.get(base)
         if role is None or role in roles or k in cells:
             continue
-        if len(names) > MOST_NARROW and (role not in ("frame", "time") or name in _LETTERS):
+        if len(names) > MOST_NARROW and (role not in _OF_LINES or name.lower() in _LETTERS):
             continue  # of many columns called a, b, c, … none is the rows
         roles[role] = k
         if role == "time":
@@ -202,11 +205,22 @@ def named(header: Sequence[str]) -> Named:
     if names and not names[0] and "frame" not in roles and cells[:1] != (0,):
         roles["frame"] = 0  # as pandas writes an index
     if {"row", "column"} <= roles.keys() and "value" not in roles:
+        worded = [k for k, n in enumerate(names) if k not in roles.values() and _is_value(n)]
+        if len(worded) == 1:
+            roles["value"] = worded[0]
+            quantity, scale = value_unit(_parts(names[worded[0]])[1])
+    if {"row", "column"} <= roles.keys() and "value" not in roles:
         left = [k for k in range(len(names)) if k not in roles.values() and names[k]]
         if len(left) == 1:
             roles["value"] = left[0]
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])
     return Named(names, roles, cells, places, numbers, factor, quantity, scale)
+
+
+def _is_value(name: str) -> bool:
+    """Return whether a name of several words begins with one for values: ``Pression relevée``."""
+    first = re.split(r"[\W_]+", name.lower(), maxsplit=1)[0]
+    return len(first) > 1 and ROLES.get(first) == "value"
 
 
 def _parts(name: str) -> tuple[str, str]:

@@ -6,9 +6,13 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from tactile_graph_sources.readers.units import length_cm, value_unit
+from tactile_graph_sources.readers.units import (
+    length_cm,
+    value_unit,
+    without_length_unit,
+)
 
-_PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*[:=;,\t]\s*\"?(.*?)[\s\",;]*")
+_PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*[:=;,\t]+\s*\"?(.*?)[\s\",;]*")
 _WORDS = {
     "rows": {"rows", "row", "zeilen", "reihen", "lignes", "filas", "righe", "number of rows",
              "n rows", "num rows", "nrows"},
@@ -16,12 +20,14 @@ _WORDS = {
                 "number of columns", "n cols", "num cols", "num columns", "ncols"},
     "shape": {"shape", "size", "matrix", "grid", "resolution", "dimensions", "sensor size",
               "größe", "matriz", "matrice", "taille", "array"},
-    "pitch": {"pitch", "spacing", "cell size", "sensel size", "raster", "rastermaß", "pas",
-              "paso", "passo", "element pitch", "cell pitch", "sensor pitch"},
+    "pitch": {"pitch", "spacing", "cell size", "sensel size", "sensel width",
+              "cell width", "raster", "rastermaß", "pas", "paso", "passo",
+              "element pitch", "cell pitch", "sensor pitch"},
     "unit": {"unit", "units", "einheit", "unité", "unite", "unidad", "unidades", "unità",
              "unita", "pressure unit"},
-    "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps",
-             "abtastrate", "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},
+    "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
+             "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
+             "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},
 }  # fmt: skip
 _MEANING = {word: key for key, words in _WORDS.items() for word in words}
 _SHAPE = re.compile(r"\D*?(\d{1,5})\s*(?:x|×|\*|,|by|mal)\s*(\d{1,5})\b.*", re.IGNORECASE)
@@ -49,9 +55,10 @@ def described(lines: Iterable[str]) -> Described:
             continue
         key, _, unit = found[1].strip().lower().replace("_", " ").partition("[")
         key, _, other = key.partition("(")
-        meaning = _MEANING.get(key.strip())
+        bare, length = without_length_unit(key.strip())
+        meaning = _MEANING.get(bare)
         if meaning is not None:
-            said = _take(said, meaning, found[2], (unit or other).strip(" ])"))
+            said = _take(said, meaning, found[2], (unit or other).strip(" ])") or length)
     return said
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import isqrt
 from typing import NamedTuple
@@ -66,6 +66,14 @@ class Sensors(NamedTuple):
 NONE = Sensors({})
 
 
+class NoneNamedError(ValueError):
+    """There are several sensors, called ``names``, and none of them is asked for."""
+
+    def __init__(self, text: str, names: Iterable[str]) -> None:
+        super().__init__(text)
+        self.names = tuple(names)
+
+
 def sensors_of(names: Sequence[str]) -> Sensors:
     """Return the sensors that a header's names tell apart; none where there is only one."""
     found: dict[str, list[int]] = {}
@@ -87,7 +95,8 @@ def sensors_of(names: Sequence[str]) -> Sensors:
 
 def _are_sensors(stems: Mapping[str, tuple[int, ...]]) -> bool:
     """Return whether names that begin so are those of sensors, not of rows or columns."""
-    words = {re.sub(r"[\W\d_]+$", "", stem).lower() for stem in stems}
+    # Z1S and Z2S are rows as much as Z1 and Z2 are, sensor1_t and sensor2_t are none.
+    words = {re.sub(r"[\W_]*\d[\W\d_]*[^\W\d_]*[\W_]*$|[\W_]+$", "", s).lower() for s in stems}
     if len(words) == 1:
         return words <= _WORDS
     letters = sorted(words)
@@ -170,17 +179,20 @@ def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | No
 
     Raises
     ------
-    ValueError
+    NoneNamedError
         If there are several sensors and none of them is asked for.
+    ValueError
+        If what is asked for is none of them.
     """
     names = table.named.names
     lines = lines_of_sensors(names, table.texts)
     if lines is not None:
         column, labels = lines
         if not told.sensor:
-            raise ValueError(
+            raise NoneNamedError(
                 f"its lines are those of several sensors, as column {names[column]!r} says: "
-                f"{one_of(labels)}; name one with sensor"
+                f"{one_of(labels)}; name one with sensor",
+                labels,
             )
         sensor = chosen(labels, told.sensor)
         mine = [k for k, row in enumerate(table.texts) if unquoted(row[column]) == sensor]
@@ -192,9 +204,10 @@ def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | No
         return table, None
     if not told.sensor:
         doubt = f", or of {sensors.doubt}" if sensors.doubt else ""
-        raise ValueError(
+        raise NoneNamedError(
             f"its columns are those of several sensors: {sensors.names()}{doubt}; name one with "
-            "sensor"
+            "sensor",
+            sensors.columns,
         )
     sensor = chosen(tuple(sensors.columns), told.sensor)
     return replace(table, named=_named_alone(table, sensors, sensor, told)), None

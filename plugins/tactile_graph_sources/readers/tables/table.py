@@ -6,22 +6,39 @@ import math
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from tactile_graph_sources.readers.tables.dialect import MISSING, Dialect, clock_s, is_row
-from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
-from tactile_graph_sources.readers.tables.names import ColumnsTold, Named, as_told, named
-from tactile_graph_sources.readers.tables.preamble import Described, described
-
-FRAME_LINE = re.compile(
-    r"\W*(?:frame|bild|image|trame|cuadro|scan|sample)\W*(\d{1,9})\b.{0,80}",
-    re.IGNORECASE | re.DOTALL,
+from tactile_graph_sources.readers.tables.breaks import (
+    FRAME_LINE,
+    breaks_of,
+    opens_matrix,
+    signature,
 )
-_BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*")
+from tactile_graph_sources.readers.tables.dialect import (
+    MISSING,
+    Dialect,
+    clock_s,
+    is_row,
+    without_rules,
+)
+from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.tables.names import (
+    SECONDS,
+    ColumnsTold,
+    Named,
+    as_told,
+    named,
+)
+from tactile_graph_sources.readers.tables.preamble import Described, described
+from tactile_graph_sources.readers.units import value_unit
+
+_BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
 _COMMENT = ("#", "%", "//")
+_FIELD = re.compile(r"[^\s,;|]+")
+_LONGEST_NUMBER = 24
 _LOOKED_AT, _SAMPLED = 4000, 400
 ENDLESS = 1 << 30
 """As a run of blank lines: none ends a matrix, only its last row does."""
@@ -59,6 +76,8 @@ class Table:
         The same fields as written.
     whole : bool
         Whether the file has no more lines.
+    header_line : str
+        The line that numbers the columns, which may stand above each matrix; empty without one.
     """
 
     dialect: Dialect
@@ -70,6 +89,7 @@ class Table:
     rows: Numbers
     texts: tuple[tuple[str, ...], ...] = field(repr=False)
     whole: bool
+    header_line: str = ""
 
     @cached_property
     def n_rows(self) -> int:
@@ -78,7 +98,27 @@ class Table:
 
     @cached_property
     def _are_rows(self) -> tuple[bool, ...]:
-        return tuple(map(is_row, self.lines))
+        return tuple(
+            is_row(line) and not self._is_lone(line) and line != self.header_line
+            for line in self.lines
+        )
+
+    def _is_lone(self, line: str) -> bool:
+        """Return whether a line is a single number where rows hold several."""
+        return self.width > 2 and len(line) < _LONGEST_NUMBER and len(_FIELD.findall(line)) == 1
+
+    @cached_property
+    def breaks(self) -> frozenset[str]:
+        """What lines say that stand after every so many rows, such as the time of a frame.
+
+        Where a header names cells, each line is a frame, whatever stands between.
+        """
+        if self.named.cells:
+            return frozenset()
+        kept = [
+            (x, one) for x, one in zip(self.lines, self._are_rows, strict=True) if not is_blank(x)
+        ]
+        return breaks_of([x for x, _ in kept], [one for _, one in kept])
 
     @cached_property
     def clocks(self) -> tuple[int, ...]:
@@ -125,7 +165,12 @@ class Table:
                 if is_blank(line):
                     blanks += 1
                     continue
-                if blanks >= run or FRAME_LINE.fullmatch(line):
+                if (
+                    blanks >= run
+                    or FRAME_LINE.fullmatch(line)
+                    or line == self.header_line
+                    or (opens_matrix(line) if one else signature(line) in self.breaks)
+                ):
                     groups.append(size)
                     size = 0
                 blanks = 0
@@ -136,7 +181,9 @@ class Table:
         return [sum(groups)], ENDLESS
 
 
-def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | None:
+def table_of(
+    lines: Sequence[str], told: ColumnsTold, whole: bool, names: Sequence[str] = ()
+) -> Table | None:
     """Return the parts of a table; None where the lines are none.
 
     Parameters
@@ -146,6 +193,8 @@ def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | No
     told : ColumnsTold
     whole : bool
         Whether there are no more lines.
+    names : sequence of str
+        Of the columns, where each line says them.
 
     Raises
     ------
@@ -169,17 +218,34 @@ def table_of(lines: Sequence[str], told: ColumnsTold, whole: bool) -> Table | No
     content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
     if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
         return None  # a text that holds a few numbers
-    header = _header(dialect, lines[:start], width)
+    header_line = ""
+    header, unit = _header(dialect, lines[:start], width)
+    if len(names) == width:
+        header = tuple(names)
     if not header and len(full) > 1 and _is_numbered(full[0][1]):
-        header, full = tuple(full[0][1]), full[1:]
+        header, header_line = tuple(full[0][1]), lines[start]
+        full = [(k, f) for k, f in full if lines[k] != header_line]
         start = full[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     numbers = as_numbers([[_number(t) for t in f] for f in sample])
     words = [line for line in lines[:start] if not is_blank(line)]
     said = described(words)
-    names = as_told(named(header) if header else Named(), width, told)
+    if unit and said.quantity == "raw":
+        quantity, factor = value_unit(unit)
+        said = replace(said, quantity=quantity, factor=factor)
+    columns = as_told(named(header) if header else Named(), width, told)
+    rest = tuple(lines[start:])
     return Table(
-        dialect, width, start + 1, tuple(lines[start:]), names, said, numbers, tuple(sample), whole
+        dialect,
+        width,
+        start + 1,
+        rest,
+        columns,
+        said,
+        numbers,
+        tuple(sample),
+        whole,
+        header_line,
     )
 
 
@@ -199,8 +265,30 @@ def _width(fields: Sequence[Sequence[str]]) -> int:
     return usual - extra
 
 
-def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ...]:
-    """Return the names in the last line of words before the rows, if it has as many as they."""
+def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[tuple[str, ...], str]:
+    """Return the names in the last line of words before the rows, and the unit of most of them.
+
+    A line of units may stand below the names: those of time are put behind their names.
+    """
+    names = _names(dialect, before, width)
+    units = [n.strip("\"'[]() ") for n in names]
+    if len(units) < 2 or not all(u == "-" or not u or _is_unit(u) for u in units):
+        return names, ""
+    written = max(k for k, line in enumerate(before) if not is_blank(line))
+    above = _names(dialect, before[:written], width)
+    if not above or not any(units):
+        return names, ""
+    timed = [f"{n} [{u}]" if u.lower() in SECONDS else n for n, u in zip(above, units, strict=True)]
+    others = Counter(u for u in units if u and u != "-" and u.lower() not in SECONDS)
+    return tuple(timed), others.most_common(1)[0][0] if others else ""
+
+
+def _is_unit(text: str) -> bool:
+    return text.lower() in SECONDS or value_unit(text)[0] != "raw"
+
+
+def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ...]:
+    """Return the names in the last line of words, if it has as many as the rows have fields."""
     line = next((x for x in reversed(before) if not is_blank(x)), "")
     text = line.lstrip().lstrip("#%/ ") if is_comment(line) else line
     if not text or is_row(text) or FRAME_LINE.fullmatch(text) or width < 2:
@@ -208,7 +296,8 @@ def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, .
     separator = dialect.separator
     if separator is None or separator not in text:
         separator = next((s for s in (";", "\t", "|", ",") if s in text), None)
-    names = tuple(n.strip() for n in text.strip("\r\n").split(separator))
+    text = without_rules(text) if separator == "|" else text.strip("\r\n")
+    names = tuple(n.strip() for n in text.split(separator))
     while len(names) > width and not names[-1]:
         names = names[:-1]
     return names if len(names) == width else ()
@@ -216,7 +305,8 @@ def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, .
 
 def _is_numbered(first: Sequence[str]) -> bool:
     """Return whether a first row counts the columns, as tables without names are written."""
-    rest = first[1:] if not first[0].strip() else first
+    head = first[0].strip().strip('"')
+    rest = first if head.isdecimal() else first[1:]
     if len(rest) < 3 or not all(t.strip().strip('"').isdecimal() for t in rest):
         return False
     return is_count(np.array([float(t.strip().strip('"')[:9]) for t in rest]))

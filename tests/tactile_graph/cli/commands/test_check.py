@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 import yaml
 
@@ -135,3 +136,38 @@ def test_keys_are_shown_as_tables_for_people() -> None:
 @pytest.mark.usefixtures("lamps")
 def test_plugins_counts_kinds_of_files_in_words() -> None:
     assert "2 scenes, 1 file kind" in call("plugins").stdout
+
+
+@pytest.mark.slow
+def test_the_files_that_a_source_names_are_opened_and_all_that_is_wrong_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("scene.yaml").write_text("objects:\n  - {shape: circel, x_cm: 3, y_cm: 4}\n")
+    Path("pad.yaml").write_text("geometry: {rows: 12, columns: -3}\n")
+    Path("mine.yaml").write_text("preset: mine\ntransport: {baud: fast}\n")
+    Path("words.csv").write_text("hello there\n")
+    np.savez("flat.npz", values=np.ones((4, 8, 8)))
+    wrong = {
+        "simulate, with: {scene: scene.yaml}": ["scene.yaml:2:", "circel"],
+        "simulate, with: {scene: discsss}": ["p.yaml:1:16: source, scene: no scene named", "discs"],
+        "simulate, with: {pad: pad.yaml}": ["pad.yaml:1:31: columns must be >= 1, got -3"],
+        "serial, with: {port: /dev/x, preset: mine.yaml}": ["mine.yaml:2:19: transport.baud"],
+        "recording, with: {path: words.csv}": ["p.yaml:1:16: source, path: words.csv: no rec"],
+        "recording, with: {path: [gone.csv, words.csv, flat.npz]}": [
+            "path: gone.csv: there is no such file", "path: words.csv: no recording", "2 problems",
+        ],
+        "replay, with: {path: words.csv}": ["source, path: words.csv: no recording"],
+    }  # fmt: skip
+    rest = "nodes:\n  load: {step: load, in: frame}\noutputs: [load]\n"
+    for source, words in wrong.items():
+        head = f"source: {{step: {source}}}\npipeline: p\nabout: x\n"
+        Path("p.yaml").write_text(head + rest)
+        done = call("check", "p.yaml")
+        assert done.exit_code == 2, source
+        for word in words:
+            assert word in done.stdout, (source, done.stdout)
+    Path("p.yaml").write_text(
+        "pipeline: p\nabout: x\nsource: {step: recording, with: {path: flat.npz}}\n" + rest
+    )
+    assert call("check", "p.yaml").exit_code == 0

@@ -94,6 +94,12 @@ def test_an_unexpected_failure_of_a_step_is_told_with_its_file_and_line():
     assert re.search(r"helpers_cli\.py:\d+ in disc", got.stdout)
 
 
+def test_a_failure_that_every_frame_has_is_told_in_full_once():
+    out = call("run", "discs", "--set", "circle.crash=true").stdout.splitlines()
+    told = [line.split(None, 2)[2] for line in out if re.match(r" +\d+ +\d", line)]
+    assert told == ["failed: ZeroDivisionError: divided by nothing", *3 * ["failed: as in frame 0"]]
+
+
 def test_columns_without_room_are_named(monkeypatch):
     from click.testing import CliRunner
 

@@ -1,0 +1,239 @@
+"""Sketches of a part of a pad, of each number that may lie there: where a search begins.
+
+From one sketch for each connected piece, the sketch whose parting gains most is parted, neighbours
+are cut anew until none gains, and so on, even where a further sketch gains nothing yet: two moves
+may be needed. Then neighbours are joined on the way back down.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.several.alike import alikeness
+from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
+from tactile_graph_likelihood.several.partings import across, components, partings, sketch_of
+from tactile_graph_likelihood.several.scene import Scene
+from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
+from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
+from tactile_graph_likelihood.single.problem import Places
+
+Mask = NDArray[np.bool_]
+
+LEAST_PIECE = 4
+"""Elements of a piece."""
+
+SKETCHED = len(STAGES) - 1
+"""Stages in which sketches are compared; the last is for what is drawn."""
+
+DRAWN = 2.0
+"""How much more evidence an outline has than its sketch, about."""
+
+ODD = 2.0
+"""Half the squared residual, in sigmas, from which on a reading counts as not explained."""
+
+UNEXPLAINED = 4.0
+"""What may be left unexplained, in nats, for a sketch not to be parted, nor two cut anew."""
+
+GIVE_UP, GAIN = 8.0, 0.1
+"""How much less log probability than the best a number may have for a larger one to be tried; what
+a move must bring."""
+
+
+class Sketches(NamedTuple):
+    """All sketches of a part, shape (N, 6) as in `sketch`, and their log probability."""
+
+    points: Values
+    rank: float
+
+
+class Ladder(Scene):
+    """A part of a pad in sketches."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.each = self.more - math.log(len(self.kinds)) + DRAWN
+        self.cut: set[bytes] = set()
+        self.halves: dict[bytes, list[tuple[float, Values]]] = {}
+
+    def ladder(self, room: int) -> dict[int, Sketches]:
+        """Return the best sketches of each number that is come upon."""
+        now = self.recut(self.together(self.pieces(room), 0))
+        best = {len(now.points): now}
+        while len(now.points) < room and (more := self.parted_once(now)):
+            now = self.recut(more)
+            best[len(now.points)] = now
+            if now.rank < max(it.rank for it in best.values()) - GIVE_UP:
+                break
+        for n in range(max(best), 1, -1):
+            fewer = self.joined_once(best[n]) if n in best else None
+            if fewer and (n - 1 not in best or fewer.rank > best[n - 1].rank + GAIN):
+                best[n - 1] = self.recut(fewer)
+        return best
+
+    def together(self, points: Values, first: int = SKETCHED - 1) -> Sketches:
+        """Return sketches brought to their joint mode."""
+        points = points.copy()
+        worth = self.sketched(points, self.problem, first) + math.lgamma(len(points) + 1.0)
+        log_sizes = 0.5 * (points[:, 2] + points[:, 3])
+        return Sketches(points, worth + alikeness(log_sizes, points[:, 5], self.problem.prior))
+
+    def sketched(self, points: Values, beside: JointProblem, first: int = 0) -> float:
+        """Bring sketches, in place, to their joint mode beside others; return what they add."""
+        log = settle_sketches.call(beside, points, first, SKETCHED)
+        return log / self.shared + len(points) * self.each
+
+    def pieces(self, room: int) -> Values:
+        """Return a sketch of each connected piece, the largest ones if there are too many."""
+        labels = components.call(self.on, 1)
+        counts = np.bincount(labels.ravel())[1:]
+        order = np.argsort(-counts, kind="stable")
+        large = [k + 1 for k in order if counts[k] >= LEAST_PIECE][:room] or [int(order[0]) + 1]
+        return np.concatenate([self.sketch_of(labels == k) for k in large])
+
+    def parted_once(self, now: Sketches) -> Sketches | None:
+        """Return them with that one parted which gains most by itself, None if none can be."""
+        points, found = now.points, list[tuple[float, Values]]()
+        own, unexplained = self.shares(points)
+        for k in range(len(points)):
+            mask = own == k
+            if len(points) > 1 and unexplained[dilated(mask)].sum() < UNEXPLAINED:
+                continue
+            beside, rest = self.beside_sketches(points, k)
+            before = self.sketched(points[k : k + 1].copy(), beside, SKETCHED - 1)
+            key = mask.tobytes()
+            if key not in self.halves:
+                self.halves[key] = self.parted(mask, beside, 1)
+            for worth, pair in self.halves[key]:
+                found.append((worth - before, np.concatenate([rest, pair])))
+        return self.likeliest_of(found)
+
+    def joined_once(self, now: Sketches) -> Sketches | None:
+        """Return them with those neighbours joined which lose least, None where there are none."""
+        points, found = now.points, list[tuple[float, Values]]()
+        own, unexplained = self.shares(points)
+        for pair, mask, _ in neighbours(own, unexplained, len(points)):
+            beside, rest = self.beside_sketches(points, *pair)
+            one = self.sketch_of(mask)
+            before = self.sketched(points[list(pair)], beside, SKETCHED - 1)
+            found.append((self.sketched(one, beside) - before, np.concatenate([rest, one])))
+        return self.likeliest_of(found)
+
+    def likeliest_of(self, found: list[tuple[float, Values]]) -> Sketches | None:
+        """Return the sketches that gain most, brought to their joint mode."""
+        return self.together(max(found, key=lambda it: it[0])[1]) if found else None
+
+    def recut(self, now: Sketches) -> Sketches:
+        """Return as many sketches, of which no two neighbours cut anew would be likelier."""
+        better: Sketches | None = now
+        while better is not None:
+            now, better = better, next(self.cut_anew(better), None)
+        return now
+
+    def cut_anew(self, now: Sketches) -> Iterator[Sketches]:
+        """Yield what is likelier by two neighbours cut anew."""
+        own, unexplained = self.shares(now.points)
+        for pair, mask, left in neighbours(own, unexplained, len(now.points)):
+            key = bytes([len(now.points)]) + mask.tobytes()
+            if left < UNEXPLAINED or key in self.cut:
+                continue
+            self.cut.add(key)
+            beside, rest = self.beside_sketches(now.points, *pair)
+            for _, two in self.parted(mask, beside, 1):
+                new = self.together(np.concatenate([rest, two]))
+                if new.rank > now.rank + GAIN:
+                    yield new
+
+    def beside_sketches(self, points: Values, *left_out: int) -> tuple[JointProblem, Values]:
+        """Return the problem beside all sketches but for some, and those that it is beside."""
+        rest = np.delete(points, left_out, axis=0)
+        beside = self.problem._replace(
+            load=self.problem.load.copy(), share=self.problem.share.copy()
+        )
+        lay_sketches.call(beside, rest)
+        return beside, rest
+
+    def shares(self, points: Values) -> tuple[Places, Values]:
+        """Return which sketch each touched element lies in, or nearest to, and what is unexplained.
+
+        -1 where untouched; what sketches that explain an element wholly would add, in nats.
+        """
+        rows, columns = np.nonzero(self.on)
+        x0, y0, pitch, side = self.problem.grid[:4]
+        dx = x0 + 0.5 * side + pitch * columns - points[:, :1]
+        dy = y0 + 0.5 * side + pitch * rows - points[:, 1:2]
+        cos, sin = np.cos(points[:, 4:5]), np.sin(points[:, 4:5])
+        u, v = (cos * dx - sin * dy) / np.exp(points[:, 2:3]), sin * dx + cos * dy
+        own = np.full(self.on.shape, -1)
+        own[rows, columns] = (u**4 + (v / np.exp(points[:, 3:4])) ** 4).argmin(axis=0)
+        beside, _ = self.beside_sketches(points)
+        return own, self.unexplained(beside.load)
+
+    def parted(self, mask: Mask, beside: JointProblem, most: int) -> list[tuple[float, Values]]:
+        """Return pairs of sketches for a mask beside others, the best first, and their worth."""
+        if np.count_nonzero(mask) < 2 * LEAST_PIECE:
+            return []
+        found, logs = np.empty((most, 2, WIDTH)), np.empty(most)
+        partings.call(beside, across(mask), LEAST_PIECE, found, logs)
+        pairs = [
+            (log / self.shared + 2 * self.each, pair)
+            for log, pair in zip(logs.tolist(), found, strict=True)
+            if log > -math.inf
+        ]
+        return sorted(pairs, key=lambda it: -it[0])
+
+    def sketch_of(self, mask: Mask) -> Values:
+        """Return the sketch with a mask's moments, shape (1, 6)."""
+        r, c = np.nonzero(mask)
+        logs = self.problem.logs[r, c].sum()
+        sums = [len(r), c.sum(), r.sum(), (c * c).sum(), (r * c).sum(), (r * r).sum(), logs]
+        point = np.zeros((1, WIDTH))
+        sketch_of.call(np.array(sums, dtype=np.float64), self.problem.grid, point[0])
+        return point
+
+    def unexplained(self, load: Values) -> Values:
+        """Return how much likelier each element's reading would be, were it explained wholly."""
+        noise, logs = self.problem.noise, self.problem.logs
+        mu = np.log(np.maximum(load, 1e-9))
+        half = 0.5 * ((logs - mu) / noise[SIGMA]) ** 2
+        odd = np.where(half > ODD, np.minimum(half, on_level.call(noise)), 0.0)
+        none = -np.log1p(-(1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA]))
+        left: Values = np.where(self.on, odd, none)
+        return np.where(self.problem.states == UNKNOWN, 0.0, left)
+
+
+Pair = tuple[tuple[int, int], Mask, float]
+"""Numbers of two neighbours, which elements are theirs, and what is unexplained there, in nats."""
+
+
+def neighbours(own: Places, unexplained: Values, count: int) -> list[Pair]:
+    """Return what lies next to each other, those first that explain least.
+
+    ``own`` is the number of what each element belongs to, from 0.
+    """
+    masks = [own == k for k in range(count)]
+    wide = [dilated(mask) for mask in masks]
+    found = [
+        ((a, b), masks[a] | masks[b], float(unexplained[wide[a] | wide[b]].sum()))
+        for a in range(count)
+        for b in range(a)
+        if (wide[a] & wide[b]).any()
+    ]
+    return sorted(found, key=lambda it: -it[2])
+
+
+def dilated(mask: Mask) -> Mask:
+    """Return where a mask is, or is next to."""
+    out = mask.copy()
+    out[1:] |= mask[:-1]
+    out[:-1] |= mask[1:]
+    wide = out.copy()
+    wide[:, 1:] |= out[:, :-1]
+    wide[:, :-1] |= out[:, 1:]
+    return wide

@@ -1,0 +1,89 @@
+"""What a file is that no reader takes, and what to do about it."""
+
+from __future__ import annotations
+
+import re
+import struct
+
+from tactile_graph_sources.readers.head import Head
+
+_AS_CSV = "save its sheet as CSV"
+_UNPACK = "unpack it first"
+_MARKS = (
+    (b"\x1f\x8b", "packed by gzip", f"{_UNPACK}: gunzip -k FILE"),
+    (b"BZh", "packed by bzip2", f"{_UNPACK}: bunzip2 -k FILE"),
+    (b"\xfd7zXZ\0", "packed by xz", f"{_UNPACK}: unxz -k FILE"),
+    (b"7z\xbc\xaf\x27\x1c", "a 7-Zip archive", _UNPACK),
+    (b"Rar!", "a RAR archive", _UNPACK),
+    (b"\xd0\xcf\x11\xe0", "an old office document (.xls)", _AS_CSV),
+    (b"PAR1", "Parquet", "in Python: pandas.read_parquet('FILE').to_csv('out.csv', index=False)"),
+    (b"ARROW1", "Arrow or Feather",
+     "in Python: pandas.read_feather('FILE').to_csv('out.csv', index=False)"),
+    (b"\x80\x02", "a Python pickle", ""),
+    (b"\x80\x03", "a Python pickle", ""),
+    (b"\x80\x04", "a Python pickle", ""),
+    (b"\x80\x05", "a Python pickle", ""),
+    (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: mcap convert in.bag out.mcap"),
+    (b"SQLite format 3", "an SQLite database (a ROS 2 bag?)",
+     "convert it to MCAP, or save its table as CSV"),
+    (b"%PDF", "a PDF", "save the numbers it was made from"),
+    (b"RIFF", "a film or a sound", "save its frames as pictures or as .npy"),
+    (b"HDF_UC", "HDF4", "save its array as .npy or HDF5"),
+)  # fmt: skip
+_PICKLE = (
+    "it is not opened, as it may run any program; in Python, where you trust it: "
+    "numpy.save('out.npy', the frames as an array)"
+)
+_SHEETS = {
+    "xl/workbook.xml": "an Excel workbook",
+    "xl/workbook.bin": "an Excel workbook",
+    "content.xml": "an OpenDocument sheet",
+    "word/document.xml": "a Word document",
+}
+_HEXADECIMAL = re.compile(r"(?:0x[0-9a-f]+[\s,;]*){3,}", re.IGNORECASE)
+_WITH_UNITS = re.compile(r"(?:[-+]?\d+(?:\.\d+)?\s?[a-zA-Z%]+\s*[,;\t]\s*){2,}.*")
+_RAW = (
+    "in Python, with the type and the shape of its values: numpy.save('out.npy', "
+    "numpy.fromfile('FILE', '<u2').reshape(-1, ROWS, COLUMNS))"
+)
+
+
+def remedy_for(head: Head) -> str:
+    """Return what the file is and how it can be made readable; empty where it cannot be told."""
+    for mark, what, remedy in _MARKS:
+        if head.raw.startswith(mark):
+            return f"it is {what}: {remedy or _PICKLE}".replace("FILE", head.path.name)
+    if _is_matlab_4(head.raw):
+        return "it is a MATLAB file of version 4: save it anew, save('out.mat', '-v7')"
+    if any("\u2212" in line for line in head.first(5)):
+        return "its minus signs are U+2212: write them as '-'"
+    if any(_WITH_UNITS.fullmatch(line.strip()) for line in head.first(5)):
+        return "a unit stands behind each of its numbers: leave them out"
+    if any(_HEXADECIMAL.fullmatch(line.strip()) for line in head.first(5)):
+        return "its numbers are hexadecimal: write them as decimal ones"
+    return ""
+
+
+def remedy_without_header(head: Head) -> str:
+    """Return what to do with bytes that may be bare numbers; empty for a text."""
+    if not head.raw or head.lines:
+        return ""
+    return f"if it is bare numbers, {_RAW}; ".replace("FILE", head.path.name)
+
+
+def document_in(names: list[str]) -> str:
+    """Return what an archive is by the names in it, and what to do; empty for any other."""
+    what = next((said for name, said in _SHEETS.items() if name in names), "")
+    return f"it is {what}: {_AS_CSV}" if what else ""
+
+
+def _is_matlab_4(raw: bytes) -> bool:
+    if len(raw) < 24:
+        return False
+    kind, rows, columns, imaginary, length = struct.unpack("<5i", raw[:20])
+    known = kind in {p * 10 + t for p in range(6) for t in range(3)}
+    name = raw[20 : 20 + max(0, min(length, 64)) - 1]
+    return (
+        known and imaginary in (0, 1) and min(rows, columns) > 0 and name.isascii() and bool(name)
+        and name.decode("ascii").isidentifier()
+    )  # fmt: skip

@@ -1,0 +1,68 @@
+"""What ``tactile-graph plugins --check`` shows: what is wrong with a plugin, a line each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.plugins.registry import Plugin, Registry
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from tactile_graph.testing.plugin_check import PluginReport
+
+OWN = "tactile-graph"
+
+
+def show_checked(found: Registry, name: str) -> bool:
+    """Print what is wrong with a plugin, or with all of others; return whether nothing is.
+
+    Raises
+    ------
+    UsageError
+        If there is no such plugin, or none of others.
+    """
+    from tactile_graph.cli.terminal import console
+    from tactile_graph.testing.plugin_check import examine_plugin
+
+    out = console()
+    right = True
+    for plugin in _asked(found, name):
+        with out.status(plugin.name) as status:
+            report = examine_plugin(plugin, found, lambda what: status.update(f"trying {what}"))
+        _show(out, report)
+        right &= not report.broken
+    return right
+
+
+def _asked(found: Registry, name: str) -> list[Plugin]:
+    if name:
+        asked = [p for p in found.plugins if p.name == name or p.package == name]
+        if not asked:
+            names = [p.name for p in found.plugins]
+            hint = did_you_mean(name, names) or f"; there are: {one_of(names, 20)}"
+            raise UsageError(f"no plugin named {name!r}{hint}")
+        return [p for p in asked if not p.blocked]
+    others = [p for p in found.plugins if p.package != OWN and not p.blocked]
+    if not others:
+        own = one_of([p.name for p in found.plugins], 20)
+        raise UsageError(f"no plugin of others is installed; --check NAME takes one of: {own}")
+    return others
+
+
+def _show(out: Console, report: PluginReport) -> None:
+    from rich.text import Text
+
+    n, plugin = len(report.broken), report.plugin
+    head = f"{plugin.name} ({plugin.package} {plugin.version})"
+    if not n:
+        offers = f"  {report.n_offers} offer{'s' if report.n_offers != 1 else ''}"
+        words = Text.assemble((f"{head}: right", "bold green"), offers)
+    else:
+        words = Text.assemble((f"{head}: {n} broken", "bold red"))
+    out.print(words, soft_wrap=True)
+    for line in report.broken:
+        out.print(Text(f"  {line}"), soft_wrap=True)
+    for name, why in report.untried.items():
+        out.print(Text(f"  step {name!r} was not tried: {why}", style="yellow"), soft_wrap=True)

@@ -1,0 +1,209 @@
+"""The trials of a step: every case once, then the same again, pickled and copied."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from tactile_graph.engine.watched import Kept
+from tactile_graph.errors import text_of
+from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
+from tactile_graph.testing.finite import not_finite
+from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
+from tactile_graph.testing.same import same
+from tactile_graph.testing.subject import Bound, Subject
+from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
+
+QUANTITIES_TRIED = ("volt", "gram", "counts", "siemens", "raw", "level", "binary", "kilopascal")
+WRITES_BEFORE = "writes into what it gave before; give a copy"
+_NUMBERS = re.compile(r"[-+]?\d[\d.]*(e[-+]?\d+)?")
+Inputs = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A promise that a step breaks: in which cases, and what it did."""
+
+    cases: tuple[str, ...]
+    what: str
+
+    def __str__(self) -> str:
+        n = len(self.cases) - 1
+        more = f" (and {n} more case{'s' if n > 1 else ''})" if n else ""
+        return f"{self.cases[0]}{more}: {self.what}"
+
+
+@dataclass
+class Examination:
+    """The trials of one step, and what was found by them.
+
+    Parameters
+    ----------
+    subject : Subject
+    makers : mapping of str to callable
+        What makes each port's value of a `Case`.
+    """
+
+    subject: Subject
+    makers: Mapping[str, Maker]
+    limit_s: float = FIRST_S
+    n_cases: int = 0
+    n_values: int = 0
+    _found: dict[str, Broken] = field(default_factory=dict, init=False)
+
+    @property
+    def broken(self) -> list[Broken]:
+        """The promises found broken; what is broken alike, but for numbers, is one."""
+        return [*self._found.values()]
+
+    def answers(self) -> bool:
+        """Return whether the step gives a value for the ordinary case."""
+        return self._try(self.subject.call(), self._inputs(ordinary())).answered
+
+    def run(self) -> None:
+        """Try every case that this step can tell from the others."""
+        usual, *others = all_cases()
+        first = self.look_at(usual, self._inputs(usual))
+        kept = Kept({"answer": first.value})
+        self.limit_s = max(LEAST_S, TIMES * first.seconds)
+        comparable = self._look_at_copies(usual, first)
+        seen = {pickle.dumps(self._inputs(usual))}
+        for case in others:
+            try:
+                inputs = self._inputs(case)
+            except Unmakeable:  # of this case the steps before give nothing
+                continue
+            mark = pickle.dumps(inputs)
+            if mark not in seen:
+                seen.add(mark)
+                self.look_at(case, inputs)
+        again = self._try(self._call(), self._inputs(usual))
+        if kept.changed():
+            self._tell(ORDINARY, WRITES_BEFORE)
+        elif comparable and not _same_end(again, first):
+            self._tell(ORDINARY, "gives another answer the second time; what is kept, or random?")
+
+    def look_at(self, case: Case, inputs: Inputs) -> Trial:
+        """Try a case, and note every promise that is broken in it."""
+        self.n_cases += 1
+        trial = self._watched(case, self._call(), inputs)
+        self.n_values += trial.answered
+        if self.subject.signature.stateful and case.name != ORDINARY:
+            used = self.subject.call()
+            before = Kept({"answer": self._try(used, self._inputs(ordinary())).value})
+            self._watched(case, used, self._inputs(case))
+            if before.changed():
+                self._tell(case.name, WRITES_BEFORE)
+        return trial
+
+    def _watched(self, case: Case, call: Bound, inputs: Inputs) -> Trial:
+        kept = Kept(inputs)
+        trial = self._try(call, inputs)
+        changed = kept.changed()
+        if changed:
+            self._tell(case.name, f"writes into its input {', '.join(changed)}; change a copy")
+            return trial  # an error on the way is one of the same kind
+        self._tell(case.name, trial.trouble())
+        if trial.answered:
+            self._tell(case.name, self.subject.misfit(inputs, trial.value) or _bad(trial.value))
+        return trial
+
+    def _try(self, call: Callable[..., Any], inputs: Inputs) -> Trial:
+        return attempt(call, inputs, self.limit_s, self.subject.package)
+
+    def _inputs(self, case: Case) -> Inputs:
+        """Return new values for the ports; raises `Unmakeable`."""
+        return {name: maker(case) for name, maker in self.makers.items()}
+
+    def _call(self) -> Bound:
+        """Return the step: the one and the same unless it keeps a state from frame to frame."""
+        return self.subject.call() if self.subject.signature.stateful else self._one
+
+    @cached_property
+    def _one(self) -> Bound:
+        return self.subject.call()
+
+    def _tell(self, case: str, what: str) -> None:
+        if not what:
+            return
+        kind = _NUMBERS.sub("#", what)
+        known = self._found.get(kind)
+        if known is None:
+            self._found[kind] = Broken((case,), what)
+        elif case not in known.cases:
+            self._found[kind] = Broken((*known.cases, case), known.what)
+
+    def _look_at_copies(self, usual: Case, first: Trial) -> bool:
+        """Note what is wrong with copies of the step; return whether its answers can be copied."""
+        call = self.subject.call()
+        for what, made in _copies(call):
+            if isinstance(made, Exception):
+                self._tell(ORDINARY, f"the step cannot be {what}: {_told(made)}")
+                break
+            if what == "pickled" and made.target is not call.target:  # and found by its name again
+                again = self._try(made, self._inputs(usual))
+                if not _same_end(again, first):
+                    self._tell(ORDINARY, "the step pickled gives another answer")
+        for what, made in _copies(first.value) if first.answered else ():
+            if isinstance(made, Exception):
+                self._tell(ORDINARY, f"its answer cannot be {what}: {_told(made)}")
+                return False
+            if not same(made, first.value):
+                self._tell(ORDINARY, f"its answer {what} is another")
+        return True
+
+
+def examined(subject: Subject, makers: Makers) -> Examination:
+    """Return the examination of a step, images in the first quantity it gives a value for.
+
+    Raises
+    ------
+    Unmakeable
+        If nothing makes a value for a port.
+    UsageError
+        If its ``__init__`` refuses the settings.
+    """
+    first: Examination | None = None
+    for quantity in QUANTITIES_TRIED:
+        required = [p for p in subject.signature.ports if p.required]
+        ports = {p.name: makers.maker(p, quantity, subject.name) for p in required}
+        found = Examination(subject, ports)
+        first = first or found
+        if found.answers():
+            break
+    else:
+        assert first is not None
+        found = first
+    found.run()
+    return found
+
+
+def _bad(value: Any) -> str:
+    found = not_finite(value)
+    return f"gives as good what is none: {found}; raise Degenerate" if found else ""
+
+
+def _same_end(one: Trial, other: Trial) -> bool:
+    return one.answered == other.answered and same(one.value, other.value)
+
+
+def _copies(value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield a value pickled and copied, each by how it is told; an error where that fails."""
+    ways: tuple[tuple[str, Callable[[Any], Any]], ...] = (
+        ("pickled", lambda it: pickle.loads(pickle.dumps(it))),
+        ("copied", copy.deepcopy),
+    )
+    for what, way in ways:
+        try:
+            yield what, way(value)
+        except Exception as error:
+            yield what, error
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(text_of(error).split())}"

@@ -1,0 +1,100 @@
+"""Everything a plugin offers, imported and tried: what is wrong with it, a line each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from tactile_graph.errors import PipelineError, TactileGraphError, text_of
+from tactile_graph.plugins.registry import OFFERS, Plugin, Registry, singular
+from tactile_graph.testing.check import examine_step
+
+FILES = ("pads", "presets", "scenes")
+
+
+@dataclass
+class PluginReport:
+    """What became of what a plugin offers.
+
+    Parameters
+    ----------
+    plugin : Plugin
+    broken : list of str
+        A line for each thing that is wrong.
+    untried : dict of str to str
+        Why a step was not tried, by name.
+    n_offers : int
+        How many things were looked at.
+    """
+
+    plugin: Plugin
+    broken: list[str] = field(default_factory=list)
+    untried: dict[str, str] = field(default_factory=dict)
+    n_offers: int = 0
+
+
+def examine_plugin(
+    plugin: Plugin, registry: Registry, told: Callable[[str], None] = lambda what: None
+) -> PluginReport:
+    """Return what is wrong with all that a plugin offers.
+
+    Parameters
+    ----------
+    plugin : Plugin
+        One of the registry.
+    registry : Registry
+    told : callable, optional
+        Told what is looked at next, such as ``step 'median'``.
+    """
+    report = PluginReport(plugin)
+    if plugin.error:
+        report.broken.append(plugin.error)
+    for kind in OFFERS:
+        for name in plugin.offers.get(kind, ()):
+            what = f"{singular(kind)} {name!r}"
+            told(what)
+            report.n_offers += 1
+            if kind == "steps":
+                _look_at_step(report, registry, name)
+            else:
+                report.broken += [f"{what}: {w}" for w in _wrong(registry, kind, name)]
+    report.broken += [c for c in registry.clashes if f"of {plugin.label} is refused" in c]
+    return report
+
+
+def _look_at_step(report: PluginReport, registry: Registry, name: str) -> None:
+    found = examine_step(name, registry=registry)
+    report.broken += found.lines()
+    if found.untried:
+        report.untried[name] = found.untried
+    elif not found.broken and not found.n_values:
+        report.untried[name] = "it gave no value in any case"
+
+
+def _wrong(registry: Registry, kind: str, name: str) -> Iterator[str]:
+    """Yield what is wrong with an offer that is no step."""
+    try:
+        if kind == "pipelines":
+            from tactile_graph.pipeline.load import load_graph
+
+            load_graph(name, registry)
+        elif kind in FILES:
+            _read(registry, kind, name)
+        elif kind == "readers":
+            registry.step(name)
+        else:
+            registry.load(kind, name)
+    except PipelineError as error:
+        yield from (str(p).partition("\n")[0] for p in error.problems)
+    except TactileGraphError as error:
+        yield " ".join(text_of(error).split())
+
+
+def _read(registry: Registry, kind: str, name: str) -> None:
+    """Read the file of a pad, preset or scene, as whatever uses it does."""
+    from tactile_graph.plugins.file_kind import FileKind
+
+    for known in registry.names("file_kinds"):
+        reader = registry.load("file_kinds", known)
+        if isinstance(reader, FileKind) and reader.offers == kind:
+            reader.read(str(registry.path(kind, name)))

@@ -1,0 +1,99 @@
+"""Every built-in step keeps the promises of steps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps.signature import Kind
+from tactile_graph.testing import examine_step, isolated
+from tactile_graph.testing.cases import PITCH_CM, SHAPE
+from tactile_graph_pads.learned import Elements, write_elements
+from tactile_graph_pads.learning.patch import N_PLACE, PatchKind
+from tactile_graph_pads.learning.place import PlaceCorrection, write_place
+
+FAMILIES = sorted({p.name for p in installed().plugins if p.offers.get("steps")})
+FEW_LEVELS = {"model": {"n_levels": 6}}
+ROUGH = {"precision": 1.0, "pressure": "even"}
+ONE_DISC = {"kinds": ["disc"], "most": 1}
+SETTINGS: dict[str, dict[str, Any]] = {
+    # What has no default.
+    "gain": {"rows": [1.0] * SHAPE[0]},
+    "hit_or_miss": {"hit": [[0, 1, 0], [1, 1, 1], [0, 1, 0]]},
+    "simplify_polygon": {"corners": 4},
+    "threshold": {"level": 0.3},
+    # What would take many seconds in plain loops.
+    **dict.fromkeys(("gibbs", "gnc", "graph_cuts", "icm", "restore"), FEW_LEVELS),
+    "mean_field": {**FEW_LEVELS, "cooling": 0.2},
+    "trw": {"model": {"n_levels": 6, "lines": "marginal"}, "n_sweeps": 3},
+    "posterior": {**FEW_LEVELS, "n_burn": 5, "n_samples": 8},
+    **dict.fromkeys(
+        (
+            "choose_shape",
+            "fit_footprint",
+            "follow_footprint",
+            "footprint_disc",
+            "footprint_ellipse",
+            "footprint_rectangle",
+            "identify_footprint",
+        ),
+        ROUGH,
+    ),
+    "footprint_by_order": {"precision": 1.0},
+    **dict.fromkeys(("fit_footprints", "locate_objects"), ONE_DISC),
+}
+QUICK = ("erode", "fit_circle", "hull", "contacts", "force", "tare")
+NEEDS_A_PAD = ("correct_place", "correct_readings", "threshold_learned")
+
+
+@pytest.fixture
+def pad(tmp_path: Path) -> str:
+    """A pad of the ordinary case's shape, learned in volts."""
+    kind = PatchKind(3)
+    n = N_PLACE + kind.size
+    correction = PlaceCorrection(
+        kind, SHAPE, np.zeros(kind.size), 1.0, np.zeros((n, 2)), np.zeros((n, n)), np.ones(2)
+    )
+    write_place(tmp_path / "place.npz", correction)
+    state = np.full(SHAPE, "good", dtype="U8")
+    state[1, 2] = "dead"
+    table = Elements(np.full(SHAPE, 0.01), np.full(SHAPE, 0.01), np.ones(SHAPE), state)
+    write_elements(tmp_path / "table.csv", table)
+    path = tmp_path / "pad.yaml"
+    path.write_text(
+        f"learned: {{reading: volt, rows: {SHAPE[0]}, columns: {SHAPE[1]}, "
+        f"pitch_cm: [{PITCH_CM[0]}, {PITCH_CM[1]}], origin_cm: [0, 0], elements: table.csv, "
+        "noise: 0.01, touched_from: 0.1, gain_of: volt, place: place.npz}\n"
+    )
+    return str(path)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_sample_of_them_does(name: str) -> None:
+    report = examine_step(name, settings=SETTINGS.get(name))
+    assert (report.untried, report.lines()) == ("", [])
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_step_of_a_family_does(family: str, pad: str) -> None:
+    registry = isolated()
+    (plugin,) = (p for p in registry.plugins if p.name == family)
+    settings = {**SETTINGS, **{name: {"pad": pad} for name in NEEDS_A_PAD}}
+    broken, untried = [], []
+    for name in plugin.offers["steps"]:
+        report = examine_step(name, settings=settings.get(name), registry=registry)
+        broken += report.lines()
+        if registry.step(name).kind is not Kind.SOURCE:
+            untried += [name] * bool(report.untried or not report.n_values)
+    assert (broken, untried) == ([], [])
+
+
+def test_what_is_told_here_exists() -> None:
+    names = {*SETTINGS, *NEEDS_A_PAD, *QUICK}
+    assert names <= set(installed().names("steps"))

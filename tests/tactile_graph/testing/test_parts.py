@@ -1,0 +1,83 @@
+"""What checks are made of: numbers that are none, answers that are the same, calls that end."""
+
+from __future__ import annotations
+
+import math
+import threading
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, Image, Mask, Points
+from tactile_graph.errors import Degenerate
+from tactile_graph.testing.finite import not_finite
+from tactile_graph.testing.same import same
+from tactile_graph.testing.trial import attempt
+
+
+class Pair(NamedTuple):
+    circle: Circle
+    values: Any
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (1.0, ""),
+        (math.nan, "the answer is nan"),
+        (Pair(Circle(1.0, math.inf, 2.0), 3), "circle.y_cm is inf"),
+        (Pair(Circle(1.0, 2.0, 3.0), np.array([1.0, np.nan])), "values holds 1 of 2 numbers"),
+        ((1.0, -math.inf), "1 is -inf"),
+        ({"a": math.nan}, "a is nan"),
+        (Points(np.array([[0.0, np.nan]])), "xy_cm holds 1 of 2"),
+        (Image(np.array([[np.inf, 1.0]])), "values holds 1 of 2"),
+        (Image(np.array([[np.inf, 1.0]]), valid=np.array([[False, True]])), ""),
+        (Mask(np.array([[True]]), (math.inf, 1.0)), "pitch_cm holds 1 of 2"),
+    ],
+)
+def test_a_number_that_is_none_is_told_by_its_path(value: Any, told: str) -> None:
+    found = not_finite(value)
+    assert told in found
+    assert bool(found) == bool(told)
+
+
+def test_the_same_is_of_one_type_and_content() -> None:
+    one = Pair(Circle(1.0, 2.0, math.nan), np.arange(3.0))
+    assert same(one, Pair(Circle(1.0, 2.0, math.nan), np.arange(3.0)))
+    assert not same(one, Pair(Circle(1.0, 2.5, math.nan), np.arange(3.0)))
+    assert not same(one, Pair(Circle(1.0, 2.0, math.nan), np.arange(3)))
+    assert not same(Image(np.eye(2)), Image(np.eye(2), quantity="volt"))
+    assert same([Image(np.eye(2))], [Image(np.eye(2))])
+    assert not same({"a": 1}, {"b": 1})
+
+
+def test_a_call_that_takes_too_long_is_stopped() -> None:
+    def endless() -> None:
+        while True:
+            try:
+                math.sqrt(2.0)
+            except Exception:  # which must not take the stop for an error of its own
+                continue
+
+    trial = attempt(endless, {}, 0.05)
+    assert trial.late
+    assert "was stopped after" in trial.trouble()
+
+
+def test_beside_the_main_thread_a_call_is_only_told_to_be_late() -> None:
+    ended: list[Any] = []
+    thread = threading.Thread(target=lambda: ended.append(attempt(lambda: 1, {}, -1.0)))
+    thread.start()
+    thread.join()
+    assert ended[0].late
+
+
+def test_warnings_are_no_trouble_and_errors_for_people_neither() -> None:
+    assert attempt(lambda: float(np.float64(1e300) ** 2), {}, 1.0).answered
+
+    def refuses() -> None:
+        raise Degenerate("nothing is pressed")
+
+    trial = attempt(refuses, {}, 1.0)
+    assert (trial.answered, trial.trouble()) == (False, "")

@@ -1,0 +1,76 @@
+"""Sketches of each number: what they leave unexplained, and which lie next to each other."""
+
+import numpy as np
+import pytest
+
+from helpers_joint import DISCS, problem_of_discs
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
+from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
+from tactile_graph_likelihood.several.ladder import Ladder, dilated, neighbours
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
+
+pytestmark = pytest.mark.usefixtures("plain_kernels")
+
+KINDS = [(DISC, 0), (RECTANGLE, 0)]
+SKETCHES = np.array(
+    [[x, y, np.log(0.92 * 2.6), np.log(0.92 * 2.6), 0.0, 4.5] for x, y in DISCS[:, :2]]
+)
+
+
+def load_of(problem, discs):
+    lain = problem._replace(load=0.0 * problem.load, share=0.0 * problem.load)
+    for k in range(len(discs)):
+        add_outline.call(lain, Outlines(np.full(2, DISC), np.zeros(2, np.int64), discs), k)
+    return lain.load
+
+
+def test_what_outlines_explain_leaves_little_and_what_they_miss_leaves_much():
+    problem = problem_of_discs(3)
+    ladder = Ladder(problem, KINDS, 3.0, 1.0)
+    both = ladder.unexplained(load_of(problem, DISCS))
+    one = ladder.unexplained(load_of(problem, DISCS[:1]))
+    right = np.zeros((16, 16), bool)
+    right[:, 7:] = True
+    assert (both >= 0.0).all()
+    assert one[right].sum() > both[right].sum() + 40.0
+    unknown = np.full_like(problem.states, UNKNOWN)
+    assert not Ladder(problem._replace(states=unknown), KINDS, 3.0, 1.0).unexplained(both).any()
+
+
+@pytest.mark.slow  # plain code takes some seconds
+def test_a_ladder_has_two_sketches_where_two_discs_lie_and_they_are_the_likeliest():
+    best = Ladder(problem_of_discs(2), KINDS, 1.0, 1.0).ladder(3)
+    assert {1, 2} <= set(best)
+    assert max(best, key=lambda n: best[n].rank) == 2
+    two = best[2].points
+    two = two[two[:, 0].argsort()]
+    assert np.hypot(*(two - DISCS)[:, :2].T).max() < 0.5
+
+
+def test_elements_lie_in_one_sketch_or_nearest_to_it():
+    ladder = Ladder(problem_of_discs(), KINDS, 1.0, 1.0)
+    own, unexplained = ladder.shares(SKETCHES)
+    assert own[4, 4] == 0
+    assert own[4, 8] == 1
+    assert ((own >= 0) == ladder.on).all()
+    assert unexplained.sum() < ladder.shares(SKETCHES[:1])[1].sum() - 20.0
+
+
+def test_neighbours_are_those_next_to_each_other_and_what_explains_least_comes_first():
+    own = np.full((6, 12), -1)
+    own[1:4, 0:3], own[1:4, 3:6], own[1:4, 7:9] = 0, 1, 2
+    unexplained = np.zeros(own.shape)
+    unexplained[2, 8] = 5.0
+    first, second = neighbours(own, unexplained, 3)
+    assert first[0] == (2, 1)
+    assert second[0] == (1, 0)
+    assert first[2] == 5.0
+    assert (second[1] == ((own == 0) | (own == 1))).all()
+    own[1:4, 3:6] = -1
+    assert neighbours(own, unexplained, 3) == []
+
+
+def test_a_mask_is_dilated_over_corners():
+    mask = np.zeros((4, 4), bool)
+    mask[0, 0] = True
+    assert dilated(mask).sum() == 4
