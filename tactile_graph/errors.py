@@ -102,8 +102,14 @@ class PipelineError(TactileGraphError):
         return "\n".join(str(p) for p in self.problems)
 
 
+LONGEST_NAME = 200
+"""Characters; nothing is near a longer one, and looking for it takes their square."""
+
+
 def did_you_mean(got: str, allowed: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the nearest allowed name, or an empty text."""
+    if len(str(got)) > LONGEST_NAME:
+        return ""
     names = [str(a) for a in allowed]
     near = [name for name in names if name.casefold() == str(got).casefold()]
     near = near or get_close_matches(str(got), names, n=1, cutoff=0.6)

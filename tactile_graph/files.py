@@ -39,12 +39,25 @@ def whole_file(name: Name) -> Iterator[BinaryIO]:
         try:
             with part.open("wb") as file:
                 yield file
+                file.flush()
+                os.fsync(file.fileno())  # or a power cut may leave the name without the content
             if target.exists():
                 part.chmod(stat.S_IMODE(target.stat().st_mode))
             part.replace(target)
         except BaseException:
             part.unlink(missing_ok=True)
             raise
+
+
+def put_on_disc(path: Path, within: Path) -> None:
+    """Wait until a file, and its name in each folder up to ``within``, are on the disc."""
+    folders = [] if os.name == "nt" else [p for p in path.parents if p.is_relative_to(within)]
+    for place in (path, *folders):  # Windows opens no folders, and keeps their names by itself
+        descriptor = os.open(place, os.O_RDWR if place == path else os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def write_whole(name: Name, content: str | bytes) -> None:

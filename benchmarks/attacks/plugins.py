@@ -1,7 +1,7 @@
 """Attack the command line with plugins that misbehave, one or several at a time.
 
-    python benchmarks/attacks/plugins.py                 # each alone, and 20 mixtures; two minutes
-    python benchmarks/attacks/plugins.py --mixtures 1000
+    python benchmarks/attacks/plugins.py                # each alone, and 20 mixtures; two minutes
+    python benchmarks/attacks/plugins.py --tries 1000
 
 Each plugin is installed for one process, as a folder on its path with an entry point. A run that
 needs none of them must give whole JSON lines alone on standard output and exit with 0; `plugins`
@@ -11,17 +11,17 @@ the step fails in a frame, and name the step or its plugin; no traceback may be 
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import random
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
+
+from attempts import Attempt, parser_of, told
 
 HOOK = """
 from tactile_graph import hookimpl
@@ -145,32 +145,23 @@ def _lines(text: str, n: int | None) -> str:
     return f"{len(rows)} lines, not {n}" if n is not None and len(rows) != n else ""
 
 
-def attack(n_mixtures: int, seed: int) -> Iterator[tuple[str, str, str]]:
-    """Yield the plugins, what was called, and what is wrong, if anything is."""
+def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
+    """Yield what came of commands with plugins: each alone first, then mixtures of them."""
     rng = random.Random(seed)
-    mixtures = [[name] for name in PLUGINS]
-    mixtures += [rng.sample(list(PLUGINS), rng.randint(2, 4)) for _ in range(n_mixtures)]
-    for names in mixtures:
+    for i in range(n_tries):
+        alone = i < len(PLUGINS)
+        names = [list(PLUGINS)[i]] if alone else rng.sample(list(PLUGINS), rng.randint(2, 4))
         with tempfile.TemporaryDirectory() as folder:
             for what, why in tried(names, Path(folder)):
-                yield ", ".join(names), what, why
+                kind = what if what in ("plugins", "run of others") else "run of its step"
+                came = "as promised" if not why else "FAILED"
+                yield Attempt(kind, came, why and f"{', '.join(names)}: {what}: {why}")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything went wrong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--mixtures", type=int, default=20)
-    parser.add_argument("--seed", type=int, default=1)
-    args = parser.parse_args(arguments)
-    begun, failed, n = time.monotonic(), 0, 0
-    for names, what, why in attack(args.mixtures, args.seed):
-        n += 1
-        if why:
-            failed += 1
-            print(f"{names}: {what}: {why}", flush=True)
-    seconds = time.monotonic() - begun
-    print(f"{failed} failures in {n} tries; {seconds:.0f} s; {json.dumps(vars(args))}")
-    return 1 if failed else 0
+    args = parser_of(__doc__, len(PLUGINS) + 20).parse_args(arguments)
+    return told(attack(args.tries, args.seed), args)
 
 
 if __name__ == "__main__":

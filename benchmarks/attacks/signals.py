@@ -4,14 +4,13 @@
     python benchmarks/attacks/signals.py --tries 2000     # an hour
 
 Each try runs a command that writes, sends it SIGINT, SIGTERM, SIGHUP or SIGKILL at a moment drawn
-at random, and looks at what is left: lines must be whole, files whole or not there, stores open;
-the exit code must be 128 and the signal's number and no traceback may be shown. At first each
-command is run with standard input, output or error closed.
+at random, every second time one within 30 ms of its first file, and looks at what is left: lines
+must be whole, files whole or not there, stores open; the exit code must be 128 and the signal's
+number and no traceback may be shown. Some are run with standard input, output or error closed.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import random
@@ -21,11 +20,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from attempts import Attempt, parser_of, told
 
 from tactile_graph_sources.store import read_store
 
@@ -33,6 +32,10 @@ SOURCE = ("--source", "simulate", "--with", "scene=discs")
 COMMANDS: dict[str, tuple[str, ...]] = {
     "run jsonl": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.jsonl"),
     "run csv": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.csv"),
+    "run parquet": ("run", "circle-1", *SOURCE, "--frames", "100", "-o", "out.parquet"),
+    "run images": ("run", "circle-1", *SOURCE, "--frames", "100", "--only", "frame",
+                   "-o", "out.h5"),
+    "run film": ("run", "circle-1", *SOURCE, "--frames", "6", "--plot", "out.gif"),
     "compare": ("compare", "circle-1", "circle-2", *SOURCE, "--frames", "30", "--json", "out.json",
                 "--report", "out.html"),
     "audit": ("audit", "circle-3", *SOURCE, "--frames", "30", "--json", "out.json"),
@@ -42,6 +45,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGKILL")
 LONGEST_S = 600.0
+SOON_S = 0.03
+CLOSED_SHARE = 0.15
 
 
 def started(words: Sequence[str], folder: Path, shell: str = "") -> subprocess.Popen[bytes]:
@@ -86,9 +91,28 @@ def _store(path: Path) -> str:
     return "" if index == list(range(len(index))) else f"frames {index}"
 
 
+def _stacks(path: Path) -> str:
+    import h5py
+
+    with h5py.File(path) as file:
+        return "" if len(file["index"]) == len(file["frame/values"]) else "stacks are unequal"
+
+
+def _rows(path: Path) -> str:
+    import pyarrow.parquet
+
+    return "" if pyarrow.parquet.read_table(path).num_rows <= 100 else "too many rows"
+
+
+def _film(path: Path) -> str:
+    import imageio.v3 as iio
+
+    return "" if len(list(iio.imiter(path))) else "no picture"
+
+
 LOOKS: dict[str, Callable[[Path], str]] = {
     ".jsonl": _lines, ".csv": _lines, ".json": _json, ".html": _page, ".npz": _archive,
-    ".zarr": _store,
+    ".zarr": _store, ".h5": _stacks, ".parquet": _rows, ".gif": _film,
 }  # fmt: skip
 
 
@@ -111,9 +135,20 @@ def left_in(folder: Path, killed: bool) -> str:
 # -- tries -------------------------------------------------------------------------------------
 
 
-def once(name: str, number: signal.Signals, after_s: float, folder: Path) -> str:
-    """Return what is wrong after a command got a signal; "" if nothing is."""
+def wait_for_a_file(running: subprocess.Popen[bytes], folder: Path) -> None:
+    """Wait until a command has begun to write, or has ended."""
+    while running.poll() is None and not any(folder.iterdir()):
+        time.sleep(0.0005)
+
+
+def once(name: str, number: signal.Signals, after_s: float, from_file: bool, folder: Path) -> str:
+    """Return what is wrong after a command got a signal; "" if nothing is.
+
+    ``after_s`` counts from the start, or from its first file.
+    """
     running = started(COMMANDS[name], folder)
+    if from_file:
+        wait_for_a_file(running, folder)
     time.sleep(after_s)
     running.send_signal(number)
     try:
@@ -144,24 +179,36 @@ def closed(name: str, stream: str, folder: Path) -> str:
     return left_in(folder, killed=False)
 
 
-def attack(n_tries: int, seed: int) -> Iterator[tuple[str, str, str]]:
-    """Yield command, what was done to it, and what is wrong, if anything is."""
+def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
+    """Yield what came of commands, left alone, without a stream, and with a signal."""
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         lasts: dict[str, float] = {}
-        for command in COMMANDS:
-            begun = time.monotonic()
-            yield command, "nothing", closed(command, "", _emptied(folder))
-            lasts[command] = time.monotonic() - begun
-        for command in COMMANDS:
-            for stream in ("<&-", ">&-", "2>&-"):
-                yield command, stream, closed(command, stream, _emptied(folder))
         for _ in range(n_tries):
-            command, number = rng.choice(list(COMMANDS)), signal.Signals[rng.choice(SIGNALS)]
-            after_s = rng.random() * lasts[command]
-            why = once(command, number, after_s, _emptied(folder))
-            yield command, number.name, f"after {after_s:.2f} s: {why}" if why else ""
+            command = rng.choice(list(COMMANDS))
+            if command not in lasts:
+                begun = time.monotonic()
+                why = closed(command, "", _emptied(folder))
+                yield Attempt("left alone", "ended" if not why else "FAILED", f"{command}: {why}"
+                              if why else "")  # fmt: skip
+                lasts[command] = time.monotonic() - begun
+            if rng.random() < CLOSED_SHARE:
+                stream = rng.choice(("<&-", ">&-", "2>&-"))
+                what, why = f"without {stream}", closed(command, stream, _emptied(folder))
+            else:
+                what, why = signalled(command, lasts[command], folder, rng)
+            why = why and f"{command}: {why}"
+            yield Attempt(what, "as promised" if not why else "FAILED", why)
+
+
+def signalled(command: str, lasts_s: float, folder: Path, rng: random.Random) -> tuple[str, str]:
+    """Return which signal a command got, and what is wrong with what it did then."""
+    number, from_file = signal.Signals[rng.choice(SIGNALS)], rng.random() < 0.5
+    after_s = rng.random() * (SOON_S if from_file else lasts_s)
+    why = once(command, number, after_s, from_file, _emptied(folder))
+    since = "its first file" if from_file else "its start"
+    return number.name, why and f"{after_s:.3f} s from {since} on: {why}"
 
 
 def _emptied(folder: Path) -> Path:
@@ -172,23 +219,8 @@ def _emptied(folder: Path) -> Path:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything went wrong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--tries", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1)
-    args = parser.parse_args(arguments)
-    begun, failed = time.monotonic(), 0
-    tries: Counter[tuple[str, str]] = Counter()
-    for command, what, why in attack(args.tries, args.seed):
-        tries[command, what] += 1
-        if why:
-            failed += 1
-            print(f"{command}: {what}: {why}", flush=True)
-    for (command, what), n in sorted(tries.items()):
-        print(f"{command:14} {what:8} {n:5}")
-    n = sum(tries.values())
-    seconds = time.monotonic() - begun
-    print(f"{failed} failures in {n} tries; {seconds:.0f} s; {json.dumps(vars(args))}")
-    return 1 if failed else 0
+    args = parser_of(__doc__, 60).parse_args(arguments)
+    return told(attack(args.tries, args.seed), args)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Attack stores: parts damaged, swapped and taken away, and writers killed at any moment.
 
-    python benchmarks/attacks/stores.py                                  # 300 damaged, 40 killed
-    python benchmarks/attacks/stores.py --damaged 20000 --killed 1000    # about an hour
+    python benchmarks/attacks/stores.py                                # 300 damaged, 40 killed
+    python benchmarks/attacks/stores.py --tries 20000 --killed 1000    # about an hour
 
 Each damaged store is a copy of one of two in which one to three things happened to its files: bits
 flipped, ends cut off, parts zeroed, files emptied, taken away, exchanged, overwritten by others,
@@ -13,8 +13,6 @@ is not marked as doubtful; a store is short if frames are missing and nothing is
 
 from __future__ import annotations
 
-import argparse
-import json
 import mmap
 import os
 import random
@@ -24,11 +22,11 @@ import struct
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from attempts import Attempt, parser_of, told
 
 from tactile_graph import Circle, Frame
 from tactile_graph.errors import TactileGraphError
@@ -216,7 +214,7 @@ DAMAGES: dict[str, Damage] = {
 def judged(store: Path, written: Sequence[Frame]) -> tuple[str, str, int]:
     """Return what came of reading a store, in a word and at length, and how many frames came."""
     report = Report()
-    begun = time.monotonic()
+    begun = time.process_time()
     n = 0
     try:
         bad = ""
@@ -230,8 +228,9 @@ def judged(store: Path, written: Sequence[Frame]) -> tuple[str, str, int]:
         return "refused", str(error), n
     except Exception as error:
         return "FOREIGN", repr(error), n
-    if time.monotonic() - begun > SLOW_S:
-        return "SLOW", f"{time.monotonic() - begun:.1f} s", n
+    seconds = time.process_time() - begun
+    if seconds > SLOW_S:
+        return "SLOW", f"{seconds:.1f} s", n
     if bad:
         return "WRONG", bad, n
     if n < len(written):
@@ -394,8 +393,14 @@ class Killing:
 # -- all of it ---------------------------------------------------------------------------------
 
 
-def attack(n_damaged: int, n_killed: int, seed: int) -> Iterator[tuple[str, str, str]]:
-    """Yield what was done, what came of it in a word, and at length."""
+def attack(n_damaged: int, n_killed: int, seed: int) -> Iterator[Attempt]:
+    """Yield what came of stores that were damaged and of commands that were killed."""
+    for what, verdict, why in _attack(n_damaged, n_killed, seed):
+        bad = any(word.isupper() for word in verdict.replace(":", "").split())
+        yield Attempt(what, verdict, why if bad else "")
+
+
+def _attack(n_damaged: int, n_killed: int, seed: int) -> Iterator[tuple[str, str, str]]:
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         written = frames(45, seed)
@@ -415,27 +420,15 @@ def attack(n_damaged: int, n_killed: int, seed: int) -> Iterator[tuple[str, str,
         names = ("record", "record --append", "convert", "check --repair")
         for i in range(n_killed):
             verdict, why = killing.once(names[i % len(names)], rng)
-            yield "killed", verdict, why
+            yield f"{names[i % len(names)]} killed", verdict, why
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything was silent, foreign or lost."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--damaged", type=int, default=300)
-    parser.add_argument("--killed", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=1)
+    parser = parser_of(__doc__, 300)
+    parser.add_argument("--killed", type=int, default=40, help="commands that are killed")
     args = parser.parse_args(arguments)
-    begun, failed = time.monotonic(), 0
-    counts: Counter[tuple[str, str]] = Counter()
-    for what, verdict, why in attack(args.damaged, args.killed, args.seed):
-        counts[what, verdict] += 1
-        if any(word.isupper() for word in verdict.replace(":", "").split()):
-            failed += 1
-            print(f"{what}: {verdict}: {why}", flush=True)
-    for (what, verdict), n in sorted(counts.items()):
-        print(f"{what:8} {verdict:22} {n:6}")
-    print(f"{failed} failures; {time.monotonic() - begun:.0f} s; {json.dumps(vars(args))}")
-    return 1 if failed else 0
+    return told(attack(args.tries, args.killed, args.seed), args)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from tactile_graph.errors import UsageError
-from tactile_graph.pipeline.document import Document, read_document
+from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.plugins.registry import installed
 from tactile_graph.wires import Image
 from tactile_graph_pads.circuits import Divider, Feedback, Floating
@@ -258,7 +258,7 @@ def read_file(path: Path, what: str) -> Document:
         If it cannot be read.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: this {what} file cannot be read: {error}") from error
     return read_document(text, str(path))

@@ -8,7 +8,7 @@ from typing import Any, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
-from tactile_graph.errors import PipelineError, Problem, did_you_mean, one_of
+from tactile_graph.errors import PipelineError, Problem, did_you_mean, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
 T = TypeVar("T")
@@ -42,7 +42,7 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
         With every problem of the file.
     """
     if not document.problems and not isinstance(document.data, Mapping):
-        document.problem(f"{what} is a mapping of settings, got {document.data!r}")
+        document.problem(f"{what} is a mapping of settings, got {shown(document.data)}")
     if document.problems:
         raise RecordError(document.problems)
     try:
@@ -72,7 +72,7 @@ def _refuse_yes_for_numbers(document: Document, data: Any, value: Any, path: Pat
         for index, inner in enumerate(data):
             _refuse_yes_for_numbers(document, inner, value[index], (*path, index))
     elif isinstance(data, bool) and not isinstance(value, bool):
-        document.problem(f"{path[-1]} must be a number, got {data!r}", *path)
+        document.problem(f"{path[-1]} must be a number, got {shown(data)}", *path)
 
 
 def inline(data: Mapping[str, Any], where: str) -> Document:
@@ -116,16 +116,16 @@ def _note(document: Document, e: Any, kind: Any) -> None:
         tags = [t.strip().strip("'") for t in str(context["expected_tags"]).split(",")]
         tag = str(context["discriminator"]).strip("'")
         got = context["tag"]
-        message = f"{tag} must be one of {one_of(tags)}, got {got!r}{did_you_mean(got, tags)}"
+        message = f"{tag} must be one of {one_of(tags)}, got {shown(got)}{did_you_mean(got, tags)}"
         document.problem(message, *path, tag)
     elif error in _COMPARISONS:
         key, sign = _COMPARISONS[error]
-        document.problem(f"{name} must be {sign} {context[key]:g}, got {got!r}", *path)
+        document.problem(f"{name} must be {sign} {context[key]:g}, got {shown(got)}", *path)
     elif error == "value_error":
         document.problem(str(context.get("error", e["msg"])), *path)
     else:
         text = str(e["msg"]).removeprefix("Input ")
-        document.problem(f"{name} {text[0].lower()}{text[1:]}, got {got!r}", *path)
+        document.problem(f"{name} {text[0].lower()}{text[1:]}, got {shown(got)}", *path)
 
 
 def _walk(data: Any, loc: Path) -> tuple[Path, Path]:
@@ -153,7 +153,7 @@ def _holds(data: Any, part: str | int) -> bool:
 def _unknown_key(name: str, parents: Path, kind: Any) -> str:
     known = _fields(kind, parents)
     hint = did_you_mean(name, known) or f"; allowed are: {one_of(known)}"
-    return f"unknown key {name!r}{hint}"
+    return f"unknown key {shown(name)}{hint}"
 
 
 def _fields(kind: Any, parents: Path) -> list[str]:

@@ -70,12 +70,12 @@ def kind_of(found: Registry, name: str) -> str:
 
 def _by_keys(found: Registry, path: Path) -> str:
     from tactile_graph.pipeline.declaration import TOP_KEYS
-    from tactile_graph.pipeline.document import read_document
+    from tactile_graph.pipeline.document import read_document, text_of_file
 
     if not _is_file(path):
         return PIPELINE
     try:
-        data = read_document(path.read_text(encoding="utf-8-sig"), str(path)).data
+        data = read_document(text_of_file(path), str(path)).data
     except (OSError, UnicodeDecodeError):
         return PIPELINE
     keys = set(data) if isinstance(data, dict) else set()

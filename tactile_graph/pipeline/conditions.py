@@ -18,7 +18,8 @@ from tactile_graph.pipeline.wiring import Ref, arms
 from tactile_graph.steps.signature import list_item, type_name
 
 LONGEST = 2_000
-LONGEST_SPELLED = 4_000
+LONGEST_SPELLED, SHORTEST_SPELLED = 4_000, 50
+"""Characters of all that a condition names, each counted as that many at least."""
 DEEPEST = 100
 
 SIGNS = {
@@ -159,7 +160,7 @@ class _Compiler:
         self.spelled = 0
 
     def parse(self, text: str, within: tuple[str, ...]) -> ast.expr:
-        self.spelled += len(text)
+        self.spelled += max(len(text), SHORTEST_SPELLED)
         if len(text) > LONGEST or self.spelled > LONGEST_SPELLED:
             # Conditions that name each other twice over double with each name.
             raise ConditionError(f"longer than {LONGEST} characters")

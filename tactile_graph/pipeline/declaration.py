@@ -13,6 +13,7 @@ TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "ou
 NODE_KEYS = ("step", "use", "first_of", "in", "with", "when", "each", "about")
 SOURCE_KEYS = ("step", "with")
 RESERVED = ("frame", "and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
+MOST_NODES = 2_000
 MEANT = {
     **dict.fromkeys(("input", "inputs", "from", "reads"), "in"),
     **dict.fromkeys(("setting", "settings", "params", "parameters", "options", "args"), "with"),
@@ -161,6 +162,9 @@ class _Declarer:
         if not isinstance(data, dict):
             self.problem(f"'conditions' must be a mapping, got {kind_of(data)}", "conditions")
             return
+        if len(data) > MOST_NODES:
+            self.problem(f"{len(data)} conditions; allowed are {MOST_NODES}", "conditions")
+            return
         for name, text in data.items():
             path = ("conditions", name)
             self.name(name, path, "condition")
@@ -190,6 +194,9 @@ class _Declarer:
             what = "is missing: it maps a name to each node" if data is None else (
                 f"must be a mapping of nodes, got {kind_of(data)}")  # fmt: skip
             self.problem(f"'nodes' {what}", *(() if data is None else ("nodes",)))
+            return
+        if len(data) > MOST_NODES:
+            self.problem(f"{len(data)} nodes; allowed are {MOST_NODES}", "nodes")
             return
         self.named = frozenset(data)
         for name, body in data.items():

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import pathlib
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import yaml
 
-from tactile_graph.errors import Mark, Problem, UsageError, shown
+from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
 DEEPEST = 40
-MOST_CHARACTERS = 1_000_000
+MOST_CHARACTERS, MOST_BYTES = 400_000, 4_000_000  # PyYAML takes a second for a million line ends
+MOST_PROBLEMS = 100  # nobody reads more, and each may take a millisecond to word
+LONGEST_NUMBER = 1_000  # characters; the value of 1:59:59:… takes their square
 OFTEN_READ = 20_000  # characters; nodes of longer texts are not kept
 
 _SCALARS = {
@@ -66,14 +69,28 @@ class Document:
         self.problem_at(self.mark(*path, key=key), message)
 
     def problem_at(self, mark: Mark, message: str) -> None:
-        """Note a problem at ``mark``."""
+        """Note a problem at ``mark``.
+
+        Raises
+        ------
+        PipelineError
+            If there are `MOST_PROBLEMS` already.
+        """
         found = Problem(mark, message, self.snippet(mark))
-        if found not in self.problems:
-            self.problems.append(found)
+        if found in self.problems:
+            return
+        if len(self.problems) >= MOST_PROBLEMS:
+            text = f"more than {MOST_PROBLEMS} mistakes: the rest of the file was not looked at"
+            raise PipelineError([*self.problems, Problem(None, text)])
+        self.problems.append(found)
+
+    @cached_property
+    def _lines(self) -> list[str]:
+        return self.text.splitlines()
 
     def snippet(self, mark: Mark) -> str:
         """Return the marked line with a caret below its column."""
-        lines = self.text.splitlines()
+        lines = self._lines
         if not 1 <= mark.line <= len(lines):
             return ""
         line = lines[mark.line - 1]
@@ -89,6 +106,23 @@ def _columns(text: str) -> int:
         0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1
         for c in text
     )
+
+
+def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES) -> str:
+    """Return a file's text, as far as it has an end; no more of it is read than is allowed.
+
+    Raises
+    ------
+    UsageError
+        If it is longer.
+    OSError, UnicodeDecodeError
+        If it cannot be read, or is not UTF-8.
+    """
+    with path.open("rb") as file:
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise UsageError(f"{str(path)!r} is longer than {most_bytes} bytes")
+    return data.decode("utf-8-sig")
 
 
 def read_document(text: str, file: str) -> Document:
@@ -158,12 +192,16 @@ class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
 
 
 class _Loader(yaml.SafeLoader):
-    """Counts levels: PyYAML descends as deep as Python's stack, however deep that is."""
+    """Counts levels, for PyYAML descends as deep as Python's stack, and values while they come."""
 
     depth = 0
+    count = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         self.depth += 1
+        self.count += 1
+        if self.count > MOST_NODES:
+            raise _TooMuch(f"more than {MOST_NODES} values")
         if self.depth > DEEPEST:
             raise _TooMuch(f"deeper than {DEEPEST} levels")
         node: yaml.Node | None = super().compose_node(parent, index)
@@ -224,6 +262,10 @@ class _Reader:
     def _scalar(self, node: yaml.ScalarNode) -> Any:
         if node.tag == "tag:yaml.org,2002:timestamp":
             return node.value
+        if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_NUMBER:
+            text = f"a number of {len(node.value)} characters; allowed are {LONGEST_NUMBER}"
+            self.document.problem_at(self._mark(node), text)
+            return None
         try:
             return self.constructor.construct_object(node, deep=True)
         except (ValueError, LookupError, yaml.YAMLError):

@@ -6,16 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean, one_of
-from tactile_graph.pipeline.declaration import declare
-from tactile_graph.pipeline.document import MOST_CHARACTERS, read_document
+from tactile_graph.pipeline.declaration import MOST_NODES, declare
+from tactile_graph.pipeline.document import read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
 from tactile_graph.pipeline.scope import Overrides, Scope
 from tactile_graph.plugins.registry import Registry, installed
 
-MOST_BYTES = 4 * MOST_CHARACTERS
-MOST_LEVELS, MOST_NODES = 50, 2_000
-"""Of pipelines within each other, and of nodes in one that another uses, with all it uses."""
+MOST_LEVELS = 50
+"""Of pipelines within each other."""
 
 
 class Opened(NamedTuple):
@@ -107,7 +106,7 @@ def _load(
 ) -> Graph:
     path = find(name, registry)
     try:
-        text = _text(path)
+        text = text_of_file(path)
     except OSError as error:
         why = error.strerror or error
         raise UsageError(f"pipeline file {str(path)!r} cannot be read: {why}") from None
@@ -118,21 +117,6 @@ def _load(
             f"(byte 0x{error.object[error.start]:02x} in line {line}); save it as UTF-8"
         ) from None
     return _build(text, _shown(path), registry, overrides, source, opened)
-
-
-def _text(path: Path) -> str:
-    """Return a file's text, as far as it has an end.
-
-    Raises
-    ------
-    UsageError
-        If it is too long.
-    """
-    with path.open("rb") as file:
-        data = file.read(MOST_BYTES + 1)
-    if len(data) > MOST_BYTES:
-        raise UsageError(f"pipeline file {str(path)!r} is longer than {MOST_BYTES} bytes")
-    return data.decode("utf-8-sig")
 
 
 def _shown(path: Path) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.random import default_rng
 
-from tactile_graph.errors import PipelineError, PluginError, Problem, TactileGraphError, UsageError
+from tactile_graph.errors import PluginError, Problem, TactileGraphError, UsageError
 from tactile_graph.pipeline.bind import bind_inputs
 from tactile_graph.pipeline.checks import check_conditions, check_fields_read, check_overrides
 from tactile_graph.pipeline.conditions import Guard, compile_condition
@@ -38,9 +38,6 @@ from tactile_graph.plugins.mistakes import why
 from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
 
-MOST_PROBLEMS = 100
-"""Nobody reads more, and each may take a millisecond to word."""
-
 SourceOverride = tuple[str, dict[str, Any]] | None
 """The step, and its settings, that replace the file's source."""
 
@@ -66,9 +63,6 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         scope.types.update(dict.fromkeys(loop, UNKNOWN))
     for name in order:
         declared = scope.declaration.nodes[name]
-        if len(scope.document.problems) > MOST_PROBLEMS:
-            text = f"more than {MOST_PROBLEMS} mistakes: the rest of the file was not looked at"
-            raise PipelineError([*scope.document.problems, Problem(None, text)])
         try:
             _node(scope, declared)
         except TactileGraphError as error:

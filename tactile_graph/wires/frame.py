@@ -18,6 +18,8 @@ LARGEST = 1e100
 """Beyond this, what a sensor gave is no reading."""
 PITCHES_CM = (1e-6, 1e6)
 """The least and the greatest pitch of a frame."""
+FARTHEST_CM = 1e9
+"""Of a frame's origin; beyond it, places on the frame could not be told apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,8 @@ class Frame:
         ------
         ValueError
             If values are no real numbers or have no rows and columns, the pitch is not within
-            1e-6 to 1e6 cm, the origin or a time is not finite, or nobody knows the quantity.
+            1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, or nobody knows the
+            quantity.
         """
         copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
@@ -98,8 +101,8 @@ class Frame:
         low, high = PITCHES_CM
         if not (low <= x <= high and low <= y <= high):
             raise ValueError(f"a pitch must be within {low:g} to {high:g} cm, got {pitch_cm}")
-        if not (isfinite(origin_cm[0]) and isfinite(origin_cm[1])):
-            raise ValueError(f"an origin must be finite, got {origin_cm} cm")
+        if not (abs(origin_cm[0]) <= FARTHEST_CM and abs(origin_cm[1]) <= FARTHEST_CM):
+            raise ValueError(f"an origin must be within {FARTHEST_CM:g} cm, got {origin_cm} cm")
         for name in ("time_s", "device_time_s"):
             time_s = rest.get(name)
             if time_s is not None and not isfinite(time_s):
@@ -125,6 +128,7 @@ def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")
     try:
-        return np.array(given, dtype=np.float64)
+        with np.errstate(over="ignore"):  # of a longer float than this: it becomes invalid
+            return np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"a frame takes real numbers: {error}") from None

@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 FOLDER = Path(__file__).parents[2] / "benchmarks" / "attacks"
-pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="benchmarks are not beside the tests")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not FOLDER.is_dir(), reason="benchmarks are not beside the tests"),
+    pytest.mark.skipif(sys.platform == "win32", reason="they fork, and send POSIX's signals"),
+]
 
 
 def attacked(script: str, *words: str) -> None:
@@ -20,25 +24,36 @@ def attacked(script: str, *words: str) -> None:
     assert got.returncode == 0, got.stdout + got.stderr
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="it forks")
 def test_no_store_is_silently_wrong_or_short_and_no_kill_loses_one() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("stores.py", "--damaged", "40", "--killed", "12")
+    attacked("stores.py", "--tries", "40", "--killed", "12")
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="signals as POSIX has them")
 def test_signals_leave_whole_files() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("signals.py", "--tries", "10")
+    attacked("signals.py", "--tries", "6")
 
 
-@pytest.mark.slow
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
-    attacked("plugins.py", "--mixtures", "2")
+    attacked("plugins.py", "--tries", "8")
 
 
-@pytest.mark.slow
 def test_no_port_gives_a_misaligned_frame_as_good_and_all_lock_again() -> None:
     attacked("ports.py", "--frames", "256")
+
+
+def test_damaged_databases_are_refused_or_read_as_they_were() -> None:
+    attacked("databases.py", "--tries", "300")
+
+
+def test_damaged_pipelines_pads_presets_and_scenes_are_refused_in_words() -> None:
+    attacked("pipelines.py", "--tries", "300")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="measures memory as Linux tells it")
+def test_files_that_ask_for_too_much_are_refused_before_the_work() -> None:
+    attacked("files.py", "--tries", "12")
+
+
+def test_hostile_frames_are_answered_or_refused() -> None:
+    attacked("frames.py", "--tries", "48", "--pipelines", "circle-1", "circle-3", "rectangle-3")

@@ -142,6 +142,12 @@ def _is_made(connection: sqlite3.Connection, path: Path) -> bool:
             str(path),
             f"has schema {version}, this version of the plugin reads schema {VERSION}; {todo}",
         )
+    strange = connection.execute(
+        "SELECT type, name FROM sqlite_master WHERE type NOT IN ('table', 'index')"
+    ).fetchone()
+    if strange is not None:  # a view may have rows without end
+        kind, name = strange
+        raise DataError(str(path), f"holds a {kind} {name!r}, which no database of objects has")
     return True
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,9 @@ from tactile_graph_classifiers.database.rows import Lesson, Setting
 
 FORMAT = "tactile-graph objects"
 VERSION = 1
+BEGINS_WITHIN = 10_000
+"""Characters within which an export says that it is one."""
+_LONG_NUMBER = re.compile(r"[0-9a-fA-F_:.]{1000}")
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 _KEYS = {"format", "version", "about", "quantity", "pipeline", "features", "objects"}
@@ -71,13 +75,17 @@ def from_text(text: str, where: str) -> tuple[Setting, list[Lesson]]:
     DataError
         If it is no export of an object database, or of a newer version.
     """
+    if FORMAT not in text[:BEGINS_WITHIN]:  # YAML of strangers may take minutes to be read
+        raise DataError(where, f"is no export of an object database (no 'format: {FORMAT}')")
+    if _LONG_NUMBER.search(text):
+        raise DataError(where, "is no YAML that can be read: a number of over 1000 characters")
     try:
         data = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         at = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
         raise DataError(f"{where}{at}", f"is no YAML: {getattr(error, 'problem', error)}") from None
-    except (ValueError, RecursionError) as error:  # a 13th month; brackets without end
+    except Exception as error:  # a 13th month, brackets without end, a number that is none
         raise DataError(where, f"is no YAML that can be read: {error}") from None
     return from_data(data, where)
 

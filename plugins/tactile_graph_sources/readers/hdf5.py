@@ -20,6 +20,9 @@ from tactile_graph_sources.readers.tables.preamble import described
 NAME = "HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)"
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
+LARGE, MOST_TIMES = 64_000_000, 200
+"""Bytes that may be unpacked however few are written, and how many times these."""
+MOST_ITEMS, DEEPEST = 2_000, 40
 
 
 def recognises(head: Head) -> bool:
@@ -77,12 +80,13 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
     where = str(reading.path)
     try:
         with h5py.File(reading.path, "r") as file:
-            sets: dict[str, Any] = {}
-            file.visititems(lambda n, o: sets.update({n: o} if isinstance(o, h5py.Dataset) else {}))
+            sets = _datasets(where, h5py, file)
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
             shapes = {n: d.shape for n, d in numbers.items()}
             frames = [] if reading.told.sensor else numbered(shapes)
             name = frames[0] if frames else chosen(reading, shapes, "dataset")
+            for one in (*(frames or [name]), time_among(numbers)):
+                _check_size(where, one, numbers.get(one))
             values = np.stack([numbers[n][()] for n in frames]) if frames else numbers[name][()]
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
@@ -95,3 +99,40 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
     said = described(lines)
     what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
     return Held(values, what, said, times, time)
+
+
+def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:
+    """Return the datasets of a file by name."""
+    found: dict[str, Any] = {}
+    n = 0
+
+    def visit(name: str, item: Any) -> str | None:
+        nonlocal n
+        n += 1
+        if n > MOST_ITEMS:
+            return f"more than {MOST_ITEMS} groups and datasets"
+        if name.count("/") > DEEPEST:
+            return f"groups more than {DEEPEST} deep"
+        if isinstance(item, h5py.Dataset):
+            found[name] = item
+        return None
+
+    too_much = file.visititems(visit)
+    if too_much is not None:
+        raise DataError(where, f"it holds {too_much}")
+    return found
+
+
+def _check_size(where: str, name: str, dataset: Any) -> None:
+    """Refuse a dataset that lies elsewhere, or is far larger than what is written of it."""
+    if dataset is None:
+        return
+    if dataset.is_virtual or dataset.external:
+        raise DataError(where, f"dataset {name!r} lies in other files; save its values in this one")
+    bytes_, packed = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
+    if bytes_ > max(LARGE, MOST_TIMES * packed):
+        raise DataError(
+            where,
+            f"dataset {name!r} unpacks to {bytes_ / 1e6:,.0f} MB, of which {packed / 1e6:,.1f} are "
+            f"written; allowed are {MOST_TIMES} times that beyond {LARGE / 1e6:g} MB",
+        )

@@ -23,6 +23,8 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
 NAME = "JSON of frames"
+FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
+MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 _NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
@@ -96,19 +98,42 @@ def _content(reading: Reading) -> Any:
         text = reading.path.read_text(encoding=reading.head.encoding)
     except ValueError as error:
         raise DataError(where, f"its text is damaged: {error}") from error
+    _check_size(where, text)
     whole = _parsed(text)
-    if whole is not None:
-        return whole
-    lines = []
+    return _by_lines(reading, text) if whole is None else whole
+
+
+def _check_size(where: str, text: str) -> None:
+    """Refuse a text whose lists would take far more memory, or hold more, than frames do."""
+    n_lists, n_commas = text.count("[") + text.count("{"), text.count(",")
+    if n_lists > FEW_LISTS + n_commas * 2 // 3:
+        raise DataError(
+            where,
+            f"its JSON has {n_lists} lists and objects and {n_commas} commas; allowed are "
+            f"{FEW_LISTS}, and two more for every three commas",
+        )
+    if n_commas > LONGEST_LIST * max(n_lists, 1):
+        told = f"its JSON has {n_commas} commas and {n_lists} lists; allowed are {LONGEST_LIST}"
+        raise DataError(where, f"{told} a list")
+
+
+def _by_lines(reading: Reading, text: str) -> list[Any]:
+    """Return what each line holds; lines that hold no object and no list are damaged."""
+    lines: list[Any] = []
+    n_damaged = 0
     for number, line in enumerate(text.splitlines(), 1):
         if line.strip():
             entry = _parsed(line)
-            if entry is None:
-                reading.damaged(number, "no JSON")
-            else:
+            if isinstance(entry, dict | list):
                 lines.append(entry)
-    if not lines:
-        raise DataError(where, "it begins as JSON does, and is none, as a whole or by lines")
+                continue
+            n_damaged += 1
+            reading.damaged(number, "no JSON" if entry is None else "no object and no list")
+            if n_damaged > MOST_DAMAGED + len(lines):
+                break
+    if not lines or n_damaged > MOST_DAMAGED + len(lines):
+        text = "it begins as JSON does, and is none, as a whole or by lines"
+        raise DataError(str(reading.path), text)
     return lines
 
 
@@ -146,6 +171,8 @@ def entries_of(where: str, content: Any) -> Entries:
         if not nested and _is_matrix(content):
             content = [content]
         return Entries(content, None, "", Described(), what)
+    if len(content[0]) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
     objects = [_with_rows(_flattened(e)) if isinstance(e, dict) else {} for e in content]
     first = objects[0]
     lists = [k for k, v in first.items() if isinstance(v, list)]
@@ -189,6 +216,8 @@ def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
 
 
 def _of_object(where: str, content: dict[str, Any]) -> Entries:
+    if len(content) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
     content = _with_rows(_flattened(content))
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 HEADER = 128
-MOST_BYTES = 1 << 31
-"""Of all that is packed in a file, unpacked."""
-DEEPEST = 30
+LARGE, MOST_TIMES = 128_000_000, 200
+"""Bytes that may be unpacked however few are packed, and how many times these."""
+DEEPEST, MOST_MATRICES, MOST_VALUES = 30, 30_000, 1 << 31
 _TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8",
           13: "u8", 16: "u1", 17: "u2", 18: "u4"}  # fmt: skip
 _CODECS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}
@@ -55,7 +55,7 @@ def variables(path: Path) -> dict[str, Any]:
     data = path.read_bytes()
     order = "<" if data[126:128] == b"IM" else ">"
     found: dict[str, Any] = {}
-    room = MOST_BYTES
+    room = max(LARGE, MOST_TIMES * len(data))
     for element in _elements(memoryview(data)[HEADER:], order):
         inner = element
         if element.kind == _PACKED:
@@ -69,19 +69,26 @@ def variables(path: Path) -> dict[str, Any]:
 
 
 def _unpacked(data: memoryview, most: int) -> bytes:
-    packed = zlib.decompressobj()
+    """Return what is packed, once it is known to be no more than is allowed."""
     try:
-        unpacked = packed.decompress(data, most)
+        packed, n = zlib.decompressobj(), 0
+        left: bytes | memoryview = data
+        while left and n <= most:
+            n += len(packed.decompress(left, 1 << 20))
+            left = packed.unconsumed_tail
+        if n > most:
+            raise DamagedError(f"it unpacks to more than {most / 1e6:,.0f} MB")
+        return zlib.decompress(data)
     except zlib.error as error:
         raise DamagedError(str(error)) from None
-    if packed.unconsumed_tail:
-        raise DamagedError(f"it holds more than {MOST_BYTES >> 20} MB")
-    return unpacked
 
 
 def _elements(data: memoryview, order: str) -> Iterator[_Element]:
-    at = 0
+    at = n = 0
     while at < len(data):
+        n += 1
+        if n > MOST_MATRICES:
+            raise DamagedError(f"it holds more than {MOST_MATRICES} matrices; save them as one")
         element = _element(data, at, order)
         yield element
         at = element.after
@@ -118,7 +125,7 @@ def _matrix(data: memoryview, order: str, depth: int) -> tuple[str, Any]:
         raise DamagedError("a matrix has no size")
     word = int(np.frombuffer(flags, f"{order}u4")[0])
     shape = tuple(np.frombuffer(dims, f"{order}i4").tolist())
-    if min(shape) < 0 or math.prod(shape) > MOST_BYTES:
+    if min(shape) < 0 or math.prod(shape) > MOST_VALUES:
         raise DamagedError(f"a matrix says it has shape {shape}")
     rest = [*_elements(data, order)][3:]
     called = bytes(name).decode("latin-1")

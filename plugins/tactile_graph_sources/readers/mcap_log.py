@@ -16,6 +16,7 @@ from tactile_graph_sources.readers.cdr import decoder_of
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.json_stack import Entries, entries_of, frames_of
+from tactile_graph_sources.readers.mcap_chunks import check_chunks
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.preamble import Described
 
@@ -103,6 +104,7 @@ def _topics(reading: Reading) -> dict[str, _Topic]:
         raise DataError(
             where, "is MCAP, which needs the 'mcap' extra: pip install 'tactile-graph[mcap]'"
         ) from None
+    check_chunks(reading.path)
     topics: dict[str, _Topic] = {}
     try:
         with reading.path.open("rb") as file:

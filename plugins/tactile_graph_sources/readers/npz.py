@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import zipfile
 from collections.abc import Iterator
 from dataclasses import replace
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires import QUANTITIES, Frame
 from tactile_graph_sources.readers import capcontact
+from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.datasets import (
     Held,
@@ -31,7 +31,7 @@ from tactile_graph_sources.readers.truth import Truth, truth_from_json
 
 MOST_MEMBERS = 1000
 MOST_TIMES = 200
-LARGE = 256_000_000
+SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
 NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
 
@@ -49,37 +49,35 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the archive is damaged or holds no stack, or several and none is chosen by ``sensor``.
     """
-    arrays = Archive(reading)
-    if {"cap", "ftir"} <= arrays.names.keys():
-        yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
-    elif "values" in arrays.names:
-        yield from _ours(reading, arrays)
-    else:
-        yield from frames_of(reading, _foreign(reading, arrays))
+    with opened(reading.path) as file:
+        arrays = Archive(str(reading.path), file)
+        if {"cap", "ftir"} <= arrays.names.keys():
+            yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
+        elif "values" in arrays.names:
+            yield from _ours(reading, arrays)
+        else:
+            yield from frames_of(reading, _foreign(reading, arrays))
 
 
 class Archive:
     """The arrays of an archive by name; each is read when it is asked for, never unpickled."""
 
-    def __init__(self, reading: Reading) -> None:
-        self.where = str(reading.path)
-        try:
-            with zipfile.ZipFile(reading.path) as archive:
-                members = archive.infolist()
-        except Exception as error:  # a damaged archive makes zipfile raise a dozen kinds
-            raise DataError(self.where, f"the archive is damaged: {error}") from error
+    def __init__(self, where: str, file: zipfile.ZipFile) -> None:
+        self.where = where
+        self._file = file
+        members = file.infolist()
         if len(members) > MOST_MEMBERS:
-            raise DataError(self.where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
+            raise DataError(where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
         document = document_in([m.filename for m in members])
         if document:
-            raise DataError(self.where, document)
+            raise DataError(where, document)
         arrays = [m for m in members if m.filename.endswith(".npy")]
         self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
 
     def outline(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
         """Return shape and type of an array by its head alone; errors as of `load`."""
         try:
-            with zipfile.ZipFile(self.where) as archive, archive.open(self.names[name]) as member:
+            with self._file.open(self.names[name]) as member:
                 version = np.lib.format.read_magic(member)
                 read = (
                     np.lib.format.read_array_header_1_0
@@ -107,9 +105,15 @@ class Archive:
                 f"what it is packed; allowed are {MOST_TIMES} beyond {LARGE / 1e6:,.0f} MB",
             )
         try:
-            with zipfile.ZipFile(self.where) as archive:
-                data = archive.read(self.names[name])  # checks the CRC, unlike a partial read
-            return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
+            if unpacked > SMALL:  # what is damaged is refused before it fills the memory
+                with self._file.open(self.names[name]) as member:
+                    while member.read(1 << 20):
+                        pass
+            with self._file.open(self.names[name]) as member:
+                array = np.asarray(np.lib.format.read_array(member, allow_pickle=False))
+                if member.read(1):  # the CRC is checked at the member's end, and only there
+                    raise ValueError("it holds more than its shape says")
+                return array
         except Exception as error:
             raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
 
@@ -133,6 +137,17 @@ class Archive:
         return array
 
 
+def _checked(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
+    """Return an array of which its head alone, looked at first, says that it may be a stack."""
+    what = f"array {name!r}"
+    shape, dtype = arrays.outline(name)
+    try:
+        stack_of(reading, np.broadcast_to(np.zeros((), dtype), shape), what)
+    except ValueError as error:  # a shape that no array has
+        raise DataError(arrays.where, f"{what} cannot be read: {error}") from error
+    return arrays.load(name)
+
+
 def _foreign(reading: Reading, arrays: Archive) -> Held:
     """Return the only stack of another's archive, its times beside it."""
     values, what = _only(reading, arrays)
@@ -151,14 +166,14 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
             near = did_you_mean(asked, arrays.names)
             raise DataError(where, f"no array {asked!r}, there are {one_of(arrays.names)}{near}")
         reading.sensors[asked] = None
-        return arrays.load(asked), f"array {asked!r}"
+        return _checked(reading, arrays, asked), f"array {asked!r}"
     outlines = {name: arrays.outline(name) for name in arrays.names}
     shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
     stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
     if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
         return np.stack([arrays.load(n) for n in frames]), f"arrays {frames[0]!r} to {frames[-1]!r}"
     if len(stacks) == 1:
-        return arrays.load(stacks[0]), f"array {stacks[0]!r}"
+        return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}"
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
         told = f"several arrays could be it ({shapes}); name one with sensor"
@@ -180,7 +195,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
 
 def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
-    values = stack_of(reading, arrays.load("values"), "array 'values'")
+    values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
     n = len(values)
     valid = arrays.optional("valid", values.shape, "b")
     times = arrays.optional("time_s", (n,), "fiu")

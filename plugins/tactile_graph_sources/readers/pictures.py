@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import logging
+import os
 import re
 import warnings
 import zipfile
@@ -16,6 +18,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 
@@ -23,14 +26,17 @@ NAME = "pictures (PNG, TIFF, JPEG, GIF, BMP; single, many pages or a zip of them
 _MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
 NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
 MOST_BYTES = 1 << 28
+MOST_UNPACKED = 1 << 26
 MOST_PIXELS = 4_000_000
+MOST_TIMES = 200
+"""Pixels for each byte of a file of many pages."""
 _NUMBER = re.compile(r"(\d+)")
 
 
 def recognises(head: Head) -> bool:
     """Return whether the file starts as pictures do, or is an archive of them."""
     if head.raw.startswith(b"PK\x03\x04"):
-        return any(n.lower().encode() in head.raw for n in NAMES) and bool(_members(head))
+        return any(n.lower().encode() in head.raw for n in NAMES) and _holds_pictures(head.path)
     return head.raw.startswith(_MARKS) and not (head.raw.startswith(b"BM") and head.lines)
 
 
@@ -43,18 +49,23 @@ def read(reading: Reading) -> Iterator[Frame]:
         If a picture cannot be read, or its colours are no shades of one.
     """
     if reading.head.raw.startswith(b"PK"):
-        members = _members(reading.head)
-        reading.recognised(f"an archive of {len(members)} pictures, in the order of their numbers")
-        reading.report.expect(len(members))
-        for name in members:
-            for matrix in _pages(reading, _unpacked(reading, name), name):
-                yield reading.frame(matrix)
+        with opened(reading.path) as archive:
+            yield from _of_archive(reading, archive)
         return
     reading.recognised("the first bytes of a picture")
     if reading.path.stat().st_size > MOST_BYTES:
         raise DataError(str(reading.path), f"is a picture of more than {MOST_BYTES >> 20} MB")
     for matrix in _pages(reading, reading.path.read_bytes(), ""):
         yield reading.frame(matrix)
+
+
+def _of_archive(reading: Reading, archive: zipfile.ZipFile) -> Iterator[Frame]:
+    members = _pictures_of(archive)
+    reading.recognised(f"an archive of {len(members)} pictures, in the order of their numbers")
+    reading.report.expect(len(members))
+    for name in members:
+        for matrix in _pages(reading, _unpacked(reading, archive, name), name):
+            yield reading.frame(matrix)
 
 
 def read_folder(reading: Reading) -> Iterator[Frame]:
@@ -71,7 +82,8 @@ def read_folder(reading: Reading) -> Iterator[Frame]:
 
 def pictures_in(folder: Path) -> list[str]:
     """Return the names of a folder's pictures in their order; none where it holds no picture."""
-    names = [p.name for p in folder.iterdir() if p.is_file() and p.suffix.lower() in NAMES]
+    with os.scandir(folder) as entries:
+        names = [e.name for e in entries if e.name.lower().endswith(NAMES) and e.is_file()]
     return in_order(names)
 
 
@@ -80,22 +92,25 @@ def in_order(names: list[str]) -> list[str]:
     return sorted(names, key=lambda n: [(p.isdecimal(), p.zfill(20)) for p in _NUMBER.split(n)])
 
 
-def _members(head: Head) -> list[str]:
-    """Return the pictures of an archive in their order."""
+def _holds_pictures(path: Path) -> bool:
     try:
-        with zipfile.ZipFile(head.path) as archive:
-            names = archive.namelist()
-    except Exception:  # a damaged archive makes zipfile raise a dozen kinds
-        return []
+        with opened(path) as archive:
+            return bool(_pictures_of(archive))
+    except DataError:  # who reads arrays tells it
+        return False
+
+
+def _pictures_of(archive: zipfile.ZipFile) -> list[str]:
+    """Return the pictures of an archive in their order."""
+    names = archive.namelist()
     return in_order([n for n in names if n.lower().endswith(NAMES) and "__MACOSX" not in n])
 
 
-def _unpacked(reading: Reading, name: str) -> bytes:
+def _unpacked(reading: Reading, archive: zipfile.ZipFile, name: str) -> bytes:
     try:
-        with zipfile.ZipFile(reading.path) as archive:
-            if archive.getinfo(name).file_size > MOST_BYTES:
-                raise ValueError(f"more than {MOST_BYTES >> 20} MB")
-            return archive.read(name)
+        if archive.getinfo(name).file_size > MOST_UNPACKED:
+            raise ValueError(f"it has more than {MOST_UNPACKED >> 20} MB")
+        return archive.read(name)
     except Exception as error:
         raise DataError(f"{reading.path}:{name}", f"cannot be unpacked: {error}") from error
 
@@ -108,6 +123,7 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
+            _check_size(where, content)
             for page in iio.imiter(content, plugin=plugin):
                 for matrix in _matrices(np.asarray(page), plugin):
                     yield _grey(where, matrix)
@@ -119,6 +135,31 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
                 text = str(error).partition("\n")[0][:120]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
             reading.damaged(f"page {n}", "cannot be read; the pages before it are kept")
+
+
+def _check_size(where: str, content: bytes) -> None:
+    """Refuse a picture by what it says of its size, before it is unpacked."""
+    n_values = 0
+    if _plugin(content) == "pillow":
+        from PIL import Image as Picture
+
+        with Picture.open(io.BytesIO(content)) as picture:
+            sides = [picture.size[::-1]]
+    else:
+        import tifffile
+
+        with tifffile.TiffFile(io.BytesIO(content)) as file:
+            sides = [(s.keyframe.imagelength, s.keyframe.imagewidth) for s in file.series]
+            n_values = sum(int(s.size) for s in file.series)
+    for rows, columns in sides:
+        if rows * columns > MOST_PIXELS:
+            raise DataError(where, f"the picture has {rows} x {columns} pixels")
+    if n_values > max(MOST_PIXELS, MOST_TIMES * len(content)):
+        raise DataError(
+            where,
+            f"its pages hold {n_values} pixels, {n_values // len(content)} for each byte; allowed "
+            f"are {MOST_TIMES} beyond {MOST_PIXELS}",
+        )
 
 
 def _plugin(content: bytes) -> str:
@@ -146,8 +187,6 @@ def _matrices(page: NDArray[Any], plugin: str) -> Iterator[NDArray[Any]]:
 def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:
     if page.dtype.kind not in "buif" or page.ndim not in (2, 3) or 0 in page.shape:
         raise DataError(where, f"the picture has shape {page.shape} and type {page.dtype}")
-    if page.shape[0] * page.shape[1] > MOST_PIXELS:
-        raise DataError(where, f"the picture has {page.shape[0]} x {page.shape[1]} pixels")
     if page.ndim == 2:
         return page
     colours = page[..., :3] if page.shape[2] >= 3 else page[..., :1]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
-from tactile_graph.wires import LARGEST, PITCHES_CM, Frame, Image, TrueObject
+from tactile_graph.wires import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, Image, TrueObject
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.told import Told
 
@@ -159,7 +159,7 @@ class Reading:
         image = Image(
             values,
             self._pitch(pitch_cm),
-            self.told.origin_cm or origin_cm or (0.0, 0.0),
+            self._origin(origin_cm),
             self._quantity(quantity),
             mask,
         )
@@ -194,6 +194,13 @@ class Reading:
             raise DataError(str(self.path), text)
         turned = self.told.transpose and self.told.pitch_cm is None
         return (pitch[1], pitch[0]) if turned else pitch
+
+    def _origin(self, own: tuple[float, float] | None) -> tuple[float, float]:
+        x, y = origin = self.told.origin_cm or own or (0.0, 0.0)
+        if not (abs(x) <= FARTHEST_CM and abs(y) <= FARTHEST_CM):
+            text = f"an origin at ({x:g}, {y:g}) cm; allowed are {FARTHEST_CM:g} cm to either side"
+            raise DataError(str(self.path), text)
+        return origin
 
     def published(self, pitch_cm: tuple[float, float], device: str) -> tuple[float, float]:
         """Return a pitch that the file does not say, noting whose it is unless one is told."""

@@ -50,9 +50,11 @@ def with_truth(frames: Iterator[Frame], path: Path) -> Iterator[Frame]:
 
 def _text(path: Path) -> str:
     try:
-        if path.stat().st_size > MOST_BYTES:
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
             raise DataError(str(path), f"is larger than {MOST_BYTES >> 20} MB")
-        return path.read_text(encoding="utf-8-sig")
+        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except (OSError, ValueError) as error:
         raise DataError(str(path), f"the truth cannot be read: {error}") from error
 

@@ -23,6 +23,10 @@ from numpy.typing import NDArray
 
 from tactile_graph_sources.stores.layout import COLUMNS, JOURNAL
 
+MOST_DAMAGED = 1_000
+"""Lines that are told of."""
+MOST_A_FRAME = 1 << 24
+"""Bytes of a frame's times, marks and notes."""
 _PACKED = ("time_s", "device_time_s", "gap", "doubtful", "notes_end")
 
 
@@ -110,7 +114,10 @@ def packed(columns: Columns) -> str:
 
 def unpacked(text: str, n: int) -> Columns:
     """Return columns from their text."""
-    raw = zlib.decompress(base64.b64decode(text))
+    unpacker = zlib.decompressobj()
+    raw = unpacker.decompress(base64.b64decode(text), n * MOST_A_FRAME)
+    if not unpacker.eof:
+        raise ValueError("they are cut off, or unpack to far too much")
     arrays: dict[str, Any] = {}
     at = 0
     for name in _PACKED:
@@ -138,11 +145,12 @@ def lost_line(low: int, high: int, why: str) -> bytes:
 
 
 def append(path: Path, line: bytes) -> None:
-    """Add a line to the journal of a store, in one piece."""
+    """Add a line to the journal of a store, in one piece, and wait until it is on the disc."""
     file = os.open(path / JOURNAL, os.O_WRONLY | os.O_APPEND)
     try:
         while line:  # a full disc may take a part
             line = line[os.write(file, line) :]
+        os.fsync(file)
     finally:
         os.close(file)
 
@@ -160,7 +168,10 @@ def _parsed(line: bytes) -> dict[str, Any] | None:
         or line[:8] != b"%08x" % zlib.crc32(line[9:-1])
     ):
         return None
-    data = json.loads(line[9:-1])
+    try:
+        data = json.loads(line[9:-1])
+    except (ValueError, RecursionError):  # nobody wrote that, its checksum aside
+        return None
     return data if isinstance(data, dict) else None
 
 
@@ -180,14 +191,26 @@ def read_journal(path: Path) -> Journal:
                 head = Head(data["attributes"], data["arrays"])
             elif data is not None and number > 1 and "rows" in data:
                 # A block that an interrupt caught at its end was written twice: the last counts.
-                low, high = data["rows"]
-                found[low] = Block(low, high, data["values"], place, data.get("lost", ""))
+                block = _block(data, place)
+                if block is not None:
+                    found[block.low] = block
+                elif len(damaged) < MOST_DAMAGED:
+                    damaged.append(number)
             elif number > 1 and not line.endswith(b"\n"):
                 cut_at = place
-            else:
+            elif len(damaged) < MOST_DAMAGED:
                 damaged.append(number)
             place += len(line)
     return Journal(file, True, head, _in_order(found.values()), tuple(damaged), cut_at)
+
+
+def _block(data: Mapping[str, Any], place: int) -> Block | None:
+    """Return the block that a line tells of; None if nobody could have written it."""
+    rows, lost = data["rows"], data.get("lost", "")
+    whole = isinstance(rows, list) and len(rows) == 2 and all(type(n) is int for n in rows)
+    if not whole or not 0 <= rows[0] < rows[1] or type(data.get("values")) is not int:
+        return None
+    return Block(rows[0], rows[1], data["values"], place, lost) if isinstance(lost, str) else None
 
 
 def _in_order(blocks: Iterable[Block]) -> tuple[Block, ...]:

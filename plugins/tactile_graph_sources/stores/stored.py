@@ -31,6 +31,7 @@ from tactile_graph_sources.stores.layout import (
     Metadata,
     array_of,
     check_attributes,
+    chunk_file,
     load_zarr,
     read_metadata,
     same_metadata,
@@ -114,9 +115,7 @@ class Stored:
 
     def chunk_file(self, name: str, row: int) -> str:
         """Return the file of the chunk that holds a row, as a path within the store."""
-        array = array_of(self.path, name, self.metadata[name], row + 1)
-        place = (row // array.chunks[0], *(0 for _ in array.shape[1:]))
-        return f"{name}/{array.metadata.encode_chunk_key(place)}"
+        return chunk_file(self.path, name, self.metadata[name], row)
 
     def values(self, piece: Piece) -> NDArray[np.float64]:
         """Return a piece's values, (N, rows, columns).

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.files import said, uninterrupted
+from tactile_graph.files import put_on_disc, said, uninterrupted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.truth import truth_to_json
@@ -27,6 +27,7 @@ from tactile_graph_sources.stores.layout import (
     VERSION,
     Metadata,
     array_of,
+    chunk_file,
     load_zarr,
     read_metadata,
 )
@@ -166,6 +167,7 @@ class StoreWriter:
             try:
                 self._metadata = self._make(part, attributes)
                 part.rename(self.path)
+                put_on_disc(self.path / JOURNAL, self.path.parent)
             except BaseException:
                 shutil.rmtree(part, ignore_errors=True)
                 raise
@@ -195,6 +197,7 @@ class StoreWriter:
         metadata: dict[str, Metadata] = {n: read_metadata(part, n) or {} for n in (*COLUMNS, NOTES)}
         head = journal.head_line(journal.Head(attributes, metadata))
         (part / JOURNAL).write_bytes(head)
+        put_on_disc(part / JOURNAL, part)
         return metadata
 
     def _reopen(self) -> None:
@@ -249,10 +252,17 @@ class StoreWriter:
         self._write(NOTES, self._notes_end, np.frombuffer(b"".join(columns.notes), np.uint8))
         for name in COLUMNS:
             self._write(name, low, rows[name])
+        self._put_values_on_disc(low)
         journal.append(self.path, journal.block_line(low, values, columns))
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
         self._held, self._marks_gap = [], False
         self.n_written, self._notes_end = high, int(ends[-1])
+
+    def _put_values_on_disc(self, low: int) -> None:
+        """Before the journal vouches for them, which has a copy of all the rest."""
+        chunk = self.path / chunk_file(self.path, "values", self._metadata["values"], low)
+        if chunk.exists():  # Zarr writes none in which every value is missing
+            put_on_disc(chunk, self.path)
 
     def _columns(self, frames: list[Frame]) -> journal.Columns:
         gaps = np.array([f.gap for f in frames])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,7 @@ from tactile_graph.api.result import Result
 from tactile_graph.engine.columns import Column
 from tactile_graph.engine.table import Row, Table, units_of
 from tactile_graph.errors import UsageError
-from tactile_graph.files import said
+from tactile_graph.files import said, uninterrupted
 
 ROWS_A_GROUP = 10_000
 MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
@@ -40,19 +42,19 @@ class ParquetFile:
     Parameters
     ----------
     output : str
-        Path. Until the end rows go to ``.part`` beside it.
+        Path. Until the end rows go to a hidden ``.part`` beside it.
     table : Table
     """
-
-    broken = False
-    """Whether lines could not be written; of this format none is left then."""
 
     def __init__(self, output: str, table: Table) -> None:
         if output == "-":
             raise UsageError("-o -: a Parquet file cannot go to stdout; give a name")
         self._pyarrow = pyarrow()
-        self.output = Path(output)
-        self._part = self.output.with_name(f"{self.output.name}.part")
+        self.output = output
+        self.broken = False
+        """Whether rows could not be written; then nothing is left."""
+        self._target = Path(os.path.realpath(output))
+        self._part = self._target.with_name(f".{self._target.name}.{os.getpid()}.part")
         self._table = table
         self._rows: list[Row] = []
         self._writer: Any = None
@@ -68,14 +70,27 @@ class ParquetFile:
 
     def close(self) -> None:
         """Write what is left, and give the file its name."""
+        if self.broken:
+            return
         self._flush()
-        with said(str(self.output)):
+        with self._whole():
             self._writer.close()
-            os.replace(self._part, self.output)
+            os.replace(self._part, self._target)
+
+    @contextmanager
+    def _whole(self) -> Iterator[None]:
+        """Leave nothing behind where anything is raised."""
+        try:
+            with uninterrupted(), said(self.output):
+                yield
+        except BaseException:
+            self.broken = True
+            self._part.unlink(missing_ok=True)
+            raise
 
     def _flush(self) -> None:
         arrow = self._pyarrow
-        with said(str(self.output)):
+        with self._whole():
             if self._writer is None:
                 units = units_of(self._table, self._quantity)
                 fields = [_field(arrow, c, units.get(c.key, "")) for c in self._table.columns]

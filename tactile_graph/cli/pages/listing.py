@@ -86,7 +86,9 @@ def file_text(path: Path) -> str:
     UsageError
         If it cannot be read.
     """
+    from tactile_graph.pipeline.document import text_of_file
+
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{path} cannot be read: {error}") from None

@@ -29,13 +29,13 @@ def nested(folder: Path, levels: int, uses: int = 1) -> Path:
 def read_files(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """Return the files that are read."""
     read: list[Path] = []
-    text = module._text
+    text = module.text_of_file
 
     def noted(path: Path) -> str:
         read.append(path)
         return text(path)
 
-    monkeypatch.setattr(module, "_text", noted)
+    monkeypatch.setattr(module, "text_of_file", noted)
     return read
 
 
@@ -101,8 +101,58 @@ def test_a_condition_cannot_ask_for_all_memory(condition: str, words: str) -> No
 
 
 def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
-    nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(3000))
+    nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(1900))
     with pytest.raises(PipelineError) as told:
         loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
     assert 100 < len(told.value.problems) < 110
     assert "more than 100 mistakes" in str(told.value.problems[-1])
+
+
+@pytest.mark.parametrize("value", ["1" + ":59" * 400, "0b" + "1" * 1100, "9" * 1100 + ".5"])
+def test_a_number_that_is_too_long_is_not_worked_out(value: str) -> None:
+    with pytest.raises(PipelineError, match=r"a number of \d+ characters; allowed are 1000"):
+        loads(f"about: {value}\n{LEAF}", registry=registry())
+
+
+def test_values_are_counted_while_they_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted: list[object] = []
+    monkeypatch.setattr("tactile_graph.pipeline.document._measure", counted.append)
+    monkeypatch.setattr("tactile_graph.pipeline.document.MOST_NODES", 200)
+    with pytest.raises(PipelineError, match="more than 200 values"):
+        loads(f"about: [{'1,' * 200}]\n{LEAF}", registry=registry())
+    assert counted == []
+
+
+def test_nothing_is_looked_up_that_is_near_a_very_long_name() -> None:
+    with pytest.raises(PipelineError) as told:
+        loads(LEAF.replace("read", "r" * 5_000), registry=registry())
+    assert "did you mean" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        LEAF + "".join(f"k{i}: 1\n" for i in range(300)),
+        LEAF.replace("[a]", f"[{','.join(f'x{i}' for i in range(300))}]"),
+        LEAF.replace("{a:", "{" + "".join(f"n-{i}: {{step: read}}, " for i in range(300)) + "a:"),
+    ],
+)
+def test_a_hundred_mistakes_of_any_kind_end_the_look_at_a_file(text: str) -> None:
+    with pytest.raises(PipelineError, match="more than 100 mistakes") as told:
+        loads(text, registry=registry())
+    assert len(told.value.problems) == 101
+
+
+def test_very_many_nodes_or_conditions_are_refused() -> None:
+    nodes = "".join(f"  n{i}: {{}}\n" for i in range(2001))
+    with pytest.raises(PipelineError, match="2001 nodes; allowed are 2000"):
+        loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
+    conditions = nodes.replace("{}", "a > 1")
+    with pytest.raises(PipelineError, match="2001 conditions; allowed are 2000"):
+        loads(f"{LEAF}conditions:\n{conditions}", registry=registry())
+
+
+def test_conditions_that_double_with_each_name_end_soon() -> None:
+    doubled = "".join(f"  c{i}: c{i + 1} and c{i + 1}\n" for i in range(12))
+    with pytest.raises(PipelineError, match="longer than 2000 characters"):
+        loads(f"{LEAF}conditions:\n{doubled}  c12: a > 1\n", registry=registry())

@@ -85,8 +85,9 @@ def test_what_is_no_real_number_is_refused(values: Any, got: str) -> None:
 
 
 def test_places_and_times_that_are_not_finite_are_refused() -> None:
-    with pytest.raises(ValueError, match="an origin must be finite"):
-        Frame.of(np.zeros((2, 2)), origin_cm=(np.nan, 0.0))
+    for x in (np.nan, 1e300):
+        with pytest.raises(ValueError, match="an origin must be within 1e\\+09 cm"):
+            Frame.of(np.zeros((2, 2)), origin_cm=(x, 0.0))
     with pytest.raises(ValueError, match="device_time_s must be finite, got nan"):
         Frame.of(np.zeros((2, 2)), device_time_s=np.nan)
 

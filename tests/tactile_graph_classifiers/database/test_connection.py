@@ -229,6 +229,16 @@ def test_another_programs_database_is_left_alone(tmp_path):
         ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
 
 
+def test_a_view_whose_rows_have_no_end_is_not_read(tmp_path):
+    path = tmp_path / "o.sqlite"
+    ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])
+    with sqlite3.connect(path) as other:
+        other.execute("CREATE VIEW more AS SELECT 1 AS id")
+    other.close()
+    with pytest.raises(DataError, match="holds a view 'more', which no database of objects has"):
+        ObjectDatabase(path).known()
+
+
 def test_another_schema_is_refused_and_says_what_to_do(tmp_path):
     path = tmp_path / "o.sqlite"
     ObjectDatabase(path).learn(SETTING, [lesson("a", (1, 1))])

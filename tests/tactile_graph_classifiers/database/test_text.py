@@ -96,10 +96,19 @@ def test_what_is_no_export_is_refused_in_words(data, message):
 
 def test_what_is_no_yaml_is_refused_with_its_place(tmp_path):
     with pytest.raises(DataError, match=r"x.yaml:\d+:\d+: is no YAML"):
-        from_text("a: 1\nb: [", "x.yaml")
-    for text in ("a: 2026-13-45", "[" * 5000):
+        from_text("format: tactile-graph objects\nb: [", "x.yaml")
+    for value in ("2026-13-45", "[" * 5000, "1" + ":59" * 200 + ".5", "9" * 1500, "!!int x"):
         with pytest.raises(DataError, match=r"x\.yaml.*: is no YAML"):
-            from_text(text, "x.yaml")
+            from_text(f"format: tactile-graph objects\na: {value}", "x.yaml")
+
+
+def test_yaml_that_does_not_say_what_it_is_is_not_read(monkeypatch):
+    monkeypatch.setattr("yaml.load", None)
+    with pytest.raises(DataError, match="is no export of an object database"):
+        from_text("[" + "1," * 100_000, "x.yaml")
+
+
+def test_what_cannot_be_read_is_refused_with_its_name(tmp_path):
     path = tmp_path / "x.yaml"
     with pytest.raises(DataError, match="cannot be read: No such file"):
         read_export(path)

@@ -74,7 +74,7 @@ def test_a_preset_may_extend_another_by_name_or_file(write) -> None:
             "framer: layout must hold exactly one part 'cells'",
         ),
         ("part: magic, ", "", "framer.layout.0: needs the key 'part'"),
-        ("rows: 4", "rows: 4\n  rows: 5", r":10:3: key 'rows' is given twice"),
+        ("rows: 4", "rows: 4\n  rows: 5", r":10:3: 'rows' is given twice; the first is in line 9"),
         ("rows: 4\n", "", r"geometry.rows: is missing"),
         ("rows: 4", "rows: 4\n  row_map: [0, 1, 1, 3]", "row_map must name each of 0 to 3 once"),
         ("rows: 4", "rows: 4\n  valid_range: [9, 1]", "valid_range must go from low to high"),
@@ -118,7 +118,7 @@ def test_all_faults_of_a_file_are_named_in_one_run(write) -> None:
     assert len(caught.value.problems) == 3
 
 
-@pytest.mark.parametrize("text", ["", "- a\n- b\n", "just words\n"])
+@pytest.mark.parametrize("text", ["~\n", "- a\n- b\n", "just words\n"])
 def test_a_file_that_is_no_mapping_is_refused(write, text: str) -> None:
     with pytest.raises(PresetError, match="must be a mapping with keys preset"):
         load_preset(write(text))

@@ -75,9 +75,20 @@ def test_the_other_byte_order_is_read(tmp_path: Path) -> None:
 def test_what_unpacks_to_too_much_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(mat5, "MOST_BYTES", 1 << 20)
-    with pytest.raises(DamagedError, match="it holds more than 1 MB"):
+    monkeypatch.setattr(mat5, "LARGE", 1_000_000)
+    monkeypatch.setattr(mat5, "MOST_TIMES", 2)
+    with pytest.raises(DamagedError, match="it unpacks to more than 1 MB"):
         read(matlab(True, a=np.zeros(200_000)), tmp_path)
+    assert len(read(matlab(True, a=np.zeros(100_000)), tmp_path)["a"]) == 100_000
+
+
+def test_very_many_small_matrices_are_refused_before_they_are_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mat5, "MOST_MATRICES", 40)
+    cells = cell_array([np.eye(2)] * 50)
+    with pytest.raises(DamagedError, match="more than 40 matrices; save them as one"):
+        read(matlab(False, c=cells), tmp_path)
 
 
 @pytest.mark.parametrize("packed", [False, True])

@@ -1,0 +1,80 @@
+"""What the chunks of an MCAP log unpack to, looked at before any of it is unpacked.
+
+MCAP specification, https://mcap.dev/spec, sections "Records" and "Chunk".
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from pathlib import Path
+from typing import BinaryIO
+
+from tactile_graph.errors import DataError
+
+LARGE, MOST_TIMES = 64_000_000, 100
+"""Bytes in all that chunks may unpack to however small they are packed; and how many times."""
+_MAGIC_BYTES, _CHUNK, _RECORD, _SIZES = 8, 6, struct.Struct("<BQ"), struct.Struct("<QQQII")
+
+
+def check_chunks(path: Path) -> None:
+    """Refuse a log that unpacks to far more than is in it.
+
+    Raises
+    ------
+    DataError
+    """
+    most = max(LARGE, MOST_TIMES * path.stat().st_size)
+    with path.open("rb") as file:
+        unpacked = _unpacked_bytes(file, most)
+    if unpacked > most:
+        raise DataError(
+            str(path),
+            f"its chunks unpack to more than {most / 1e6:,.0f} MB; allowed are {MOST_TIMES} times "
+            f"the file beyond {LARGE / 1e6:g} MB",
+        )
+
+
+def _unpacked_bytes(file: BinaryIO, most: int) -> int:
+    """Return to how many bytes all chunks unpack, or more than is allowed as soon as that is so."""
+    end = file.seek(0, os.SEEK_END)
+    at, unpacked = _MAGIC_BYTES, 0
+    while at + _RECORD.size <= end and unpacked <= most:
+        file.seek(at)
+        kind, size = _RECORD.unpack(file.read(_RECORD.size))
+        if kind == _CHUNK and at + _RECORD.size + size <= end and size >= _SIZES.size + 8:
+            unpacked += _of_chunk(file.read(size), most - unpacked)
+        at += _RECORD.size + size
+    return unpacked
+
+
+def _of_chunk(data: bytes, most: int) -> int:
+    """Return to how many bytes a chunk unpacks, by its own word and by what is packed."""
+    _, _, said, _, length = _SIZES.unpack_from(data)
+    packing = data[_SIZES.size : _SIZES.size + length]
+    packed = data[_SIZES.size + length + 8 :]
+    if packing == b"zstd":
+        import zstandard
+
+        try:
+            return max(int(said), zstandard.frame_content_size(packed))
+        except zstandard.ZstdError:  # who unpacks it says so
+            return int(said)
+    if packing == b"lz4" and said <= most:
+        return max(int(said), _lz4_bytes(packed, most))
+    return int(said)
+
+
+def _lz4_bytes(packed: bytes, most: int) -> int:
+    """Return the length of what is unpacked; LZ4 need not tell it beforehand."""
+    import lz4.frame
+
+    unpacker = lz4.frame.LZ4FrameDecompressor()
+    n = 0
+    try:
+        n = len(unpacker.decompress(packed, max_length=1 << 20))
+        while not unpacker.eof and not unpacker.needs_input and n <= most:
+            n += len(unpacker.decompress(b"", max_length=1 << 20))
+    except RuntimeError:  # who unpacks it says so
+        pass
+    return n

@@ -1,0 +1,178 @@
+"""Files that would take far more time or memory than they are large are refused before the work."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_dialects import npz, picture, zipped
+from helpers_recordings import frames_of, write
+from tactile_graph.errors import DataError, TactileGraphError, UsageError
+from tactile_graph_pads.pad import load_pad
+from tactile_graph_sources.devices.preset_file import load_preset, read_preset
+from tactile_graph_sources.readers import archive, hdf5, json_stack, mcap_chunks
+from tactile_graph_sources.readers import npz as npz_reader
+from tactile_graph_sources.readers.archive import opened
+from tactile_graph_sources.stores.journal import read_journal
+
+
+def refused(folder: Path, content: str | bytes) -> str:
+    with pytest.raises(DataError) as told:
+        frames_of(write(folder, content))
+    return told.value.what
+
+
+def test_an_array_whose_axes_are_none_of_a_stack_is_not_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loaded: list[str] = []
+    monkeypatch.setattr(npz_reader.Archive, "load", lambda self, name: loaded.append(name))
+    assert "has shape (5000,)" in refused(tmp_path, npz(values=np.zeros(5000)))
+    assert loaded == []
+
+
+def test_an_archive_with_a_long_list_of_members_is_not_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = zipped({f"{i}.txt": b"" for i in range(40)})
+    monkeypatch.setattr(archive, "MOST_DIRECTORY", 1000)
+    assert "its list of members has 0.0 MB; allowed are 0.001" in refused(tmp_path, content)
+
+
+def test_an_archive_is_opened_once_for_all_its_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    n = 0
+
+    def counted(path: Path) -> Any:
+        nonlocal n
+        n += 1
+        return opened(path)
+
+    monkeypatch.setattr("tactile_graph_sources.readers.pictures.opened", counted)
+    one = picture(np.eye(4, dtype=np.uint8), "png")
+    frames, _ = frames_of(write(tmp_path, zipped({f"{i}.png": one for i in range(9)})))
+    assert len(frames) == 9
+    assert n == 2  # to know the format, and to read it
+
+
+def test_a_picture_is_refused_by_the_size_it_says(tmp_path: Path) -> None:
+    whole = bytearray(picture(np.zeros((4, 4), np.uint8), "png"))
+    whole[16:24] = struct.pack(">II", 9000, 9000)
+    whole[29:33] = struct.pack(">I", zlib.crc32(whole[12:29]))
+    assert refused(tmp_path, bytes(whole)) == "the picture has 9000 x 9000 pixels"
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("[" + "[]," * 90 + "[]]", "its JSON has 92 lists and objects and 90 commas"),
+        ("[[" + "1," * 300 + "1]]", "its JSON has 300 commas and 2 lists; allowed are 100 a list"),
+        ('{"a": [1\n' * 11, "it begins as JSON does, and is none"),
+        (
+            json.dumps({f"k{i}": [i, i, i] for i in range(20)}),
+            "its JSON has 20 keys; allowed are 9",
+        ),
+    ],
+)
+def test_json_of_more_lists_than_numbers_is_refused(
+    text: str, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in {"FEW_LISTS": 30, "LONGEST_LIST": 100, "MOST_KEYS": 9}.items():
+        monkeypatch.setattr(json_stack, name, value)
+    monkeypatch.setattr(json_stack, "MOST_DAMAGED", 5)
+    assert what in refused(tmp_path, text)
+
+
+def test_a_dataset_that_was_never_written_or_lies_elsewhere_is_refused(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("values", (10**6, 16, 16), "f8", chunks=(1, 16, 16))
+    with pytest.raises(DataError, match=r"unpacks to 2,048 MB, of which 0\.0 are written"):
+        frames_of(path)
+    with h5py.File(path, "w") as file:
+        file.create_dataset("values", (2, 4, 4), "f8", external=[("/etc/passwd", 0, 256)])
+    with pytest.raises(DataError, match="lies in other files; save its values in this one"):
+        frames_of(path)
+
+
+def test_an_hdf5_file_of_very_many_or_deep_groups_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file.create_group("/".join("abcdefgh"))
+    monkeypatch.setattr(hdf5, "DEEPEST", 5)
+    with pytest.raises(DataError, match="it holds groups more than 5 deep"):
+        frames_of(path)
+    monkeypatch.setattr(hdf5, "MOST_ITEMS", 3)
+    with pytest.raises(DataError, match="it holds more than 3 groups and datasets"):
+        frames_of(path)
+
+
+@pytest.mark.parametrize("packing", ["zstd", "lz4", ""])
+def test_a_chunk_of_an_mcap_log_is_looked_at_before_it_is_unpacked(
+    packing: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("mcap", reason="the 'mcap' extra is not installed")
+    import lz4.frame
+    import zstandard
+
+    zeros = bytes(1 << 20)
+    pack = {"zstd": zstandard.compress, "lz4": lz4.frame.compress, "": bytes}[packing]
+    packed = pack(zeros)
+    said = len(zeros) if not packing else 100
+    head = struct.pack("<QQQII", 0, 0, said, 0, len(packing)) + packing.encode()
+    body = head + struct.pack("<Q", len(packed)) + packed
+    log = b"\x89MCAP0\r\n" + struct.pack("<BQ", 6, len(body)) + body
+    monkeypatch.setattr(mcap_chunks, "LARGE", 1000)
+    monkeypatch.setattr(mcap_chunks, "MOST_TIMES", 0)
+    assert "its chunks unpack to more than" in refused(tmp_path, log)
+
+
+def sealed(text: bytes) -> bytes:
+    return b"%08x %s\n" % (zlib.crc32(text), text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b'{"rows":' + b"[" * 5000 + b"]" * 5000 + b"}",
+        b'{"rows":"ab","values":0}',
+        b'{"rows":[3,2],"values":0}',
+        b'{"rows":[0,2],"values":"x"}',
+        b'{"rows":[0,2],"values":0,"lost":1}',
+    ],
+)
+def test_a_line_of_a_journal_that_nobody_could_have_written_is_damage(
+    text: bytes, tmp_path: Path
+) -> None:
+    (tmp_path / "frames.journal").write_bytes(
+        sealed(b'{"attributes":{},"arrays":{}}') + sealed(text)
+    )
+    journal = read_journal(tmp_path)
+    assert journal.blocks == ()
+    assert journal.damaged == (2,)
+
+
+@pytest.mark.parametrize("load", [load_pad, read_preset])
+def test_a_pad_or_preset_without_an_end_is_refused(load: Any, tmp_path: Path) -> None:
+    endless = tmp_path / "a.yaml"
+    endless.symlink_to("/dev/zero")
+    with pytest.raises(UsageError, match="is longer than 4000000 bytes"):
+        load(endless)
+
+
+@pytest.mark.parametrize("text", ["[" * 500, "a: &a [*a]", "!!python/name:os.system x"])
+def test_a_preset_is_read_as_strictly_as_a_pipeline(text: str, tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text(text)
+    with pytest.raises(TactileGraphError):
+        load_preset(str(tmp_path / "a.yaml"))
