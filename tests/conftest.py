@@ -18,6 +18,7 @@ from hypothesis import settings
 from helpers_modes import answered_by, cool_down
 from tactile_graph.compiled import warm_up
 
+pytest_plugins = ["tactile_graph.testing.pytest_plugin"]
 settings.register_profile("fast", derandomize=True, deadline=None)
 settings.register_profile("full", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, RuleError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_mrf.contours.line_contacts import LineContacts, bridged, gathered, with_voids_of
@@ -83,7 +83,7 @@ def test_what_is_not_finite_within_an_object_is_refused_unless_marked_as_invalid
     found = LineContacts()(Image(broken.copy(), valid=np.isfinite(broken)), regions)
     assert found.contacts[0].n_cells == 16
     assert found.contacts[0].load == 15.0
-    with pytest.raises(ValueError, match="shape"):
+    with pytest.raises(RuleError, match="shape"):
         LineContacts()(Image(np.zeros((3, 3))), regions)
 
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.contours.outline_points import covered, outline_points
 
@@ -63,7 +64,7 @@ def test_a_cell_that_reads_nothing_is_taken_as_half_covered() -> None:
 
 
 def test_a_mask_of_another_shape_is_refused() -> None:
-    with pytest.raises(ValueError, match="shape"):
+    with pytest.raises(RuleError, match="shape"):
         outline_points(Mask(np.ones((2, 2), bool)), Image(np.ones((3, 3))))
 
 
