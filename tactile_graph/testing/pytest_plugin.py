@@ -1,8 +1,8 @@
 """Fixtures for the tests of plugins, where a conftest names this module among ``pytest_plugins``.
 
-Each is a function of `tactile_graph.testing`, imported when a test asks for it. It is no entry point
-of pytest's: all modules of the project would then be rewritten for assertions, in every test run of
-whoever has it installed.
+Each is a function of `tactile_graph.testing`, imported when a test asks for it. This is no entry
+point of pytest's: all modules of the project would then be rewritten for assertions, in every test
+run of whoever has it installed.
 """
 
 from __future__ import annotations
