@@ -104,6 +104,7 @@ def test_objects_of_unlike_size_are_each_looked_at_on_their_own_scale():
     assert sorted(c.n_cells for c in found) == sorted(p[0].size for p in apart)
 
 
+@pytest.mark.slow  # parting is compiled
 def test_up_to_the_working_cells_nothing_is_coarser():
     for frame in frames("six", 6, 4):
         mask = frame.image.mask(frame.image.values >= LEVEL_V)
