@@ -7,6 +7,7 @@ import pytest
 
 from tactile_graph import Mask, Points
 from tactile_graph.wires import Image
+from tactile_graph_thesis.item import Finding
 from tactile_graph_thesis.items.chapter_4.figures_4_1_to_4_3_threshold import by_threshold
 from tactile_graph_thesis.items.chapter_4.figures_4_4_and_4_5_variance import (
     hardly_changes,
@@ -28,6 +29,12 @@ from tactile_graph_thesis.items.chapter_4.figures_4_29_to_4_36_rounding import (
     leaves_voids,
     lone_voids,
     not_as_drastic,
+)
+from tactile_graph_thesis.items.chapter_4.tables_4_3_to_4_8_errors import (
+    alike,
+    only_large_error,
+    smaller,
+    within_an_element,
 )
 
 
@@ -162,3 +169,28 @@ def test_voids_that_stay_are_not_filled() -> None:
     assert fills_voids(holes, whole).holds
     assert not fills_voids(holes, with_cells(whole, (5, 5), on=False)).holds
     assert not fills_voids(whole, square(12)).holds
+
+
+# -- tables 4.3 to 4.8 -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("finding", "holds"),
+    [
+        (smaller("", 1.1, 1.2), True),
+        (smaller("", 1.2, 1.1), False),
+        (smaller("", 0.5, 1.2, 0.5), True),
+        (smaller("", 0.7, 1.2, 0.5), False),
+        (alike("", 0.42, 0.45), True),
+        (alike("", 0.40, 0.45), False),
+        (alike("", 0.50, 0.45), False),
+        (within_an_element(0.99), True),
+        (within_an_element(1.01), False),
+        (only_large_error(3.9, 1.9), True),
+        (only_large_error(0.8, 1.5), False),
+    ],
+)
+def test_an_error_that_grows_or_changes_refutes_what_the_tables_say(
+    finding: Finding, holds: bool
+) -> None:
+    assert finding.holds == holds
