@@ -27,6 +27,7 @@ CONTENTS = {
         "figures_4_29_to_4_36_rounding",
         "figures_4_37_to_4_43_identification",
         "tables_4_3_to_4_8_errors",
+        "section_4_3_9_one_pad",
         "table_4_9_identification",
     ),
     "chapter_5": (

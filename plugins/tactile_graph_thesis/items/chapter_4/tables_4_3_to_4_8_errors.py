@@ -10,19 +10,12 @@ from tactile_graph_thesis.drawing.beside import beside_figure
 from tactile_graph_thesis.item import Finding, Item, Made, Table
 from tactile_graph_thesis.measure.beside_thesis import beside_thesis
 from tactile_graph_thesis.measure.circles import circle_errors
+from tactile_graph_thesis.measure.one_pad import TABLES
 from tactile_graph_thesis.measure.rectangles import signed_errors
 from tactile_graph_thesis.numbers import error_table
 from tactile_graph_thesis.work import Work
 
 Array = NDArray[np.float64]
-PIPELINES = {
-    "table-4.3": "circle-1",
-    "table-4.4": "circle-2",
-    "table-4.5": "circle-3",
-    "table-4.7": "rectangle-1",
-    "table-4.8": "rectangle-2",
-}
-"""Which pipeline a table belongs to."""
 
 
 def table_errors(work: Work, name: str) -> dict[str, Array]:
@@ -40,8 +33,8 @@ def table_errors(work: Work, name: str) -> dict[str, Array]:
 def _measured(work: Work, name: str) -> dict[str, Array]:
     objects = error_table(name).objects
     n = len(objects) * work.readings
-    runner = load(PIPELINES[name]).runner(seed=work.seed)
-    if PIPELINES[name].startswith("circle"):
+    runner = load(TABLES[name]).runner(seed=work.seed)
+    if TABLES[name].startswith("circle"):
         found = circle_errors(work.frames("discs", n), [runner], objects)[0]
         return dict(zip(objects, found, strict=True))
     signed = signed_errors(runner, work.frames("rectangles", n))
