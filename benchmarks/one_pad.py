@@ -104,7 +104,8 @@ def read(values: Array, tried: list[Placement], of_pads: Array) -> list[Frame]:
     given = dict(zip(NAMES, map(float, values), strict=True))
     uneven = Unevenness(given["sigma"], given["correlation_cm"], given["voids"], given["fixed"])
     pad = replace(FROZEN, law=replace(FROZEN.law, turn_on_g=given["turn_on_g"]))
-    built, frames = [fields(uneven, white) for white in of_pads], []
+    frames: list[Frame] = []
+    built = [fields(uneven, white) for white in of_pads]
     before: tuple[object, Array] | None = None
     for one in tried:
         gains = uneven.gains(built[one.pad], fields(uneven, one.white))
@@ -164,7 +165,8 @@ class Search:
             len(NAMES), rng=seed
         ).random(n)
         on = placements(FEW, seed)
-        return sample[int(np.argmin([self.loss(x, *on) for x in sample]))]
+        losses = [self.loss(x, *on) for x in sample]
+        return np.asarray(sample[int(np.argmin(losses))])
 
     def refine(self, mean: Array, seed: int) -> Array:
         """Return the best that an evolution strategy finds from there until the time is up."""

@@ -73,7 +73,7 @@ def pad_errors(discs: Sequence[Frame], rectangles: Sequence[Frame]) -> dict[tupl
     -----
     Absolute. A disc without an answer errs by its radius, a rectangle without one is NaN.
     """
-    found = {}
+    found: dict[tuple[str, str], Array] = {}
     for table, name in TABLES.items():
         objects, run = error_table(table).objects, load(name).runner()
         if name.startswith("circle"):

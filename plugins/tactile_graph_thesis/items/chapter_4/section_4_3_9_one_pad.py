@@ -45,6 +45,7 @@ def _one_pad(work: Work) -> Made:
         for cell, c in zip(cells(), compared, strict=True)
     ]
     columns = ("table", "object", "error", "unit", "thesis", "ours", "5 %", "95 %", "ratio")
+    counts = near(of_each).sum(axis=1)
     far = [cell.words for cell, is_near in zip(cells(), near(found), strict=True) if not is_near]
     return Made(
         compared,
@@ -52,10 +53,9 @@ def _one_pad(work: Work) -> Made:
         Table(columns, rows),
         _figure(compared, _pad(work)),
         notes=(
-            f"{n} pads by the description of {_pad(work)}, {EACH} readings of each object on each. On one "
-            f"such pad {np.median(near(of_each).sum(axis=1)):.0f} of {len(found)} are within 30 % "
-            f"in the median, {near(of_each).sum(axis=1).min()} to "
-            f"{near(of_each).sum(axis=1).max()}.",
+            f"{n} pads by the description of {_pad(work)}, {EACH} readings of each object on each. "
+            f"On one such pad {np.median(counts):.0f} of {len(found)} are within 30 % in the "
+            f"median, {counts.min()} to {counts.max()}.",
             f"Further off than 30 %: {'; '.join(far)}.",
         ),
     )
@@ -128,12 +128,13 @@ def _figure(compared: tuple[Compared, ...], pad: str) -> Figure:
         for end in ("low", "high")
     ]
     axes.axvspan(0.7, 1.3, color="0.9", zorder=0, label="within 30 %")
-    axes.hlines(at, *ends, color="C0", lw=1.0, label="nine in ten pads")
+    axes.hlines(at, ends[0], ends[1], color="C0", lw=1.0, label="nine in ten pads")
     axes.plot(ratio, at, "o", ms=4, color="C0", label="all together")
     axes.axvline(1.0, color="0.5", lw=0.8)
     axes.set_yticks(at, [c.what for c in compared], fontsize="x-small")
     axes.invert_yaxis()
     axes.set_xscale("log")
+    axes.minorticks_off()
     axes.set_xticks([0.25, 0.5, 1.0, 2.0, 4.0], ["1/4", "1/2", "1", "2", "4"])
     axes.set_xlabel("average error, ours / thesis")
     axes.set_title(f"Tables of one pad, {pad}")
