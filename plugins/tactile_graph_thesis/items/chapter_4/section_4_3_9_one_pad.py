@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 PAD = "thesis-tables"
 """Fitted to all five tables by benchmarks/one_pad.py; taken where no other pad is asked for."""
 SCENES = ("discs-in-part", "rectangles-in-part")
-PADS, QUICK_PADS = 25, 4
+PADS, QUICK_PADS = 15, 4
 """So many are built by the one description, which a part of their unevenness tells apart."""
 EACH = 20
 """Readings of each object on each of them: the thesis' own number."""

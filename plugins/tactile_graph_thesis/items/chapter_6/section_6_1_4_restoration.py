@@ -15,7 +15,7 @@ from tactile_graph_thesis.measure.circles import circle_errors
 from tactile_graph_thesis.measure.shown_reading import DISCS
 from tactile_graph_thesis.work import Work
 
-READINGS, QUICK_READINGS = 25, 6
+READINGS, QUICK_READINGS = 20, 6
 """Of each disc."""
 PIPELINE = "bayes-circle"
 ANNEALED = "circle-enclosed"
