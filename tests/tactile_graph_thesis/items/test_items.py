@@ -55,7 +55,7 @@ def test_each_comes_out(name: str, work: Work) -> None:
         assert all(len(row) == len(made.table.columns) for row in made.table.rows)
     if made.figure is not None:
         for axes in made.figure.axes:
-            drawn = axes.lines or axes.images or axes.collections
+            drawn = axes.lines or axes.images or axes.collections or axes.patches
             assert drawn or axes.get_label() == "<colorbar>", name
             assert not drawn or axes.get_xlabel() or axes.get_ylabel() or axes.get_title(), name
 
