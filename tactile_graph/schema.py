@@ -98,7 +98,7 @@ class _Maker:
             "type": "object",
             "additionalProperties": False,
             "properties": {
-                "step": _choice(self.steps, "The step it runs."),
+                "step": self._choice(self.steps, "The step it runs."),
                 "use": {"type": "string", "examples": pipelines,
                         "description": "A pipeline put in as a node, by name or file."},
                 "first_of": {"$ref": "#/$defs/refs",
@@ -134,13 +134,27 @@ class _Maker:
             "additionalProperties": False,
             "required": ["step"],
             "properties": {
-                "step": _choice(self.sources, "The source step."),
+                "step": self._choice(self.sources, "The source step."),
                 "with": {"type": ["object", "null"], "description": "Its settings."},
             },
             "allOf": [self._rule(n, s) for n, s in self.sources.items() if s is not None],
         }
 
     # -- one step ----------------------------------------------------------------------------
+
+    def _names(self, step: str) -> list[str]:
+        """Return what a step is called: its shortest name, and the one behind its plugin's."""
+        return list(dict.fromkeys((step, self.registry.offer("steps", step).qualified)))
+
+    def _choice(self, steps: dict[str, Signature | None], what: str) -> Schema:
+        """Return an enumeration, plain names first; editors show the lines beside the names."""
+        about = {n: "" if s is None else s.summary for n, s in steps.items()}
+        about |= {self.registry.offer("steps", n).qualified: line for n, line in about.items()}
+        return {
+            "enum": list(about),
+            "description": what,
+            "markdownEnumDescriptions": list(about.values()),
+        }
 
     def _rule(self, name: str, signature: Signature) -> Schema:
         """Return what a node of one step must be like."""
@@ -154,7 +168,7 @@ class _Maker:
         if required:
             then["required"] = required
         return {
-            "if": {"properties": {"step": {"const": name}}, "required": ["step"]},
+            "if": {"properties": {"step": {"enum": self._names(name)}}, "required": ["step"]},
             "then": then,
         }
 
@@ -217,15 +231,6 @@ def _port(port: Port) -> Schema:
     wire = "#/$defs/wire" if port.item is not None else "#/$defs/ref"
     optional = "" if port.required else ", optional"
     return {"$ref": wire, "description": f"{type_name(port.type)}{optional}"}
-
-
-def _choice(steps: dict[str, Signature | None], what: str) -> Schema:
-    """Return an enumeration; editors show the lines beside the names."""
-    return {
-        "enum": list(steps),
-        "description": what,
-        "markdownEnumDescriptions": [s.summary if s is not None else "" for s in steps.values()],
-    }
 
 
 def _names() -> Schema:
