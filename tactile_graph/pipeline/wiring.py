@@ -146,6 +146,12 @@ def field_type(kind: Any, name: str) -> Any:
     return first if all(f == first for f in found) else Union[tuple(found)]  # noqa: UP007
 
 
+def when_known(kind: Any) -> Any:
+    """Return the type of what comes over a wire: a field that is None reads as skipped."""
+    left = tuple(arm for arm in arms(kind) if arm is not type(None))
+    return kind if not left or len(left) == len(arms(kind)) else common_type(left)
+
+
 def common_type(kinds: Sequence[Any]) -> Any:
     """Return the one type of all, or their union."""
     if any(k is Any for k in kinds):

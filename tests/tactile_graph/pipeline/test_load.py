@@ -327,7 +327,14 @@ BAD_NODES = [
     ),
     ("m: {use: inner, with: {m.levl_v: 1}}", "unknown setting 'levl_v'; did you mean 'level_v'"),
     ("m: {use: inner, with: {q.level_v: 1}}", "node 'm', q.level_v: no node named 'q'"),
-    ("m: {use: inner, in: [frame]}", "an embedded pipeline has one port, 'frame'"),
+    ("m: {use: inner, in: [frame]}", "an embedded pipeline takes one input, its frame, or a map"),
+    (
+        "m: {use: inner, in: {frame: frame, mm: frame}}",
+        "pipeline 'inner' has no node 'mm' to take the place of; did you mean 'm'?",
+    ),
+    ("m: {use: inner, in: {m: frame}}", "frame is a Frame, but stands for 'm', a Mask"),
+    ("m: {use: inner, in: {m: [frame]}}", "'m' takes one input, not a list"),
+    ("c: {step: constant}\nm: {use: inner, in: {m: gone}}", "no node named 'gone'"),
     (
         "c: {step: constant}\nm: {use: inner, in: c}",
         "the pipeline reads frame.image, but c is a int",
