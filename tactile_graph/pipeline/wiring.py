@@ -32,6 +32,11 @@ class Ref:
         return ".".join((self.node, *self.path))
 
     @property
+    def spelled(self) -> str:
+        """The reference with the field of items, as conditions have it."""
+        return ".".join((self.node, *self.path, *self.item_path))
+
+    @property
     def whole(self) -> bool:
         """Whether it is the node's value itself."""
         return not self.path and not self.item_path
