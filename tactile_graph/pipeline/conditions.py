@@ -22,6 +22,8 @@ LONGEST = 2_000
 LONGEST_SPELLED, SHORTEST_SPELLED = 4_000, 50
 """Characters of all that a condition names, each counted as that many at least."""
 DEEPEST = 100
+MOST_TOLD = 4
+"""Items of a list whose numbers a reason shows."""
 
 SIGNS = {
     r"&&": "write 'and' for '&&'",
@@ -79,6 +81,9 @@ def _short(value: Any) -> str:
         return f"{value:.6g}"
     if isinstance(value, bool | int | str | np.generic):
         return f"{value.item() if isinstance(value, np.generic) else value!r}"
+    if isinstance(value, tuple) and value and all(isinstance(v, int | float) for v in value):
+        more = f", … of {len(value)}" if len(value) > MOST_TOLD else ""
+        return f"[{', '.join(map(_short, value[:MOST_TOLD]))}{more}]"
     return f"{len(value)} items" if isinstance(value, Sized) else f"a {type(value).__name__}"
 
 

@@ -247,8 +247,9 @@ def test_what_is_wrong_over_items_is_told(text: str, words: str) -> None:
 def test_items_are_told_in_a_reason_once_for_each_field() -> None:
     guard = compile_condition("any(items.size > 9) or count(items.size > 8) > 1", TYPES)
     assert guard.reason(((1.0, 2.0), (1.0, 2.0))) == (
-        "when any(items.size > 9) or count(items.size > 8) > 1 is false (items.size = 2 items)"
+        "when any(items.size > 9) or count(items.size > 8) > 1 is false (items.size = [1, 2])"
     )
+    assert "(items.size = [1, 1, 1, 1, … of 9])" in guard.reason(((1.0,) * 9, (1.0,) * 9))
 
 
 def test_each_value_is_read_once_in_order() -> None:
