@@ -201,7 +201,7 @@ def read_journal(path: Path) -> Journal:
         return Journal(file, False, None, None, (), (), None)
     with file.open("rb") as lines:
         for number, line in enumerate(lines, 1):
-            data = _parsed(line) or {}
+            data: dict[str, Any] = _parsed(line) or {}
             block = _block(data, place, attributes) if number > 1 else None
             if number == 1 and "arrays" in data:
                 head = Head(data["attributes"], data["arrays"], not data.get("unsure"))
@@ -223,7 +223,8 @@ def _block(
     data: Mapping[str, Any], place: int, attributes: Mapping[str, Any] | None
 ) -> Block | None:
     """Return the block that a line tells of; None if nobody could have written it to this store."""
-    rows, lost = data.get("rows"), data.get("lost", "")
+    rows: Any = data.get("rows")
+    lost = data.get("lost", "")
     whole = isinstance(rows, list) and len(rows) == 2 and all(type(n) is int for n in rows)
     if not whole or not 0 <= rows[0] < rows[1] or type(data.get("values")) is not int:
         return None
