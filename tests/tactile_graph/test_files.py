@@ -96,6 +96,7 @@ def test_what_is_plain(tmp_path: Path) -> None:
     (tmp_path / "dangling").symlink_to("nowhere")
     assert is_plain(tmp_path / "new")
     assert is_plain(tmp_path / "dangling")
+    assert is_plain("/dev/shm/new")
     assert not is_plain("/dev/stdout")
     assert not is_plain("/dev/null")
     assert not is_plain(tmp_path)
