@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -801,6 +802,15 @@ def test_every_node_that_ran_has_a_time() -> None:
 def test_a_chain_of_2000_nodes_runs() -> None:
     nodes = "\n".join(f"n{i}: {{step: add1, in: n{i - 1}}}" for i in range(1, 2000))
     assert run(make(f"n0: {V[3:]}\n{nodes}", "n1999"))["n1999"] == 3 + 1999
+
+
+def test_a_long_chain_of_choices_is_planned_in_no_time() -> None:
+    """All that each reads stands before it; looked up anew for each, that takes seconds."""
+    nodes = "\n".join(f"n{i}: {{first_of: [n{i - 1}, n{max(0, i - 2)}]}}" for i in range(1, 1900))
+    p = make(f"n0: {V[3:]}\n{nodes}", "n1899")
+    begun = time.process_time()
+    assert run(p, 3)["n1899"] == 3
+    assert time.process_time() - begun < 1.0
 
 
 def test_400_guarded_nodes_in_a_chain_run_and_skip() -> None:
