@@ -11,6 +11,7 @@ from typing import Annotated, Literal, NamedTuple
 from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import node_images, pictures
@@ -24,7 +25,6 @@ from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
-QuantityName = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
 
 
 def recording(

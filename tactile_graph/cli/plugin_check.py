@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tactile_graph.errors import UsageError, did_you_mean, one_of
-from tactile_graph.plugins.registry import Plugin, Registry
+from tactile_graph.plugins.registry import OWN, Plugin, Registry
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from tactile_graph.testing.plugin_check import PluginReport
-
-OWN = "tactile-graph"
 
 
 def show_checked(found: Registry, name: str) -> bool:

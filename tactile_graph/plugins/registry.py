@@ -5,11 +5,13 @@ from __future__ import annotations
 import importlib
 import os
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from pkgutil import resolve_name
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -19,28 +21,25 @@ from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, 
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
+from tactile_graph.quantities import enter
 
 if TYPE_CHECKING:
     from tactile_graph.steps.signature import Signature
 
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
-OFFERS = (
-    "steps", "readers", "pipelines", "pads", "presets", "scenes", "file_kinds", "commands",
-    "checks",
-)  # fmt: skip
-_FILES = ("pipelines", "pads", "presets", "scenes")
-_TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
-_WANTED = {
-    **dict.fromkeys(OFFERS, 'an import string "module:name" is needed'),
-    **dict.fromkeys(_FILES, "a file's path is needed"),
-    "readers": "the name of its setting is needed",
-}
+Row = tuple[str, str, str, Callable[[], ModuleType]]
+"""A plugin to be: its name, its package, that one's version, and what imports its module."""
+OWN = "tactile-graph"
+"""The package of the core and of the plugins that come with it."""
+CORE = "core"
+"""The plugin that the core itself is: nothing goes without it, so no selection leaves it out."""
 
 
 def singular(kind: str) -> str:
     """Return the word for one offer of a kind: ``"file kind"`` for ``"file_kinds"``."""
-    return kind.removesuffix("s").replace("_", " ")
+    words = kind.replace("_", " ")
+    return words.removesuffix("ies") + "y" if words.endswith("ies") else words.removesuffix("s")
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,8 @@ class Selection:
 
     def allows(self, name: str) -> bool:
         """Return whether the plugin may load."""
-        return name not in self.blocked and (not self.only or name in self.only)
+        asked = name not in self.blocked and (not self.only or name in self.only)
+        return asked or name == CORE
 
 
 @dataclass
@@ -103,68 +103,93 @@ class Registry:
 
     def __init__(
         self,
-        plugins: Iterable[tuple[str, str, str, Callable[[], ModuleType]]],
+        plugins: Iterable[Row],
         selection: Selection | None = None,
     ) -> None:
         self.plugins: list[Plugin] = []
         self.clashes: list[str] = []
-        self._offers: dict[str, dict[str, Offer]] = {kind: {} for kind in OFFERS}
+        self._hooks: dict[str, hookspecs.Answer] = {}
+        self._offers: dict[str, dict[str, Offer]] = {}
         self._signatures: dict[str, Signature] = {}
         self._manager = pluggy.PluginManager(hookspecs.PROJECT)
-        self._manager.add_hookspecs(hookspecs)
+        self._add_hooks(hookspecs)
         allowed = selection or Selection()
+        modules = []
         for name, package, version, loader in plugins:
             plugin = Plugin(name, package, version, blocked=not allowed.allows(name))
             self.plugins.append(plugin)
             if not plugin.blocked:
-                self._load(plugin, loader)
+                with self._blamed(plugin):
+                    modules.append((plugin, self._module(plugin, loader)))
+        # A hook of a plugin that is down is no misspelt one.
+        sure = len(modules) == len(self.plugins)
+        for plugin, module in modules:  # after all of them: one may have a hook another answers
+            with self._blamed(plugin):
+                self._ask_all(plugin, module, sure)
+            for kind, offers in plugin.offers.items():
+                for name, target in offers.items():
+                    self._add(kind, Offer(name, plugin, target))
+        for name, offer in self._offers["quantities"].items():
+            enter(name, offer.target)
 
-    def _load(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> None:
+    @contextmanager
+    def _blamed(self, plugin: Plugin) -> Iterator[None]:
+        """Note what a plugin's code raises and how long it takes; it may raise anything."""
         start = time.perf_counter()
         try:
-            with foreign_code(plugin.name, plugin.label):
-                module = loader()
-            if self._manager.has_plugin(plugin.name):
-                other = next(p for p in self.plugins if p.name == plugin.name)
-                raise PluginError(
-                    f"package {other.package} has a plugin of this name already; "
-                    "give the entry point another"
-                )
-            self._register(module, plugin.name)
-            for kind in OFFERS:
-                with foreign_code(plugin.name, plugin.label):
-                    plugin.offers[kind] = self._ask(module, kind)
-        except Exception as error:  # it may raise anything; the rest must go on
+            yield
+        except Exception as error:  # the rest must go on
             raised = error.error if isinstance(error, Broken) else error
             plugin.error = why(raised) + stale(raised, plugin.package)
             plugin.offers.clear()
-        plugin.import_ms = 1e3 * (time.perf_counter() - start)
-        for kind, offers in plugin.offers.items():
-            for name, target in offers.items():
-                self._add(kind, Offer(name, plugin, target))
+        plugin.import_ms += 1e3 * (time.perf_counter() - start)
 
-    def _register(self, module: ModuleType, name: str) -> None:
-        check_hooks(module, (f"{GROUP}_{kind}" for kind in OFFERS), hookspecs.PROJECT)
-        self._manager.register(module, name)
-        try:
-            self._manager.check_pending()
-        except pluggy.PluginValidationError:
-            self._manager.unregister(module)  # or the next plugin would be blamed for its hooks
-            raise
+    def _module(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> ModuleType:
+        with foreign_code(plugin.name, plugin.label):
+            module = loader()
+        others = [p for p in self.plugins[:-1] if p.name == plugin.name and not p.error]
+        if others:
+            raise PluginError(
+                f"package {others[0].package} has a plugin of this name already; "
+                "give the entry point another"
+            )
+        own = getattr(module, "hookspecs", None)
+        if isinstance(own, ModuleType):
+            self._add_hooks(own)
+        return module
+
+    def _add_hooks(self, module: ModuleType) -> None:
+        """Take the hooks that stand in a module, for all plugins to answer."""
+        answers = {n: getattr(f, f"{GROUP}_answer", None) for n, f in vars(module).items()}
+        found = {n.removeprefix(f"{GROUP}_"): a for n, a in answers.items() if a is not None}
+        taken = [kind for kind in found if kind in self._hooks]
+        if taken:
+            raise PluginError(f"there is a hook {GROUP}_{taken[0]} already; give it another name")
+        if found:
+            self._manager.add_hookspecs(module)
+        self._hooks |= found
+        self._offers |= {kind: {} for kind in found}
+
+    def _ask_all(self, plugin: Plugin, module: ModuleType, sure: bool) -> None:
+        check_hooks(module, (f"{GROUP}_{kind}" for kind in self._hooks), hookspecs.PROJECT, sure)
+        self._manager.register(module, plugin.name)
+        for kind in self._hooks:
+            with foreign_code(plugin.name, plugin.label):
+                plugin.offers[kind] = self._ask(module, kind)
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")
         answers = [i.function() for i in hook.get_hookimpls() if i.plugin is module]
         if not answers:
             return {}
-        hook_name = f"hook {GROUP}_{kind}"
+        hook_name, wanted = f"hook {GROUP}_{kind}", self._hooks[kind]
         if not isinstance(answers[0], Mapping):
             raise PluginError(f"{hook_name} must return a mapping, got {shown(answers[0])}")
         for name, target in answers[0].items():
             if not isinstance(name, str) or not name:
                 raise PluginError(f"{hook_name}: a name must be a text, got {shown(name)}")
-            if not (isinstance(target, _TARGETS[kind]) or (kind == "steps" and callable(target))):
-                raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {_WANTED[kind]}")
+            if not isinstance(target, wanted.types):
+                raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {wanted.wanted}")
         return dict(answers[0])
 
     def _add(self, kind: str, offer: Offer) -> None:
@@ -181,9 +206,18 @@ class Registry:
             n: t for n, t in offer.plugin.offers[kind].items() if n != offer.name
         }
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of things that plugins offer: of the core's hooks first, then of theirs."""
+        return tuple(self._hooks)
+
+    def is_imported(self, kind: str) -> bool:
+        """Return whether what is offered of a kind is named by import string."""
+        return self._hooks[kind].imported
+
     def names(self, kind: str) -> list[str]:
         """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …)."""
-        return sorted(self._offers[kind])
+        return sorted(self._offers.get(kind, ()))
 
     def offer(self, kind: str, name: str) -> Offer:
         """Return one offer.
@@ -195,7 +229,7 @@ class Registry:
         """
         try:
             return self._offers[kind][name]
-        except KeyError:
+        except KeyError:  # of the name, or of the kind where the plugin whose hook it is is down
             raise UsageError(self.unknown(kind, name)) from None
 
     def unknown(self, kind: str, name: str) -> str:
@@ -222,14 +256,30 @@ class Registry:
 
     def has(self, kind: str, name: str) -> bool:
         """Return whether something of that kind and name is on offer."""
-        return name in self._offers[kind]
+        return name in self._offers.get(kind, ())
 
     def load(self, kind: str, name: str) -> Any:
-        """Return the thing itself, imported if it was offered by import string."""
+        """Return the thing itself, imported if it was offered by import string.
+
+        Raises
+        ------
+        PluginError
+            If it cannot be imported, or is not what the hook asks for.
+        """
         offer = self.offer(kind, name)
         if isinstance(offer.target, str):
             offer.target = _import(offer)
+            self._hold_against_hook(kind, offer)
         return offer.target
+
+    def _hold_against_hook(self, kind: str, offer: Offer) -> None:
+        record = self._hooks[kind].record
+        if record and not isinstance(offer.target, resolve_name(record)):
+            wanted = record.rpartition(":")[2]
+            raise PluginError(
+                f"{singular(kind)} {offer.name!r} of {offer.plugin.label} must be a {wanted}, "
+                f"got {shown(offer.target)}"
+            )
 
     def step(self, name: str) -> Signature:
         """Return what the step of that name needs and gives; imports its module."""
@@ -271,8 +321,13 @@ def _import(offer: Offer) -> Any:
         raise PluginError(f"{where}: {module_name} has no {attribute!r}{hint}") from None
 
 
-def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
-    """Return the installed entry points, sorted, ours first among equals of a name."""
+def core() -> ModuleType:
+    """Return the module in which the core answers its own hooks."""
+    return importlib.import_module("tactile_graph.plugins.core")
+
+
+def found_plugins() -> list[Row]:
+    """Return the core and the installed entry points, sorted, the project's own first."""
 
     packages: dict[int, tuple[str, str]] = {}
 
@@ -287,10 +342,11 @@ def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
 
     def place(entry: EntryPoint) -> tuple[bool, str, str]:
         name = package(entry)[0]
-        return (name != "tactile-graph", entry.name, name)
+        return (name != OWN, entry.name, name)
 
     found = sorted(set(entry_points(group=GROUP)), key=place)
-    return [(e.name, *package(e), e.load) for e in found]
+    own = next((package(e) for e in found if package(e)[0] == OWN), (OWN, ""))
+    return [(CORE, *own, core), *((e.name, *package(e), e.load) for e in found)]
 
 
 _override: str | None = None
@@ -311,4 +367,4 @@ def selected() -> str:
 @cache
 def installed() -> Registry:
     """Return the registry of this environment's plugins; found once per process."""
-    return Registry(_installed(), Selection.parse(selected()))
+    return Registry(found_plugins(), Selection.parse(selected()))

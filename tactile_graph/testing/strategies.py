@@ -9,8 +9,9 @@ import numpy as np
 
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
+from tactile_graph.quantities import quantities
 from tactile_graph.testing.cases import RANGES
-from tactile_graph.wires import QUANTITIES, Frame, Image, Mask, Points
+from tactile_graph.wires import Frame, Image, Mask, Points
 
 try:
     from hypothesis import strategies as st
@@ -55,7 +56,7 @@ def frames(
     draw: Any, quantity: str | None = None, max_side: int = 12, invalid: bool = True
 ) -> Frame:
     """Draw frames, as `images` does; cells that are no number are invalid in them."""
-    kind = quantity or draw(st.sampled_from(sorted(QUANTITIES)))
+    kind = quantity or draw(st.sampled_from(sorted(quantities())))
     cells = st.floats(0.0, 2.0 * RANGES[kind]) | st.just(0.0)
     if invalid:
         cells |= st.just(math.nan)

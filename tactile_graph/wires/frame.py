@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import did_you_mean
-from tactile_graph.wires.image import QUANTITIES, Image
+from tactile_graph.quantities import checked_quantity
+from tactile_graph.wires.image import Image
 from tactile_graph.wires.shapes import Shape
 
 LARGEST = 1e100
@@ -107,10 +107,8 @@ class Frame:
             time_s = rest.get(name)
             if time_s is not None and not isfinite(time_s):
                 raise ValueError(f"{name} must be finite, got {time_s}")
-        if quantity not in QUANTITIES:
-            hint = did_you_mean(quantity, QUANTITIES) or f"; allowed: {', '.join(QUANTITIES)}"
-            raise ValueError(f"unknown quantity {quantity!r}{hint}")
-        return cls(Image(copy, (x, y), origin_cm, quantity, valid), **rest)
+        named = checked_quantity(quantity)
+        return cls(Image(copy, (x, y), origin_cm, named, valid), **rest)
 
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""

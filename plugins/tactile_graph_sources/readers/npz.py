@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph.wires import QUANTITIES, Frame
+from tactile_graph.quantities import unknown_quantity
+from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import capcontact
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
@@ -204,8 +205,8 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     doubtful = arrays.optional("doubtful", (n,), "b")
     labels = arrays.optional("label", (n,), "U")
     quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
-    if quantity not in QUANTITIES:
-        raise DataError(arrays.where, f"unknown quantity {quantity!r}, known: {one_of(QUANTITIES)}")
+    if unknown := unknown_quantity([quantity]):
+        raise DataError(arrays.where, unknown)
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     reading.report.expect(n)

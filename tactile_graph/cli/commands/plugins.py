@@ -12,7 +12,6 @@ from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.mistakes import near_groups
 
-OWN = "tactile-graph"
 EVERY = "-"
 """Stands for no name."""
 NARROW = 80
@@ -91,7 +90,7 @@ def _broken_steps(found: registry.Registry) -> dict[str, str]:
     broken = {}
     for name in found.names("steps"):
         offer = found.offer("steps", name)
-        if offer.plugin.package == OWN and not outline(offer.target).trouble:
+        if offer.plugin.package == registry.OWN and not outline(offer.target).trouble:
             continue
         try:
             found.step(name)
@@ -112,7 +111,7 @@ def _offers(plugin: registry.Plugin, broken: Mapping[str, str]) -> Any:
         for kind, names in plugin.offers.items()
     }
     parts = [
-        f"{len(names)} {registry.singular(kind)}{'s' if len(names) != 1 else ''}"
+        f"{len(names)} {kind.replace('_', ' ') if len(names) != 1 else registry.singular(kind)}"
         for kind, names in usable.items()
         if names
     ]

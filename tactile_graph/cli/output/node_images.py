@@ -26,8 +26,8 @@ from tactile_graph.errors import UsageError, one_of
 from tactile_graph.files import check_target, said, uninterrupted
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
+from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Frame, Image, Mask
-from tactile_graph.wires.image import UNITS
 
 OUTCOMES = ("value", "skipped", "failed")
 NO_MASK = 255
@@ -234,7 +234,7 @@ class _Stack:
         cells = place.shape[0] * place.shape[1] * (1 if mask else 8)
         chunk = min(max(CHUNK_BYTES // max(cells, 1), 1), MOST_A_CHUNK)
         kept = Cells("uint8", NO_MASK, chunk) if mask else Cells("float64", np.nan, chunk)
-        unit = UNITS.get(place.quantity, "1")
+        unit = unit_of(place.quantity)
         about = {**self.about, **place._asdict(), "unit": unit, "axes": "frame, row, column"}
         del about["shape"]
         array = container.array(f"{self.name}/values", place.shape, kept, about)

@@ -1,0 +1,84 @@
+"""docs/hooks.md: every example is a plugin that works."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from tactile_graph import Frame, Image, loads
+from tactile_graph.errors import PipelineError
+from tactile_graph.plugins import registry as registry_module
+from tactile_graph.plugins.registry import Registry
+from tactile_graph.testing.plugin_check import examine_plugin
+from tactile_graph.testing.registries import isolated
+
+PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
+pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the docs are not beside the tests")
+Plugin = Callable[[str], Registry]
+
+
+def sections() -> dict[str, str]:
+    """Return the Python code below each heading of the page."""
+    parts = re.split(r"^## (.+)$", PAGE.read_text("utf-8"), flags=re.M)
+    bodies = dict(zip(parts[1::2], parts[2::2], strict=True))
+    found = {
+        head: re.findall(r"^```python\n(.*?)^```", b, re.M | re.S) for head, b in bodies.items()
+    }
+    return {head: "\n".join(code) for head, code in found.items() if code}
+
+
+@pytest.fixture
+def plugin(monkeypatch: pytest.MonkeyPatch) -> Plugin:
+    """Return what installs the example of a section beside the project's own plugins."""
+
+    def install(head: str) -> Registry:
+        module = ModuleType("mypad")
+        monkeypatch.setitem(sys.modules, "mypad", module)
+        exec(compile(sections()[head], f"hooks.md, {head}", "exec"), vars(module))
+        found = isolated(plugin=module)
+        monkeypatch.setattr(registry_module, "installed", lambda: found)
+        return found
+
+    return install
+
+
+def mypad() -> ModuleType:
+    return sys.modules["mypad"]
+
+
+@pytest.mark.parametrize("head", sections())
+def test_every_example_passes_the_check_of_plugins(plugin: Plugin, head: str) -> None:
+    found = plugin(head)
+    mine = next(p for p in found.plugins if p.name == "mypad")
+    report = examine_plugin(mine, found)
+    assert report.broken == []
+    assert report.n_offers > 0
+
+
+def test_every_hook_told_of_is_there_and_has_an_example() -> None:
+    told = re.findall(r"^\| \[`(\w+)`\]", PAGE.read_text("utf-8"), re.M)
+    assert set(told) <= set(isolated().kinds)
+    shown = "\n".join(sections().values())
+    assert [kind for kind in told if f"def tactile_graph_{kind}(" not in shown] == []
+
+
+def test_a_quantity_is_checked_along_the_wires_and_has_its_unit(plugin: Plugin) -> None:
+    found = plugin("Quantities")
+    text = """
+        pipeline: forces
+        nodes: {{force: {{step: newtons, in: frame}}, {}}}
+        outputs: [{}]
+    """
+    pipeline = loads(text.format("all: {step: load, in: force}", "force"), registry=found)
+    result = pipeline.run(Frame.of(np.full((3, 4), 100.0), quantity="gram"))
+    force: Image = result["force"]
+    assert (force.quantity, force.unit) == ("newton", "N")
+    assert force.total == pytest.approx(12 * 0.980665)
+    with pytest.raises(PipelineError, match=r"takes counts.*at port .image., got newton"):
+        loads(text.format("v: {step: volts, in: force}", "v"), registry=found)
