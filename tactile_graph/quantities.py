@@ -1,58 +1,29 @@
-"""What the values of an image mean, and in which unit: the quantities that plugins offer.
-
-A quantity means the same wherever it is named, so there is one table for the process. Registries
-enter what their plugins offer; whoever asks for a name before there is any has the installed
-plugins found.
-"""
+"""What the values of an image mean: the quantities that plugins offer, and their units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from pkgutil import resolve_name
-from types import MappingProxyType
+from collections.abc import Iterable
 from typing import Annotated, Any
 
 from tactile_graph.errors import did_you_mean, one_of
-
-_INSTALLED = "tactile_graph.plugins.registry:installed"
-"""By import string, as plugins name what they offer: the registry knows steps, and they these."""
-_units: dict[str, str] = {}
-_asking = False
-
-
-def enter(quantity: str, unit: str) -> None:
-    """Make a quantity known; ``unit`` is empty where the quantity is its own unit."""
-    _units[quantity] = unit
-
-
-def quantities() -> Mapping[str, str]:
-    """Return every quantity that is known, with its unit, those of the installed plugins too."""
-    global _asking
-    if not _asking:  # a plugin may ask while it is found
-        _asking = True
-        try:
-            resolve_name(_INSTALLED)()
-        finally:
-            _asking = False
-    return MappingProxyType(_units)
+from tactile_graph.vocabulary import QUANTITIES
 
 
 def is_quantity(name: str) -> bool:
     """Return whether somebody offers a quantity of that name."""
-    return name in _units or name in quantities()
+    return name in QUANTITIES
 
 
 def unit_of(quantity: str) -> str:
     """Return the unit of a quantity's values; the quantity itself where that is its own unit."""
-    unit = _units.get(quantity)
-    return (quantities().get(quantity) if unit is None else unit) or quantity
+    return QUANTITIES.get(quantity) or quantity
 
 
 def unknown_quantity(names: Iterable[str]) -> str:
     """Return what is wrong with the first of the names that nobody offers; "" if all are known."""
     for name in names:
-        if not is_quantity(name):
-            known = list(quantities())
+        if name not in QUANTITIES:
+            known = list(QUANTITIES)
             hint = did_you_mean(name, known) or f"; there are: {one_of(known, len(known))}"
             return f"unknown quantity {name!r}{hint}"
     return ""
@@ -76,7 +47,7 @@ class OneOfQuantities:
 
     def choices(self) -> tuple[str, ...]:
         """Return all that the text may be."""
-        return tuple(quantities())
+        return tuple(QUANTITIES)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         from pydantic_core import core_schema

@@ -24,3 +24,13 @@ def tactile_graph_quantities() -> Mapping[str, str]:
         "level": "",
         "binary": "",
     }
+
+
+@hookimpl
+def tactile_graph_units() -> Mapping[str, str]:
+    """Offer the units that fields of the project's own records are in."""
+    return {
+        "cm2": "cm²", "cm": "cm", "mm": "mm", "deg": "°", "rad": "rad", "g": "g", "n": "N",
+        "s": "s", "cm_s": "cm/s", "ms": "ms", "us": "µs", "v": "V", "kpa": "kPa", "ohm": "Ω",
+        "hz": "Hz",
+    }  # fmt: skip

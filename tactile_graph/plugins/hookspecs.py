@@ -114,3 +114,8 @@ def tactile_graph_checks() -> Mapping[str, str]:  # type: ignore[empty-body]
 @hook(Answer(wanted='its unit is needed, or "" where it is its own', imported=False))
 def tactile_graph_quantities() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Quantity, what values of an image mean -> its unit as tables print it; "" for none."""
+
+
+@hook(Answer(wanted="how people write the unit is needed", imported=False))
+def tactile_graph_units() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Unit as names of fields and columns end in it (``cm2``) -> as people write it (``cm²``)."""

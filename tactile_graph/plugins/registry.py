@@ -21,7 +21,7 @@ from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, 
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
-from tactile_graph.quantities import enter
+from tactile_graph.vocabulary import QUANTITIES, UNITS, Vocabulary
 
 if TYPE_CHECKING:
     from tactile_graph.steps.signature import Signature
@@ -32,6 +32,7 @@ Row = tuple[str, str, str, Callable[[], ModuleType]]
 """A plugin to be: its name, its package, that one's version, and what imports its module."""
 OWN = "tactile-graph"
 """The package of the core and of the plugins that come with it."""
+_WORDS: dict[str, Vocabulary] = {"quantities": QUANTITIES, "units": UNITS}
 CORE = "core"
 """The plugin that the core itself is: nothing goes without it, so no selection leaves it out."""
 
@@ -129,8 +130,9 @@ class Registry:
             for kind, offers in plugin.offers.items():
                 for name, target in offers.items():
                     self._add(kind, Offer(name, plugin, target))
-        for name, offer in self._offers["quantities"].items():
-            enter(name, offer.target)
+        for kind, words in _WORDS.items():
+            for name, offer in self._offers[kind].items():
+                words.enter(name, offer.target)
 
     @contextmanager
     def _blamed(self, plugin: Plugin) -> Iterator[None]:

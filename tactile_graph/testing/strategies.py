@@ -9,8 +9,8 @@ import numpy as np
 
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
-from tactile_graph.quantities import quantities
 from tactile_graph.testing.cases import RANGES
+from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph.wires import Frame, Image, Mask, Points
 
 try:
@@ -56,7 +56,7 @@ def frames(
     draw: Any, quantity: str | None = None, max_side: int = 12, invalid: bool = True
 ) -> Frame:
     """Draw frames, as `images` does; cells that are no number are invalid in them."""
-    kind = quantity or draw(st.sampled_from(sorted(quantities())))
+    kind = quantity or draw(st.sampled_from(sorted(QUANTITIES)))
     cells = st.floats(0.0, 2.0 * RANGES[kind]) | st.just(0.0)
     if invalid:
         cells |= st.just(math.nan)

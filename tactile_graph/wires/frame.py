@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.quantities import checked_quantity
 from tactile_graph.wires.image import Image
+from tactile_graph.wires.measure import Measured
 from tactile_graph.wires.shapes import Shape
 
 LARGEST = 1e100
@@ -24,9 +25,12 @@ FARTHEST_CM = 1e9
 
 @dataclass(frozen=True, slots=True)
 class TrueObject:
-    """An object that truly lay on the pad when the frame was taken."""
+    """An object that truly lay on the pad when the frame was taken.
 
-    shape: Shape
+    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured.
+    """
+
+    shape: Shape | Measured
     weight_g: float | None = None
     name: str = ""
 

@@ -85,7 +85,7 @@ class Image(_Gridded):
     origin_cm : (float, float)
         Top left corner of the first cell, in pad coordinates (x right, y down).
     quantity : str
-        What the values mean, one of `tactile_graph.quantities.quantities`.
+        What the values mean, one of `tactile_graph.vocabulary.QUANTITIES`.
     valid : ndarray of bool, shape (rows, columns), optional
         False where a cell is missing or broken (its value is then 0); None where all are good.
     """

@@ -12,11 +12,18 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, Image, loads
+from tactile_graph.draw.display import display_list
+from tactile_graph.draw.paint_svg import SvgPicture, View
+from tactile_graph.draw.strip import strip_figure
+from tactile_graph.engine.columns import columns_of, values_of
 from tactile_graph.errors import PipelineError
 from tactile_graph.plugins import registry as registry_module
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.testing.plugin_check import examine_plugin
 from tactile_graph.testing.registries import isolated
+from tactile_graph_compare import compare
+from tactile_graph_compare.output import tables
+from tactile_graph_compare.report.page import page
 
 PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
 pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the docs are not beside the tests")
@@ -61,6 +68,17 @@ def test_every_example_passes_the_check_of_plugins(plugin: Plugin, head: str) ->
     assert report.n_offers > 0
 
 
+STROKES = """
+pipeline: strokes
+source: {step: strokes}
+nodes:
+  pressed: {step: threshold, in: frame, with: {level_v: 0.5}}
+  at: {step: mask_points, in: pressed}
+  stroke: {step: fit_stroke, in: at}
+outputs: [stroke]
+"""
+
+
 def test_every_hook_told_of_is_there_and_has_an_example() -> None:
     told = re.findall(r"^\| \[`(\w+)`\]", PAGE.read_text("utf-8"), re.M)
     assert set(told) <= set(isolated().kinds)
@@ -82,3 +100,45 @@ def test_a_quantity_is_checked_along_the_wires_and_has_its_unit(plugin: Plugin) 
     assert force.total == pytest.approx(12 * 0.980665)
     with pytest.raises(PipelineError, match=r"takes counts.*at port .image., got newton"):
         loads(text.format("v: {step: volts, in: force}", "v"), registry=found)
+
+
+def test_a_unit_stands_over_every_column_whose_name_ends_in_it(plugin: Plugin) -> None:
+    found = plugin("Units")
+    text = "{pipeline: p, nodes: {p: {step: pressures, in: frame}}, outputs: [p]}"
+    (columns,) = columns_of(loads(text, registry=found), ("p",))
+    assert [(c.field, c.unit) for c in columns.values] == [("mean", "mmHg"), ("peak", "mmHg")]
+
+
+def test_a_shape_of_ones_own_has_errors_in_run_and_compare(plugin: Plugin) -> None:
+    found = plugin("Shapes of your own")
+    pipeline = loads(STROKES, registry=found)
+    (columns,) = columns_of(pipeline, ("stroke",))
+    assert [(c.key, c.unit) for c in columns.errors] == [
+        ("stroke.centre_error_cm", "cm"),
+        ("stroke.length_error_cm", "cm"),
+    ]
+    result = pipeline.run(next(pipeline.frames()))
+    values = values_of(result, columns)
+    assert values["stroke.length_error_cm"] == pytest.approx(0.0)
+    compared = compare([pipeline], n_frames=3, registry=found)
+    score = compared.score("strokes", "length")
+    assert score is not None
+    assert (score.unit, score.n_answered, score.mean) == ("cm", 3, pytest.approx(0.0))
+    assert "length cm" in {row[0] for row in tables.errors(compared).rows}
+    assert "length 0.000 cm" in page(compared).replace("+", "")
+
+
+def test_a_shape_of_ones_own_is_drawn_in_strips_and_reports(plugin: Plugin) -> None:
+    found = plugin("Shapes of your own")
+    stroke = mypad().Stroke(1.0, 2.0, 4.0, 2.0)
+    records = display_list(stroke, "true")
+    assert [type(r).__name__ for r in records] == ["Area", "Outline", "Label"]
+    assert {getattr(r, "role", "") for r in records} == {"true"}
+    picture = SvgPicture(View.of(Image(np.zeros((5, 5)))), records)
+    assert [line.split()[0] for line in picture.lines] == ["<path"] * 3 + ["<text"] * 2
+    assert ">3.0 cm</text>" in picture.lines[-1]
+    pipeline = loads(STROKES, registry=found)
+    axes = strip_figure([pipeline.run(next(pipeline.frames()))]).axes
+    drawn = next(a for a in axes if a.get_title().startswith("stroke"))
+    assert [t.get_text() for t in drawn.texts] == ["3.0 cm"]
+    assert len(drawn.patches) == 1

@@ -21,7 +21,7 @@ from tactile_graph_compare.report.spread import (
     time_spread,
 )
 from tactile_graph_compare.report.style import STYLE
-from tactile_graph_compare.score.quantities import QUANTITIES
+from tactile_graph_compare.score.quantities import in_order
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 """What the page may load: nothing. A browser holds it to that."""
@@ -103,7 +103,7 @@ def _agreement(comparison: Comparison) -> Html | None:
     if not rows.rows:
         return None
     drawn = figure(
-        plots(*(agreement_spread(comparison, q) for q in QUANTITIES)),
+        plots(*(agreement_spread(comparison, q) for q in in_order(comparison.units))),
         "Histograms of all differences. Dot: median; thick: the middle half; thin: the middle "
         "90 %.",
     )

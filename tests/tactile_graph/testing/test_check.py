@@ -13,10 +13,10 @@ import pytest
 
 from tactile_graph import Degenerate, Image, Mask, Points, Skip
 from tactile_graph.errors import UsageError
-from tactile_graph.quantities import quantities
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.testing import BrokenPromises, Case, all_cases, check_step, examine_step
 from tactile_graph.testing import examination as trials
+from tactile_graph.vocabulary import QUANTITIES
 
 
 def all_finite(image: Image) -> None:
@@ -276,7 +276,7 @@ def test_every_case_has_a_name_and_fits_together() -> None:
         assert case.xy_cm.shape[1:] == (2,)
 
 
-@pytest.mark.parametrize("quantity", sorted(quantities()))
+@pytest.mark.parametrize("quantity", sorted(QUANTITIES))
 def test_a_case_makes_new_values_each_time(quantity: str) -> None:
     case: Case = next(iter(all_cases()))
     one, other = case.image(quantity), case.image(quantity)
