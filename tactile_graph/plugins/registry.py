@@ -221,6 +221,10 @@ class Registry:
         """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …)."""
         return sorted(self._offers.get(kind, ()))
 
+    def offered(self, kind: str) -> list[Offer]:
+        """Return all offers of a kind, the project's own first, as their plugins have them."""
+        return [*self._offers.get(kind, {}).values()]
+
     def offer(self, kind: str, name: str) -> Offer:
         """Return one offer.
 

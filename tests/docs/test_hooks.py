@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from tactile_graph import Frame, Image, loads
+from tactile_graph.cli import cli
 from tactile_graph.draw.display import display_list
 from tactile_graph.draw.paint_svg import SvgPicture, View
 from tactile_graph.draw.strip import strip_figure
 from tactile_graph.engine.columns import columns_of, values_of
-from tactile_graph.errors import PipelineError
+from tactile_graph.errors import PipelineError, PluginError
 from tactile_graph.plugins import registry as registry_module
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.plugins.registry import Registry, installed
+from tactile_graph.steps.injected import Report
 from tactile_graph.testing.plugin_check import examine_plugin
-from tactile_graph.testing.registries import isolated
 from tactile_graph_compare import compare
 from tactile_graph_compare.output import tables
 from tactile_graph_compare.report.page import page
+from tactile_graph_sources.recording import recording
 
 PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
 pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the docs are not beside the tests")
@@ -41,18 +44,21 @@ def sections() -> dict[str, str]:
 
 
 @pytest.fixture
-def plugin(monkeypatch: pytest.MonkeyPatch) -> Plugin:
-    """Return what installs the example of a section beside the project's own plugins."""
+def plugin(monkeypatch: pytest.MonkeyPatch) -> Iterator[Plugin]:
+    """Yield what installs the example of a section beside the project's own plugins."""
+    own = [row for row in registry_module.found_plugins() if row[1] == registry_module.OWN]
 
     def install(head: str) -> Registry:
         module = ModuleType("mypad")
         monkeypatch.setitem(sys.modules, "mypad", module)
         exec(compile(sections()[head], f"hooks.md, {head}", "exec"), vars(module))
-        found = isolated(plugin=module)
-        monkeypatch.setattr(registry_module, "installed", lambda: found)
-        return found
+        rows = [*own, ("mypad", "my-package", "1.0", lambda: module)]
+        monkeypatch.setattr(registry_module, "found_plugins", lambda: rows)
+        installed.cache_clear()
+        return installed()
 
-    return install
+    yield install
+    installed.cache_clear()
 
 
 def mypad() -> ModuleType:
@@ -81,7 +87,7 @@ outputs: [stroke]
 
 def test_every_hook_told_of_is_there_and_has_an_example() -> None:
     told = re.findall(r"^\| \[`(\w+)`\]", PAGE.read_text("utf-8"), re.M)
-    assert set(told) <= set(isolated().kinds)
+    assert set(told) <= set(installed().kinds)
     shown = "\n".join(sections().values())
     assert [kind for kind in told if f"def tactile_graph_{kind}(" not in shown] == []
 
@@ -142,3 +148,65 @@ def test_a_shape_of_ones_own_is_drawn_in_strips_and_reports(plugin: Plugin) -> N
     drawn = next(a for a in axes if a.get_title().startswith("stroke"))
     assert [t.get_text() for t in drawn.texts] == ["3.0 cm"]
     assert len(drawn.patches) == 1
+
+
+def test_a_format_is_recognised_read_and_written(plugin: Plugin, tmp_path: Path) -> None:
+    plugin("Recordings, read and written")
+    path = tmp_path / "any.name"
+    path.write_text("MYPAD 2 3 0.5\n1 2 3 4 5 6\n1 2\n6 5 4 3 2 1\n")
+    first, second = recording(path=path, flip="rows", report=Report())
+    assert first.image.values.tolist() == [[4, 5, 6], [1, 2, 3]]
+    assert (first.image.pitch_cm, first.image.quantity) == ((0.5, 0.5), "volt")
+    assert (second.index, second.gap) == (1, True)
+    target = tmp_path / "back.mypad"
+    got = CliRunner().invoke(cli, ["convert", str(path), str(target)])
+    assert got.exit_code == 0, got.output
+    assert "left out, as a .mypad has no place for it: gaps" in got.output
+    back = [*recording(path=target, report=Report())]
+    assert [f.image.values.tolist() for f in back] == [
+        [[1, 2, 3], [4, 5, 6]],
+        [[6, 5, 4], [3, 2, 1]],
+    ]
+
+
+def test_a_format_that_fails_to_recognise_is_told_by_plugin(
+    plugin: Plugin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plugin("Recordings, read and written")
+    bad = mypad().FORMAT._replace(recognises=lambda head: head.nothing)
+    monkeypatch.setattr(mypad(), "FORMAT", bad)
+    path = tmp_path / "x"
+    path.write_text("hello")
+    told = r"format \"mypad's .mypad\" of plugin 'mypad' .* cannot tell whether .*x is one: Attr"
+    with pytest.raises(PluginError, match=told):
+        next(iter(recording(path=path, report=Report())))
+
+
+SILENT = """
+pipeline: silent
+source: {step: sample, with: {name: discs}}
+nodes:
+  pressed: {step: threshold, in: frame, with: {level_v: 0.01}}
+  many: {step: mask_points, in: pressed, when: pressed.count > 1000}
+outputs: [many]
+"""
+
+
+def test_a_section_stands_in_the_report_before_how_it_was_made(plugin: Plugin) -> None:
+    found = plugin("Report sections")
+    told = page(compare([loads(SILENT, registry=found)], n_frames=3))
+    headings = re.findall(r"<h2>(.*?)</h2>", told)
+    assert headings[0] == "Summary"
+    assert headings[-2:] == ["Who was silent", "How it was made"]
+    assert "<b>silent</b> gave nothing in 3 frames" in told
+
+
+def test_a_section_that_fails_says_so_in_its_place(
+    plugin: Plugin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = plugin("Report sections")
+    bad = mypad().SILENT._replace(body=lambda comparison, album: comparison.nothing)
+    monkeypatch.setattr(mypad(), "SILENT", bad)
+    told = page(compare([loads(SILENT, registry=found)], n_frames=1))
+    assert "This section could not be made: AttributeError: " in told
+    assert "How it was made" in told

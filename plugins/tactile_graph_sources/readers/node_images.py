@@ -15,10 +15,10 @@ from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 
 FORMAT = "tactile-graph node images"
 """What such files say of themselves."""
-NAME = "images of nodes, as runs write them (.h5, .zarr)"
 _METADATA = "zarr.json"
 _BLOCK = 256
 _PLACE = ("kind", "quantity", "pitch_cm", "origin_cm")
@@ -134,3 +134,11 @@ def _place(where: str, node: str, about: Mapping[str, Any]) -> dict[str, Any]:
         "origin_cm": (float(left), float(top)),
         "quantity": str(about["quantity"]),
     }
+
+
+STORE = RecordingFormat(
+    "images of nodes, as runs write them (.h5, .zarr)",
+    lambda head: is_store_of_images(head.path),
+    read_store,
+    of_folders=True,
+)

@@ -26,6 +26,7 @@ from tactile_graph_sources.readers.datasets import (
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.others import document_in
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.truth import Truth, truth_from_json
@@ -34,7 +35,6 @@ MOST_MEMBERS = 1000
 MOST_TIMES = 200
 SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
-NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
 
 
 def recognises(head: Head) -> bool:
@@ -245,3 +245,8 @@ def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth]:
         reading.report.trouble(reading.at("truth"), f"the truth is left out: {error}")
         return [None] * n
     return truths
+
+
+FORMAT = RecordingFormat(
+    "NumPy .npz (ours, CapContact, or one stack of matrices)", recognises, read
+)

@@ -15,13 +15,13 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.told import Told
 
-NAME = "table, one frame a line"
 _OWN = re.compile(
     r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
     r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
@@ -142,3 +142,6 @@ def _matrix(
     matrix = np.full(shape[0] * shape[1], np.nan)
     matrix[list(layout.places)] = cells
     return matrix.reshape(shape)
+
+
+FORMAT = RecordingFormat("table, one frame a line", recognises, read, plain=True)
