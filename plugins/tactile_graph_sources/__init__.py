@@ -101,3 +101,9 @@ def tactile_graph_recording_writers() -> Mapping[str, str]:
         ".npz": f"{__name__}.writers.write_npz:WRITER",
         ".csv": f"{__name__}.writers.write_csv:WRITER",
     }
+
+
+@hookimpl
+def tactile_graph_devices() -> Mapping[str, str]:
+    """Offer pads on serial ports."""
+    return {"serial": f"{__name__}.devices.capture:SERIAL"}

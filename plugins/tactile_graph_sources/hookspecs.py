@@ -15,3 +15,8 @@ def tactile_graph_recording_formats() -> Mapping[str, str]:  # type: ignore[empt
 @hook_of("tactile_graph_sources.writers.recording_writer:RecordingWriter")
 def tactile_graph_recording_writers() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Ending of a file's name (``.npz``) -> import string of the `RecordingWriter` of such."""
+
+
+@hook_of("tactile_graph_sources.devices.capture:CaptureDevice")
+def tactile_graph_devices() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Way in which pads hang on a machine -> import string of its `CaptureDevice`, for record."""

@@ -34,3 +34,18 @@ def tactile_graph_units() -> Mapping[str, str]:
         "s": "s", "cm_s": "cm/s", "ms": "ms", "us": "µs", "v": "V", "kpa": "kPa", "ohm": "Ω",
         "hz": "Hz",
     }  # fmt: skip
+
+
+@hookimpl
+def tactile_graph_exporters() -> Mapping[str, str]:
+    """Offer what ``run -o`` writes."""
+    forms = {
+        ".jsonl": "writers:JSON_LINES",
+        ".ndjson": "writers:JSON_LINES",
+        ".csv": "writers:CSV",
+        ".parquet": "parquet:PARQUET",
+        ".h5": "node_images:HDF5",
+        ".hdf5": "node_images:HDF5",
+        ".zarr": "node_images:ZARR",
+    }
+    return {ending: f"tactile_graph.cli.output.{home}" for ending, home in forms.items()}

@@ -111,6 +111,11 @@ def tactile_graph_checks() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Kind of file -> import string of its `FileCheck`, by which ``check`` looks it through."""
 
 
+@hook_of("tactile_graph.exporter:Exporter")
+def tactile_graph_exporters() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Ending of a file's name (``.csv``) -> import string of the `Exporter` by which runs write."""
+
+
 @hook(Answer(wanted='its unit is needed, or "" where it is its own', imported=False))
 def tactile_graph_quantities() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Quantity, what values of an image mean -> its unit as tables print it; "" for none."""

@@ -210,3 +210,19 @@ def test_a_section_that_fails_says_so_in_its_place(
     told = page(compare([loads(SILENT, registry=found)], n_frames=1))
     assert "This section could not be made: AttributeError: " in told
     assert "How it was made" in told
+
+
+def test_an_exporter_writes_what_a_run_comes_to(plugin: Plugin, tmp_path: Path) -> None:
+    plugin("Exporters")
+    target = tmp_path / "circles.md"
+    got = CliRunner().invoke(cli, ["run", "circle-3", "--frames", "2", "-o", str(target)])
+    assert got.exit_code == 0, got.output
+    head, rule, *rows = target.read_text().splitlines()
+    assert "| circle.radius_cm | " in head
+    assert set(rule) == set("| -")
+    assert [row.split(" | ")[0] for row in rows] == ["| 0", "| 1"]
+    got = CliRunner().invoke(cli, ["run", "circle-3", "-o", "x.md", "--full"])
+    assert "--full: Markdown holds single numbers only" in got.output
+    got = CliRunner().invoke(cli, ["run", "circle-3", "--format", "mdx"])
+    assert "--format mdx: is none of jsonl" in got.output
+    assert "did you mean 'md'?" in got.output

@@ -17,6 +17,7 @@ PUBLIC = (
     "tactile_graph.wires",
     "tactile_graph.steps",
     "tactile_graph.errors",
+    "tactile_graph.exporter",
     "tactile_graph.files",
     "tactile_graph.foreign_text",
     "tactile_graph.locks",

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,6 +23,7 @@ from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
+from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, said, uninterrupted
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
@@ -251,3 +252,20 @@ def _cells(value: Image | Mask) -> Any:
     if isinstance(value, Mask):
         return value.values.astype(np.uint8)
     return np.asarray(value.values if value.valid is None else value.filled(np.nan), np.float64)
+
+
+def _store(form: str) -> Callable[[Export], Writer]:
+    def opened(export: Export) -> Writer:
+        check_nodes(export.pipeline, export.asked)
+        return ImageStore(export.name, form, export.pipeline, export.asked)
+
+    return opened
+
+
+def _check(name: str) -> None:
+    if name != "-":
+        check_store("-o", name)
+
+
+HDF5 = Exporter("HDF5", "images", _store("hdf5"))
+ZARR = Exporter("a Zarr store", "images", _store("zarr"), _check)
