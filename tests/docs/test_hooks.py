@@ -226,3 +226,34 @@ def test_an_exporter_writes_what_a_run_comes_to(plugin: Plugin, tmp_path: Path) 
     got = CliRunner().invoke(cli, ["run", "circle-3", "--format", "mdx"])
     assert "--format mdx: is none of jsonl" in got.output
     assert "did you mean 'md'?" in got.output
+
+
+def test_a_device_is_listed_and_recorded_with(plugin: Plugin, tmp_path: Path) -> None:
+    plugin("Capture devices")
+    listed = CliRunner().invoke(cli, ["ports"])
+    assert "left  a pad of 4 x 4 cells  --device bench" in listed.output
+    target = tmp_path / "pad.zarr"
+    words = ["record", str(target), "--device", "bench", "--port", "left", "--frames", "3"]
+    got = CliRunner().invoke(cli, [*words, "--with", "gain=2"])
+    assert got.exit_code == 0, got.output
+    frames = [*recording(path=target, report=Report())]
+    assert [f.image.total for f in frames] == [8.0, 16.0, 24.0]
+    assert {f.label for f in frames} == {"left"}
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--device", "bench"], "Missing option '--port' (or '--source')"),
+        (["--device", "bench", "--port", "left", "--baud", "9"],
+         "--baud is nothing that --device bench takes"),
+        (["--device", "bensh", "--port", "left"], "no device named 'bensh'; did you mean 'bench'?"),
+    ],
+)  # fmt: skip
+def test_a_device_named_wrongly_is_told(
+    plugin: Plugin, tmp_path: Path, words: list[str], told: str
+) -> None:
+    plugin("Capture devices")
+    got = CliRunner().invoke(cli, ["record", str(tmp_path / "x.zarr"), *words])
+    assert got.exit_code == 2
+    assert told in got.output
