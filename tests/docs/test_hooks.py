@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -257,3 +258,15 @@ def test_a_device_named_wrongly_is_told(
     got = CliRunner().invoke(cli, ["record", str(tmp_path / "x.zarr"), *words])
     assert got.exit_code == 2
     assert told in got.output
+
+
+def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin, tmp_path: Path) -> None:
+    plugin("Stress cases")
+    target = tmp_path / "rows.csv"
+    got = CliRunner().invoke(cli, ["stress", "fit_circle", "fit_ellipse", "-o", str(target)])
+    assert got.exit_code == 0, got.output
+    with target.open(newline="") as file:
+        rows = [*csv.DictReader(file)]
+    mine = [row for row in rows if row["group"] == "huge mat"]
+    assert [(row["step"], row["case"]) for row in mine] == [("fit_circle", "100 m out")]
+    assert {row["group"] for row in rows} >= {"scale", "turn", "NaN"}
