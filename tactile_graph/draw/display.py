@@ -151,8 +151,9 @@ def display_list(value: Any, role: Role = "found") -> list[Record]:
 
 
 def truth_list(objects: Iterable[TrueObject]) -> list[Record]:
-    """Return what drawing the true objects of a frame shows."""
-    return [record for thing in objects for record in display_list(thing.shape, "true")]
+    """Return what drawing the true objects of a frame shows: lines, which lie over all the rest."""
+    records = (record for thing in objects for record in display_list(thing.shape, "true"))
+    return [record for record in records if not isinstance(record, Area | Label)]
 
 
 def is_picture(value: Any) -> bool:

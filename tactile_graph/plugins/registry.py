@@ -175,8 +175,8 @@ class Registry:
     def _ask_all(self, plugin: Plugin, module: ModuleType, sure: bool) -> None:
         check_hooks(module, (f"{GROUP}_{kind}" for kind in self._hooks), hookspecs.PROJECT, sure)
         self._manager.register(module, plugin.name)
-        for kind in self._hooks:
-            with foreign_code(plugin.name, plugin.label):
+        with foreign_code(plugin.name, plugin.label):
+            for kind in self._hooks:
                 plugin.offers[kind] = self._ask(module, kind)
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:

@@ -44,4 +44,4 @@ class Stroke:
         aside = 0.5 * self.breadth_cm * np.array([-along[1], along[0]]) / (self.length_cm or 1.0)
         yield Area(np.vstack([ends + aside, ends[::-1] - aside]))
         yield Outline(ends, closed=False)
-        yield Label(self.x_cm, self.y_cm, f"{self.length_cm:.1f} cm")
+        yield Label(self.x_cm, self.y_cm - 1.0, f"{self.length_cm:.1f} cm")
