@@ -181,9 +181,12 @@ def _impossible(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: R
 def _choices(kind: Any) -> tuple[Any, ...]:
     """Return all that a value can be; nothing where it is not one of a few.
 
-    Beside a text in ``Annotated`` a rule says so that tells its ``choices()``.
+    ``Annotated[str, Literal["a", "b"]]`` says so of a text, beside ``Literal`` itself; so does a
+    rule that tells its ``choices()``.
     """
     for rule in strip(kind)[1]:
+        if get_origin(rule) is Literal:
+            return get_args(rule)
         if callable(getattr(rule, "choices", None)):
             return tuple(rule.choices())
     found = arms(kind) if kind is not None else ()

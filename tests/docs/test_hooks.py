@@ -270,3 +270,17 @@ def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin, tmp_path: P
     mine = [row for row in rows if row["group"] == "huge mat"]
     assert [(row["step"], row["case"]) for row in mine] == [("fit_circle", "100 m out")]
     assert {row["group"] for row in rows} >= {"scale", "turn", "NaN"}
+
+
+def test_a_quantity_may_be_told_to_a_recording_and_is_offered_where_settings_are_shown(
+    plugin: Plugin, tmp_path: Path
+) -> None:
+    plugin("Quantities")
+    path = tmp_path / "forces.csv"
+    path.write_text("1,2\n3,4\n")
+    (frame,) = recording(path=path, quantity="newton", rows=2, report=Report())
+    assert frame.image.unit == "N"
+    page_of_step = CliRunner().invoke(cli, ["steps", "recording"]).output
+    assert "newton" in page_of_step
+    schema = CliRunner().invoke(cli, ["schema"]).output
+    assert '"binary", "newton"' in " ".join(schema.split())
