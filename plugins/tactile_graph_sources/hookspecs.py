@@ -12,7 +12,7 @@ def tactile_graph_recording_formats() -> Mapping[str, str]:  # type: ignore[empt
     """Format of recordings -> import string of its `RecordingFormat`, which ``recording`` reads."""
 
 
-@hook_of("tactile_graph_sources.writers.recording_writer:RecordingWriter")
+@hook_of("tactile_graph_sources.writers.recording_writer:RecordingWriter", endings=True)
 def tactile_graph_recording_writers() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Ending of a file's name (``.npz``) -> import string of the `RecordingWriter` of such."""
 

@@ -31,12 +31,15 @@ class Answer(NamedTuple):
         Whether a text is an import string of what is offered.
     record : str
         Import string of the type of what an import string leads to; "" where it may be anything.
+    endings : bool
+        Whether the names are endings of files' names: ``.csv``.
     """
 
     types: tuple[Any, ...] = (str,)
     wanted: str = 'an import string "module:name" is needed'
     imported: bool = True
     record: str = ""
+    endings: bool = False
 
 
 FILE = Answer((str, Path), "a file's path is needed", imported=False)
@@ -52,15 +55,17 @@ def hook(answer: Answer) -> Callable[[F], F]:
     return mark
 
 
-def hook_of(record: str) -> Callable[[F], F]:
+def hook_of(record: str, endings: bool = False) -> Callable[[F], F]:
     """Return what marks a hook answered with import strings of things of one type.
 
     Parameters
     ----------
     record : str
         Import string of the type, which ``tactile-graph plugins --check`` holds them against.
+    endings : bool
+        Whether their names are endings of files' names.
     """
-    return hook(Answer(record=record))
+    return hook(Answer(record=record, endings=endings))
 
 
 @hook(Answer((str, Callable)))
@@ -111,7 +116,7 @@ def tactile_graph_checks() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Kind of file -> import string of its `FileCheck`, by which ``check`` looks it through."""
 
 
-@hook_of("tactile_graph.exporter:Exporter")
+@hook_of("tactile_graph.exporter:Exporter", endings=True)
 def tactile_graph_exporters() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Ending of a file's name (``.csv``) -> import string of the `Exporter` by which runs write."""
 

@@ -190,6 +190,9 @@ class Registry:
         for name, target in answers[0].items():
             if not isinstance(name, str) or not name:
                 raise PluginError(f"{hook_name}: a name must be a text, got {shown(name)}")
+            if wanted.endings and not (name.startswith(".") and name.islower()):
+                told = "a name must be the ending of files' names in small letters"
+                raise PluginError(f"{hook_name}: {told}, such as '.csv', got {shown(name)}")
             if not isinstance(target, wanted.types):
                 raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {wanted.wanted}")
         return dict(answers[0])

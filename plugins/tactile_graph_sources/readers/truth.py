@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import one_of
+from tactile_graph.errors import UsageError, one_of
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape, TrueObject
 from tactile_graph.wires.measure import Measured
 
@@ -26,7 +26,7 @@ def _shape_to_json(shape: Shape | Measured) -> dict[str, Any]:
     kind = type(shape).__name__.lower()
     if kind not in _FIELDS:
         told = one_of([*_FIELDS, "polygon"])
-        raise ValueError(f"a true {type(shape).__name__} cannot be written; what can is: {told}")
+        raise UsageError(f"a true {type(shape).__name__} cannot be written; what can is: {told}")
     return {"kind": kind, **{f: float(getattr(shape, f)) for f in _FIELDS[kind][1]}}
 
 
@@ -49,7 +49,7 @@ def truth_to_json(truths: Sequence[Truth]) -> str:
 
     Raises
     ------
-    ValueError
+    UsageError
         If a true shape is a plugin's own.
     """
     return json.dumps(

@@ -115,6 +115,12 @@ def test_a_taken_quantity_is_refused_and_a_unit_that_is_no_text_told() -> None:
     assert "'newton' is 3, its unit is needed" in bad.error
 
 
+@pytest.mark.parametrize("name", ["md", ".MD"])
+def test_a_name_that_is_no_ending_is_refused_where_one_is_needed(name: str) -> None:
+    (bad,) = registry(("a", answering("exporters", **{name: "x:y"}))).plugins
+    assert f"such as '.csv', got '{name}'" in bad.error
+
+
 @pytest.mark.parametrize(
     ("kind", "one"),
     [("steps", "step"), ("file_kinds", "file kind"), ("quantities", "quantity")],

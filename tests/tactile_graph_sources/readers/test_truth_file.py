@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.wires import Circle, Ellipse, Rectangle, TrueObject
 from tactile_graph_sources.readers.truth import truth_to_json
 from tactile_graph_sources.readers.truth_file import with_truth
@@ -85,5 +85,5 @@ def test_a_true_shape_of_a_plugins_own_cannot_be_written():
         pass
 
     told = "a true Stroke cannot be written; what can is: circle, ellipse, polygon, rectangle"
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(UsageError, match=told):
         truth_to_json([(TrueObject(Stroke(1.0, 2.0, 3.0)),)])
