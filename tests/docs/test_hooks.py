@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -28,6 +27,11 @@ from tactile_graph_compare import compare
 from tactile_graph_compare.output import tables
 from tactile_graph_compare.report.page import page
 from tactile_graph_sources.recording import recording
+from tactile_graph_stress.judge import Judge
+from tactile_graph_stress.study import cases_of
+from tactile_graph_stress.subject import subjects
+from tactile_graph_stress.trial import Trial
+from tactile_graph_stress.verdict import Outcome
 
 PAGE = Path(__file__).parents[2] / "docs" / "hooks.md"
 pytestmark = pytest.mark.skipif(not PAGE.is_file(), reason="the docs are not beside the tests")
@@ -260,16 +264,17 @@ def test_a_device_named_wrongly_is_told(
     assert told in got.output
 
 
-def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin, tmp_path: Path) -> None:
-    plugin("Stress cases")
-    target = tmp_path / "rows.csv"
-    got = CliRunner().invoke(cli, ["stress", "fit_circle", "fit_ellipse", "-o", str(target)])
-    assert got.exit_code == 0, got.output
-    with target.open(newline="") as file:
-        rows = [*csv.DictReader(file)]
-    mine = [row for row in rows if row["group"] == "huge mat"]
-    assert [(row["step"], row["case"]) for row in mine] == [("fit_circle", "100 m out")]
-    assert {row["group"] for row in rows} >= {"scale", "turn", "NaN"}
+def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin) -> None:
+    found = plugin("Stress cases")
+    by_name = {subject.name: subject for subject in subjects(found)[0]}
+    circle, ellipse = (
+        cases_of(by_name[name], 0, quick=True) for name in ("fit_circle_kasa", "fit_ellipse")
+    )
+    assert {case.group for case in circle} >= {"scale", "turn", "NaN", "huge mat"}
+    assert "huge mat" not in {case.group for case in ellipse}
+    (mine,) = (case for case in circle if case.group == "huge mat")
+    judge = Judge(Trial(by_name["fit_circle_kasa"], 0, found), np.random.default_rng(1))
+    assert judge.of(mine).outcome in (Outcome.EXACT, Outcome.GOOD)
 
 
 def test_a_quantity_may_be_told_to_a_recording_and_is_offered_where_settings_are_shown(
