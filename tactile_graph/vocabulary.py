@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from pkgutil import resolve_name
+from importlib import import_module
 
-_INSTALLED = "tactile_graph.plugins.registry:installed"
-"""By import string, as plugins name what they offer: the registry knows who reads these words."""
+_REGISTRY = "tactile_graph.plugins.registry"
+"""By name, as plugins name what they offer: the registry knows who reads these words."""
 
 
 class Vocabulary(Mapping[str, str]):
@@ -43,7 +43,7 @@ class Vocabulary(Mapping[str, str]):
             return
         Vocabulary._asking = True
         try:
-            resolve_name(_INSTALLED)()
+            import_module(_REGISTRY).installed()
         finally:
             Vocabulary._asking = False
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from pkgutil import resolve_name
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -282,9 +281,9 @@ class Registry:
         return offer.target
 
     def _hold_against_hook(self, kind: str, offer: Offer) -> None:
-        record = self._hooks[kind].record
-        if record and not isinstance(offer.target, resolve_name(record)):
-            wanted = record.rpartition(":")[2]
+        module, _, wanted = self._hooks[kind].record.partition(":")
+        record = getattr(importlib.import_module(module), wanted) if module else object
+        if not isinstance(offer.target, record):
             raise PluginError(
                 f"{singular(kind)} {offer.name!r} of {offer.plugin.label} must be a {wanted}, "
                 f"got {shown(offer.target)}"
