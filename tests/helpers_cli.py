@@ -193,7 +193,7 @@ def install(
     from tactile_graph.plugins import registry
 
     rows = [
-        (registry.CORE, registry.OWN, "", registry.core),
+        (registry.CORE, "tactile-graph", "", registry.core),
         ("hand", "hand-made", "1.2", plugin(folder, **more)),
         *others,
     ]

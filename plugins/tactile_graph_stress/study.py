@@ -36,8 +36,8 @@ def cases_of(subject: Subject, seed: int, quick: bool) -> list[Case]:
     """Return all cases for a subject; those of one kind are the same for all its steps."""
     registry = installed()
     found: list[Case] = []
-    for offer in registry.offered(OFFERS):
-        cases: StressCases = registry.load(OFFERS, offer.name)
+    for name in registry.offered(OFFERS):
+        cases: StressCases = registry.load(OFFERS, name)
         if cases.suits(subject):
             rng = np.random.default_rng([seed, zlib.crc32(subject.kind.encode())])
             found += cases.make(subject, rng, quick)

@@ -7,8 +7,8 @@ import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
-from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, shown
+from tactile_graph.errors import PluginError, UsageError, did_you_mean, shown
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
+from tactile_graph.plugins.names import OWN, Names, Offer, Plugin, singular
 from tactile_graph.vocabulary import QUANTITIES, UNITS, Vocabulary
 
 if TYPE_CHECKING:
@@ -29,17 +30,9 @@ GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
 Row = tuple[str, str, str, Callable[[], ModuleType]]
 """A plugin to be: its name, its package, that one's version, and what imports its module."""
-OWN = "tactile-graph"
-"""The package of the core and of the plugins that come with it."""
 _WORDS: dict[str, Vocabulary] = {"quantities": QUANTITIES, "units": UNITS}
 CORE = "core"
 """The plugin that the core itself is: nothing goes without it, so no selection leaves it out."""
-
-
-def singular(kind: str) -> str:
-    """Return the word for one offer of a kind: ``"file kind"`` for ``"file_kinds"``."""
-    words = kind.replace("_", " ")
-    return words.removesuffix("ies") + "y" if words.endswith("ies") else words.removesuffix("s")
 
 
 @dataclass(frozen=True)
@@ -64,33 +57,6 @@ class Selection:
         return asked or name == CORE
 
 
-@dataclass
-class Plugin:
-    """One installed plugin: what it offers, or why it does not."""
-
-    name: str
-    package: str
-    version: str = ""
-    error: str = ""
-    blocked: bool = False
-    import_ms: float = 0.0
-    offers: dict[str, dict[str, Any]] = field(default_factory=dict)
-
-    @property
-    def label(self) -> str:
-        """Plugin and package, as errors name it."""
-        return f"plugin {self.name!r} (package {self.package})"
-
-
-@dataclass
-class Offer:
-    """One named thing a plugin offers."""
-
-    name: str
-    plugin: Plugin
-    target: Any
-
-
 class Registry:
     """Everything the installed plugins offer.
 
@@ -107,9 +73,8 @@ class Registry:
         selection: Selection | None = None,
     ) -> None:
         self.plugins: list[Plugin] = []
-        self.clashes: list[str] = []
         self._hooks: dict[str, hookspecs.Answer] = {}
-        self._offers: dict[str, dict[str, Offer]] = {}
+        self._offers: dict[str, Names] = {}
         self._signatures: dict[str, Signature] = {}
         self._manager = pluggy.PluginManager(hookspecs.PROJECT)
         self._add_hooks(hookspecs)
@@ -128,10 +93,11 @@ class Registry:
                 self._ask_all(plugin, module, sure)
             for kind, offers in plugin.offers.items():
                 for name, target in offers.items():
-                    self._add(kind, Offer(name, plugin, target))
+                    self._offers[kind].add(Offer(name, plugin, target))
         for kind, words in _WORDS.items():
-            for name, offer in self._offers[kind].items():
-                words.enter(name, offer.target)
+            for offer in (self.offer(kind, name) for name in self.offered(kind)):
+                if self._of(kind).spelled(offer) == offer.name:
+                    words.enter(offer.name, offer.target)
 
     @contextmanager
     def _blamed(self, plugin: Plugin) -> Iterator[None]:
@@ -169,7 +135,7 @@ class Registry:
         if found:
             self._manager.add_hookspecs(module)
         self._hooks |= found
-        self._offers |= {kind: {} for kind in found}
+        self._offers |= {kind: Names(kind) for kind in found}
 
     def _ask_all(self, plugin: Plugin, module: ModuleType, sure: bool) -> None:
         check_hooks(module, (f"{GROUP}_{kind}" for kind in self._hooks), hookspecs.PROJECT, sure)
@@ -196,19 +162,10 @@ class Registry:
                 raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {wanted.wanted}")
         return dict(answers[0])
 
-    def _add(self, kind: str, offer: Offer) -> None:
-        taken = self._offers[kind].get(offer.name)
-        if taken is None:
-            self._offers[kind][offer.name] = offer
-            return
-        clash = (
-            f"{singular(kind)} {offer.name!r} of {offer.plugin.label} is refused: "
-            f"{taken.plugin.label} has it already"
-        )
-        self.clashes.append(clash)
-        offer.plugin.offers[kind] = {
-            n: t for n, t in offer.plugin.offers[kind].items() if n != offer.name
-        }
+    @property
+    def clashes(self) -> list[str]:
+        """What is to be told of names that several plugins offer, a line each."""
+        return [told for names in self._offers.values() for told in names.clashes]
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -220,33 +177,58 @@ class Registry:
         return self._hooks[kind].imported
 
     def names(self, kind: str) -> list[str]:
-        """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …)."""
-        return sorted(self._offers.get(kind, ()))
+        """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …).
 
-    def offered(self, kind: str) -> list[Offer]:
-        """Return all offers of a kind, the project's own first, as their plugins have them."""
-        return [*self._offers.get(kind, {}).values()]
+        They are plain, but for those that several plugins offer, which are qualified.
+        """
+        return sorted(self._of(kind))
 
-    def offer(self, kind: str, name: str) -> Offer:
+    def offered(self, kind: str) -> list[str]:
+        """Return the names of all offers of a kind, in the order of the plugins."""
+        return [*self._of(kind)]
+
+    def _of(self, kind: str) -> Names:
+        """Return what is offered of a kind; nothing where the plugin whose hook it is is down."""
+        return self._offers.get(kind, Names(kind))
+
+    def spelled(self, kind: str, name: str, file: str = "") -> str:
+        """Return the shortest name of what a name means, which no other plugin's is called."""
+        return self._of(kind).spelled(self.offer(kind, name, file))
+
+    def offer(self, kind: str, name: str, file: str = "") -> Offer:
         """Return one offer.
+
+        Parameters
+        ----------
+        kind, name : str
+            The name plain, or qualified by the plugin: ``filters.median``.
+        file : str, optional
+            The pipeline file it is named in: one that a plugin offers means its own package's.
 
         Raises
         ------
         UsageError
-            If nothing of that name is offered; says what is near, and which plugins are down.
+            If nothing of that name is offered, or by several; says what is near, and which plugins
+            are down.
         """
+        names = self._of(kind)
         try:
-            return self._offers[kind][name]
-        except KeyError:  # of the name, or of the kind where the plugin whose hook it is is down
-            raise UsageError(self.unknown(kind, name)) from None
+            found = names.find(name)
+        except UsageError:
+            found = names.find(name, self._packages.get(os.path.abspath(file), "") if file else "")
+        if found is None:
+            raise UsageError(self.unknown(kind, name))
+        return found
+
+    @cached_property
+    def _packages(self) -> dict[str, str]:
+        """Package of each pipeline file on offer."""
+        offers = (self.offer("pipelines", name) for name in self.names("pipelines"))
+        return {os.path.abspath(o.target): o.plugin.package for o in offers}
 
     def unknown(self, kind: str, name: str) -> str:
         """Return the text that says a name is not on offer, with what is near."""
-        names = self.names(kind)
-        text = f"no {singular(kind)} named {name!r}{did_you_mean(name, names)}"
-        if not did_you_mean(name, names):
-            text += f"; there are: {one_of(names)}"
-        return text + self.missing_plugins()
+        return self._of(kind).unknown(name) + self.missing_plugins()
 
     def missing_plugins(self) -> str:
         """Return the words that say which plugins offer nothing, and why; "" if all do."""
@@ -260,11 +242,11 @@ class Registry:
 
     def reader(self) -> str | None:
         """Return the first step offered that reads recordings, None if there is none."""
-        return next(iter(self._offers["readers"]), None)
+        return next(iter(self._of("readers")), None)
 
     def has(self, kind: str, name: str) -> bool:
         """Return whether something of that kind and name is on offer."""
-        return name in self._offers.get(kind, ())
+        return name in self._of(kind)
 
     def load(self, kind: str, name: str) -> Any:
         """Return the thing itself, imported if it was offered by import string.
@@ -274,7 +256,9 @@ class Registry:
         PluginError
             If it cannot be imported, or is not what the hook asks for.
         """
-        offer = self.offer(kind, name)
+        return self._loaded(kind, self.offer(kind, name))
+
+    def _loaded(self, kind: str, offer: Offer) -> Any:
         if isinstance(offer.target, str):
             offer.target = _import(offer)
             self._hold_against_hook(kind, offer)
@@ -289,26 +273,26 @@ class Registry:
                 f"got {shown(offer.target)}"
             )
 
-    def step(self, name: str) -> Signature:
-        """Return what the step of that name needs and gives; imports its module."""
-        if name not in self._signatures:
+    def step(self, name: str, file: str = "") -> Signature:
+        """Return what a step needs and gives; imports its module. Parameters as of `offer`."""
+        offer = self.offer("steps", name, file)
+        if offer.qualified not in self._signatures:
             from tactile_graph.steps.checks import check_signature
             from tactile_graph.steps.signature import read_signature
 
-            target = self.load("steps", name)
+            target = self._loaded("steps", offer)
             try:
-                signature = read_signature(name, target)
+                signature = read_signature(self._offers["steps"].spelled(offer), target)
                 check_signature(signature)
             except PluginError as error:
-                plugin = self.offer("steps", name).plugin
-                of = f"(plugin {plugin.name!r}, package {plugin.package})"
+                of = f"(plugin {offer.plugin.name!r}, package {offer.plugin.package})"
                 raise PluginError(f"{error} {of}") from None
-            self._signatures[name] = signature
-        return self._signatures[name]
+            self._signatures[offer.qualified] = replace(signature, identity=offer.identity)
+        return self._signatures[offer.qualified]
 
-    def path(self, kind: str, name: str) -> Path:
-        """Return the file of a pipeline, pad, preset or scene."""
-        return Path(self.offer(kind, name).target)
+    def path(self, kind: str, name: str, file: str = "") -> Path:
+        """Return the file of a pipeline, pad, preset or scene; parameters as of `offer`."""
+        return Path(self.offer(kind, name, file).target)
 
 
 def _import(offer: Offer) -> Any:

@@ -7,7 +7,8 @@ from types import ModuleType
 from typing import Any
 
 from tactile_graph.plugins.hookspecs import hookimpl
-from tactile_graph.plugins.registry import OWN, Registry, found_plugins
+from tactile_graph.plugins.names import OWN
+from tactile_graph.plugins.registry import Registry, found_plugins
 
 
 def isolated(

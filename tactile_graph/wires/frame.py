@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.quantities import checked_quantity
-from tactile_graph.wires.image import Image
+from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.measure import Measured
 from tactile_graph.wires.shapes import Shape
 
@@ -56,6 +56,9 @@ class Frame:
         Which sensor or file the frame comes from, where a source has several.
     doubtful : bool
         True where the source cannot tell whether the values lie where they belong.
+    mask : Mask, optional
+        The cells of the contact whose image it is, where a pipeline runs for each contact; None for
+        a frame that is whole.
     """
 
     image: Image
@@ -66,6 +69,7 @@ class Frame:
     gap: bool = False
     label: str = ""
     doubtful: bool = False
+    mask: Mask | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
 
     @classmethod

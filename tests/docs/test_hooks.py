@@ -20,6 +20,7 @@ from tactile_graph.draw.strip import strip_figure
 from tactile_graph.engine.columns import columns_of, values_of
 from tactile_graph.errors import PipelineError, PluginError
 from tactile_graph.plugins import registry as registry_module
+from tactile_graph.plugins.names import OWN
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.testing.plugin_check import examine_plugin
@@ -51,7 +52,7 @@ def sections() -> dict[str, str]:
 @pytest.fixture
 def plugin(monkeypatch: pytest.MonkeyPatch) -> Iterator[Plugin]:
     """Yield what installs the example of a section beside the project's own plugins."""
-    own = [row for row in registry_module.found_plugins() if row[1] == registry_module.OWN]
+    own = [row for row in registry_module.found_plugins() if row[1] == OWN]
 
     def install(head: str) -> Registry:
         module = ModuleType("mypad")

@@ -20,7 +20,7 @@ def test_a_quantity_has_its_unit_or_is_its_own() -> None:
 def test_an_unknown_quantity_is_told_with_what_is_near_or_with_all() -> None:
     assert unknown_quantity(["volt", "gram"]) == ""
     assert unknown_quantity(["volt", "grams"]) == "unknown quantity 'grams'; did you mean 'gram'?"
-    assert "; there are: binary, counts, gram, " in unknown_quantity(["x"])
+    assert "binary, counts, gram, " in unknown_quantity(["x"])
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def _sections() -> Iterator[tuple[str, ReportSection]]:
     from tactile_graph.plugins.registry import installed
 
     registry = installed()
-    names = [offer.name for offer in registry.offered(OFFERS)]
+    names = registry.offered(OFFERS)
     found: dict[str, ReportSection] = {name: registry.load(OFFERS, name) for name in names}
     yield from sorted(found.items(), key=lambda item: item[1].last)  # stable: as they were offered
 

@@ -96,7 +96,7 @@ def convert(
 def _check(recordings: list[Path], target: Path, source: str | None) -> None:
     from tactile_graph.files import check_target
 
-    kinds = [offer.name for offer in installed().offered(OFFERS)]
+    kinds = installed().offered(OFFERS)
     if target.suffix not in kinds:
         raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {target.name!r}")
     if bool(recordings) == (source is not None):

@@ -51,9 +51,9 @@ def _connected() -> list[tuple[str, PortInfo]]:
 
     registry = installed()
     return [
-        (offer.name, port)
-        for offer in registry.offered(OFFERS)
-        for port in registry.load(OFFERS, offer.name).connected()
+        (name, port)
+        for name in registry.offered(OFFERS)
+        for port in registry.load(OFFERS, name).connected()
     ]
 
 

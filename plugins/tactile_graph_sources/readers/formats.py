@@ -65,5 +65,5 @@ def _offered() -> Iterator[tuple[str, RecordingFormat]]:
     from tactile_graph.plugins.registry import installed
 
     registry = installed()
-    for offer in registry.offered(OFFERS):
-        yield offer.plugin.label, registry.load(OFFERS, offer.name)
+    for name in registry.offered(OFFERS):
+        yield registry.offer(OFFERS, name).plugin.label, registry.load(OFFERS, name)

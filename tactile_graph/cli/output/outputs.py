@@ -79,7 +79,7 @@ def forms() -> list[str]:
 
 
 def _endings() -> list[str]:
-    return [offer.name for offer in installed().offered(OFFERS)]
+    return installed().offered(OFFERS)
 
 
 def _no_place(option: str, what: str, holds: str = "numbers") -> str:

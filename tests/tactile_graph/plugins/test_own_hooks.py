@@ -102,13 +102,13 @@ def test_a_hook_of_a_name_that_is_taken_is_refused() -> None:
     assert "there is a hook tactile_graph_steps already" in found.plugins[0].error
 
 
-def test_a_taken_quantity_is_refused_and_a_unit_that_is_no_text_told() -> None:
+def test_a_taken_quantity_is_told_and_a_unit_that_is_no_text_told() -> None:
     found = registry(
         ("a", answering("quantities", newton="N")), ("b", answering("quantities", newton="kp"))
     )
     assert found.clashes == [
-        "quantity 'newton' of plugin 'b' (package b-package) is refused: "
-        "plugin 'a' (package a-package) has it already"
+        "quantity 'newton' of plugin 'b' (package b-package) is called b.newton: "
+        "plugin 'a' (package a-package) has the plain name"
     ]
     assert found.offer("quantities", "newton").target == "N"
     (bad,) = registry(("a", answering("quantities", newton=3))).plugins
