@@ -9,7 +9,8 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
   `Runner`;
 - outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`, the items of a
   list that have none (`gaps`) or one (`with_value`); values as numbers (`scalars`) and
-  as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`);
+  as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`) and what of
+  it is held against the truth (`measures_of`);
 - `Replay`: what a plan alone would have come to, from a run that settled more.
 """
 
@@ -26,7 +27,7 @@ from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
 from tactile_graph.engine.rows import as_data, scalars, without_nan
 from tactile_graph.engine.runner import Runner, check_frame
-from tactile_graph.engine.truth import shape_kind
+from tactile_graph.engine.truth import measures_of, shape_kind
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
 from tactile_graph.pipeline.plain import plain
@@ -54,6 +55,7 @@ __all__ = [
     "field_type",
     "gaps",
     "make_plan",
+    "measures_of",
     "node_key",
     "plain",
     "public_fields",

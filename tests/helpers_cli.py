@@ -189,11 +189,15 @@ def broken_plugin() -> types.ModuleType:
 def install(
     monkeypatch: Any, folder: Path, *others: tuple[str, str, str, Any], **more: Any
 ) -> None:
-    """Make the hand-made plugin the only one installed, with others after it."""
+    """Make the hand-made plugin the only one beside the core, with others after it."""
     from tactile_graph.plugins import registry
 
-    rows = [("hand", "hand-made", "1.2", plugin(folder, **more)), *others]
-    monkeypatch.setattr(registry, "_installed", lambda: rows)
+    rows = [
+        (registry.CORE, "tactile-graph", "", registry.core),
+        ("hand", "hand-made", "1.2", plugin(folder, **more)),
+        *others,
+    ]
+    monkeypatch.setattr(registry, "found_plugins", lambda: rows)
     monkeypatch.setattr(registry, "_override", None)
     monkeypatch.delenv(registry.ENVIRONMENT, raising=False)
     registry.installed.cache_clear()

@@ -4,6 +4,29 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tactile_graph import hookimpl
+from tactile_graph_sources import hookspecs as hookspecs
+
+# The surest marks first.
+_FORMATS = {
+    "npy": "npy:FORMAT",
+    "pictures": "pictures:FORMAT",
+    "npz": "npz:FORMAT",
+    "hdf5": "hdf5:FORMAT",
+    "matlab": "matlab:FORMAT",
+    "mcap": "mcap_log:FORMAT",
+    "tactilus": "popu_bed:FORMAT",
+    "xsensor": "xsensor:FORMAT",
+    "tekscan": "tekscan:FORMAT",
+    "pliance": "pliance:FORMAT",
+    "emed": "emed:FORMAT",
+    "capfingerid": "capfingerid:FORMAT",
+    "json": "json_stack:FORMAT",
+    "table-of-cells": "tables.long:FORMAT",
+    "table-of-matrices": "tables.stacked:FORMAT",
+    "table-of-frames": "tables.flat:FORMAT",
+    "node-images": "node_images:STORE",
+    "picture-folder": "pictures:FOLDER",
+}
 
 
 @hookimpl
@@ -62,3 +85,25 @@ def tactile_graph_commands() -> Mapping[str, str]:
 def tactile_graph_checks() -> Mapping[str, str]:
     """Offer what looks through recordings."""
     return {"store": "tactile_graph_sources.stores.checking:STORES"}
+
+
+@hookimpl
+def tactile_graph_recording_formats() -> Mapping[str, str]:
+    """Offer the formats of devices, of programs, and of plain tables."""
+    return {name: f"{__name__}.readers.{home}" for name, home in _FORMATS.items()}
+
+
+@hookimpl
+def tactile_graph_recording_writers() -> Mapping[str, str]:
+    """Offer what frames are converted to."""
+    return {
+        ".zarr": f"{__name__}.writers.write_store:WRITER",
+        ".npz": f"{__name__}.writers.write_npz:WRITER",
+        ".csv": f"{__name__}.writers.write_csv:WRITER",
+    }
+
+
+@hookimpl
+def tactile_graph_devices() -> Mapping[str, str]:
+    """Offer pads on serial ports."""
+    return {"serial": f"{__name__}.devices.capture:SERIAL"}

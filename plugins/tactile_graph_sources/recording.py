@@ -11,20 +11,20 @@ from typing import Annotated, Literal, NamedTuple
 from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers import node_images, pictures
-from tactile_graph_sources.readers.formats import known, reader_of
+from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
 from tactile_graph_sources.readers.garbage import without_garbage
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
-QuantityName = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
 
 
 def recording(
@@ -147,26 +147,25 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
         If it is missing or of no known format.
     """
     _check_file(path)
-    if node_images.is_store_of_images(path):
-        return _folder(path, told, report, label, node_images.NAME, node_images.read_store)
+    folder = format_of_folder(path, told) if path.is_dir() else None
+    if folder is not None:
+        return _folder(path, told, report, label, folder)
     if is_store(path):
         name, why = "Zarr store of ours", "by the files in it, zarr.json or frames.journal"
         frames, start = read_store(path, report), told.skip
         kept = without_garbage(islice(frames, start, None), report, str(path))
         return Opened(name, lambda: why, kept)
-    if path.is_dir():
-        return _folder(path, told, report, label, pictures.NAME, pictures.read_folder)
     try:
         with path.open("rb") as file:
             report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
         head = Head.of(path, told)
-        reader = reader_of(head)
+        found = format_of(head)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     reading = Reading(head, told, report, 0, label)
-    found = islice(_frames(reading, reader.NAME, reader.read), told.skip, None)
-    frames = without_garbage(found, report, str(path))
-    return Opened(reader.NAME, lambda: reading.why or "by its first lines", frames)
+    frames = islice(_frames(reading, found), told.skip, None)
+    whole = without_garbage(frames, report, str(path))
+    return Opened(found.name, lambda: reading.why or "by its first lines", whole)
 
 
 def _folder(
@@ -174,19 +173,18 @@ def _folder(
     told: Told,
     report: Report,
     label: str,
-    name: str,
-    read: Callable[[Reading], Iterator[Frame]],
+    of: RecordingFormat,
 ) -> Opened:
-    """Return a folder that is a recording, read by ``read``."""
+    """Return a folder that is a recording."""
     reading = Reading(Head(path, b"", told), told, report, 0, label)
-    found = islice(_frames(reading, name, read), told.skip, None)
-    return Opened(name, lambda: reading.why, without_garbage(found, report, str(path)))
+    found = islice(_frames(reading, of), told.skip, None)
+    return Opened(of.name, lambda: reading.why, without_garbage(found, report, str(path)))
 
 
 def _check_file(path: Path) -> None:
     if path.is_file() or is_store(path):
         return
-    if path.is_dir() and pictures.pictures_in(path):
+    if path.is_dir() and format_of_folder(path, Told()) is not None:
         return
     if path.is_dir():
         held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
@@ -197,14 +195,12 @@ def _check_file(path: Path) -> None:
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
 
-def _frames(
-    reading: Reading, name: str, read: Callable[[Reading], Iterator[Frame]]
-) -> Iterator[Frame]:
+def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
     """Yield the frames of one file; a file without any is an error."""
     path, told, report = reading.path, reading.told, reading.report
-    report.count(f"recordings read as {name}")
+    report.count(f"recordings read as {of.name}")
     try:
-        yield from read(reading)
+        yield from of.read(reading)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     if reading.index > reading.start:
@@ -217,5 +213,5 @@ def _frames(
     why = f" ({reading.first_damage})" if reading.first_damage else ""
     raise DataError(
         str(path),
-        f"it looks like {name} but holds no whole frame{why}; formats that are read: {known()}",
+        f"it looks like {of.name} but holds no whole frame{why}; formats that are read: {known()}",
     )

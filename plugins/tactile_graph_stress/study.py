@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tactile_graph.errors import TactileGraphError
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_stress.case import Case
-from tactile_graph_stress.cases.circuits import circuit_cases
-from tactile_graph_stress.cases.images import image_cases
-from tactile_graph_stress.cases.masks import mask_cases
-from tactile_graph_stress.cases.points import point_cases
+from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.judge import Judge
 from tactile_graph_stress.subject import Subject
 from tactile_graph_stress.trial import Trial
 from tactile_graph_stress.verdict import Outcome, Verdict
+
+OFFERS = "stress_cases"
 
 
 @dataclass(frozen=True)
@@ -35,13 +34,14 @@ class Row:
 
 def cases_of(subject: Subject, seed: int, quick: bool) -> list[Case]:
     """Return all cases for a subject; those of one kind are the same for all its steps."""
-    rng = np.random.default_rng([seed, zlib.crc32(subject.kind.encode())])
-    if subject.kind == "decouple":
-        return list(circuit_cases(subject, rng, quick))
-    make: dict[str, Callable[[Subject, np.random.Generator, bool], Iterator[Case]]] = {
-        "points": point_cases, "mask": mask_cases, "image": image_cases,
-    }  # fmt: skip
-    return list(make[subject.feed](subject, rng, quick))
+    registry = installed()
+    found: list[Case] = []
+    for name in registry.offered(OFFERS):
+        cases: StressCases = registry.load(OFFERS, name)
+        if cases.suits(subject):
+            rng = np.random.default_rng([seed, zlib.crc32(subject.kind.encode())])
+            found += cases.make(subject, rng, quick)
+    return found
 
 
 def stressed(

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+import numpy as np
+
+from tactile_graph.draw.display import Drawn, Label, Outline, Rim, display_list
 from tactile_graph.wires import Image, Mask
 from tactile_graph_tracking.followed import State
+
+SHOWN_S = 0.1
+"""How far ahead pictures show where an object goes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +66,16 @@ class TrackedObject:
         """Its contact's own mask; None of a shape, which has none."""
         mask: Mask | None = getattr(self.contact, "mask", None)
         return mask
+
+    def drawing(self) -> Iterator[Drawn]:
+        """Yield its outline, its number, and as a line the way it goes in a tenth of a second."""
+        seen = self.contact if self.mask is None else [self.mask]
+        yield from (r for r in display_list(seen) if isinstance(r, Rim | Outline))
+        here = np.array([self.x_cm, self.y_cm])
+        if self.speed_cm_s > 0.0:
+            way = here + np.outer([0.0, SHOWN_S], [self.vx_cm_s, self.vy_cm_s])
+            yield Outline(way, closed=False)
+        yield Label(self.x_cm, self.y_cm, str(self.id))
 
     @property
     def speed_cm_s(self) -> float:

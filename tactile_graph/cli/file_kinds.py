@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.plugins.file_kind import FileKind
 from tactile_graph.plugins.registry import Registry
 
@@ -40,10 +40,7 @@ def file_kind(found: Registry, name: str) -> FileKind:
         names = kind_names(found)
         hint = did_you_mean(name, names) or f"; there are: {one_of(names)}"
         raise UsageError(f"no kind of file named {name!r}{hint}")
-    kind = found.load("file_kinds", name)
-    label = found.offer("file_kinds", name).plugin.label
-    if not isinstance(kind, FileKind):
-        raise PluginError(f"file kind {name!r} of {label} is no FileKind: {kind!r}")
+    kind: FileKind = found.load("file_kinds", name)
     return kind
 
 

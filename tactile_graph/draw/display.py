@@ -8,7 +8,7 @@ axes, `paint_svg` into SVG.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.engine.outcome import Done, Failed, Skipped, outcome_word
 from tactile_graph.engine.rows import scalars
+from tactile_graph.errors import PluginError, shown
 from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
 
 Role = Literal["found", "true"]
@@ -101,7 +102,30 @@ class Note:
     value: Any
 
 
-Record = Heat | Cells | Rim | Dots | Outline | Cross | Number | Note
+@dataclass(frozen=True)
+class Area:
+    """What a closed line encloses, filled so that what lies beneath still shows.
+
+    ``xy_cm`` has the shape (corners, 2).
+    """
+
+    xy_cm: NDArray[np.float64]
+    role: Role = "found"
+
+
+@dataclass(frozen=True)
+class Label:
+    """A word at a place, its middle there."""
+
+    x_cm: float
+    y_cm: float
+    text: str
+    role: Role = "found"
+
+
+Record = Heat | Cells | Rim | Dots | Outline | Area | Cross | Label | Number | Note
+Drawn = Rim | Dots | Outline | Area | Cross | Label | Note
+"""What a value may draw of itself."""
 
 
 def display_list(value: Any, role: Role = "found") -> list[Record]:
@@ -110,11 +134,16 @@ def display_list(value: Any, role: Role = "found") -> list[Record]:
     Parameters
     ----------
     value : object
-        A record of the wires, a plugin's own with an ``outline_cm()`` (open where its
-        ``outline_closed`` is false), a view (``provides``) or a
+        A record of the wires, a plugin's own with a ``drawing()`` (records of this module), an
+        ``outline_cm()`` (open where its ``outline_closed`` is false), a view (``provides``) or a
         place (``x_cm``, ``y_cm``); lists and NamedTuples of these; numbers and texts.
     role : str
         Whether it was found or is true.
+
+    Raises
+    ------
+    PluginError
+        If what a value draws of itself is no such record.
     """
     listing = _Listing(role)
     listing.add(value, alone=True)
@@ -122,8 +151,9 @@ def display_list(value: Any, role: Role = "found") -> list[Record]:
 
 
 def truth_list(objects: Iterable[TrueObject]) -> list[Record]:
-    """Return what drawing the true objects of a frame shows."""
-    return [record for thing in objects for record in display_list(thing.shape, "true")]
+    """Return what drawing the true objects of a frame shows: lines, which lie over all the rest."""
+    records = (record for thing in objects for record in display_list(thing.shape, "true"))
+    return [record for record in records if not isinstance(record, Area | Label)]
 
 
 def is_picture(value: Any) -> bool:
@@ -151,6 +181,8 @@ class _Listing:
             self.records.append(Cells(value) if alone else Rim(cell_edges(value), self.role))
         elif isinstance(value, Points):
             self.records.append(Dots(value.xy_cm, self.role))
+        elif draws_itself(value):
+            self._drawing(value)
         elif hasattr(value, "outline_cm"):
             self._outline(value)
         elif hasattr(value, "_fields"):
@@ -159,6 +191,15 @@ class _Listing:
             self._items(value)
         else:
             self._other(value, alone)
+
+    def _drawing(self, value: Any) -> None:
+        for record in value.drawing():
+            if not isinstance(record, Drawn):
+                who = f"{type(value).__name__}.drawing()"
+                raise PluginError(f"{who} must give records to draw, got {shown(record)}")
+            if not isinstance(record, Note):
+                record = replace(record, role=self.role)
+            self.records.append(record)
 
     def _outline(self, value: Any) -> None:
         with np.errstate(invalid="ignore"):  # of a shape that is nowhere
@@ -194,7 +235,8 @@ class _Listing:
                 self.records.append(Note(f"{number}", outcome_word(item)))
                 continue
             self.add(item, alone=False)
-            at = _middle(item) if 1 < len(items) <= MOST_NUMBERED else None
+            numbered = 1 < len(items) <= MOST_NUMBERED and not draws_itself(item)
+            at = _middle(item) if numbered else None
             if at is not None:
                 self.records.append(Number(*at, str(getattr(item, "number", number))))
 
@@ -208,6 +250,11 @@ class _Listing:
             return  # where it is says enough of one of several
         found = scalars("", value) or {"": value}
         self.records += [Note(name.lstrip("."), v) for name, v in found.items()]
+
+
+def draws_itself(value: Any) -> bool:
+    """Return whether a value says by ``drawing()`` what it looks like."""
+    return callable(getattr(type(value), "drawing", None))
 
 
 def place(value: Any) -> tuple[float, float] | None:

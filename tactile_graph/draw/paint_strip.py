@@ -10,10 +10,12 @@ import numpy as np
 
 from tactile_graph.draw.colours import FAILED, FOUND, MASK_OFF, MASK_ON, SKIPPED, TRUE
 from tactile_graph.draw.display import (
+    Area,
     Cells,
     Cross,
     Dots,
     Heat,
+    Label,
     Note,
     Number,
     Outline,
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
 
 DASHES = (4.0, 2.5)
 HEAT = "viridis"
+FILLED = 0.3
+"""How much of an area's colour covers what lies beneath."""
 MOST_NOTES = 8
 LONGEST_NOTE = 28
 
@@ -86,13 +90,13 @@ class Pen:
             elif isinstance(record, Cells):
                 self._cells(record.mask)
             elif isinstance(record, Number):
-                self._number(record)
+                self._word(record.x_cm, record.y_cm, record.text, FOUND)
             elif not isinstance(record, Note):
                 self._ground()
                 self._line(record)
                 self.drawn.add(record.role)
 
-    def _line(self, record: Rim | Dots | Outline | Cross) -> None:
+    def _line(self, record: Rim | Dots | Outline | Area | Cross | Label) -> None:
         if isinstance(record, Rim):
             self._rim(record)
         elif isinstance(record, Dots):
@@ -101,6 +105,11 @@ class Pen:
             self.axes.plot(x, y, "o", color=FOUND, ms=size, mec="white", mew=0.3, zorder=4)
         elif isinstance(record, Outline):
             self._outline(record)
+        elif isinstance(record, Area):
+            x, y = record.xy_cm[:, 0], record.xy_cm[:, 1]
+            self.axes.fill(x, y, color=_colour(record), alpha=FILLED, lw=0, zorder=3)
+        elif isinstance(record, Label):
+            self._word(record.x_cm, record.y_cm, record.text, _colour(record))
         else:
             at = [record.x_cm], [record.y_cm]
             self.axes.plot(*at, "+", color=FOUND, ms=6, mew=1.3, zorder=4)
@@ -140,11 +149,11 @@ class Pen:
                 xy[:, 0], xy[:, 1], color=FOUND, lw=1.7, zorder=4, path_effects=_halo(1.7)
             )
 
-    def _number(self, number: Number) -> None:
+    def _word(self, x_cm: float, y_cm: float, text: str, colour: str) -> None:
         self.axes.annotate(
-            number.text, (number.x_cm, number.y_cm), ha="center", va="center",
-            fontsize=7, color="white", zorder=6, annotation_clip=True,
-            bbox={"boxstyle": "round,pad=0.15", "fc": FOUND, "ec": "none"},
+            text, (x_cm, y_cm), ha="center", va="center", fontsize=7, color="white", zorder=6,
+            annotation_clip=True, parse_math=False,
+            bbox={"boxstyle": "round,pad=0.15", "fc": colour, "ec": "none"},
         )  # fmt: skip
 
     def _told(self, note: Note) -> str:
@@ -203,6 +212,10 @@ class Pen:
             0.5, 0.5, "\n".join(lines), transform=self.axes.transAxes, ha="center", va="center",
             fontsize=6.5, color="#8e2323" if failed else "#555555", parse_math=False,
         )  # fmt: skip
+
+
+def _colour(record: Area | Label) -> str:
+    return TRUE if record.role == "true" else FOUND
 
 
 def _halo(width: float) -> list[AbstractPathEffect]:

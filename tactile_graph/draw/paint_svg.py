@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.draw.display import (
+    Area,
     Cells,
     Cross,
     Dots,
     Heat,
+    Label,
     Note,
     Outline,
     Record,
@@ -63,8 +66,9 @@ class View:
 class SvgPicture:
     """What a display list shows: grids beneath, lines over them, words below.
 
-    The lines carry the classes ``rim`` (a light edge) and ``ink``, dots ``dots`` as well: the
-    page that shows them gives them their colours, as what was found or what is true.
+    The lines carry the classes ``rim`` (a light edge) and ``ink``, dots ``dots`` and words
+    ``word`` as well, and areas ``area``: the page that shows them gives them their colours, as
+    what was found or what is true.
 
     Parameters
     ----------
@@ -105,11 +109,16 @@ class SvgPicture:
             self._path("".join(f"M{a:.0f} {b:.0f}L{c:.0f} {d:.0f}" for a, b, c, d in ends))
         elif isinstance(record, Dots):
             at = self.view.at(record.xy_cm).tolist()
-            self._path("".join(f"M{x:.1f} {y:.1f}h0" for x, y in at), " dots")
+            self._path("".join(f"M{x:.1f} {y:.1f}h0" for x, y in at), ("rim dots", "ink dots"))
         elif isinstance(record, Outline) and record.circle is not None:
             self._circle(record.circle)
         elif isinstance(record, Outline):
             self._path(_through(self.view.at(record.xy_cm), record.closed))
+        elif isinstance(record, Area):
+            self._path(_through(self.view.at(record.xy_cm), closed=True), ("area",))
+        elif isinstance(record, Label):
+            for x, y in self.view.at(np.array([record.x_cm, record.y_cm])).tolist():
+                self._word(x, y, record.text)
         elif isinstance(record, Cross):
             for x, y in self.view.at(np.array([record.x_cm, record.y_cm])).tolist():
                 self._path(f"M{x - 6:.1f} {y:.1f}h12M{x:.1f} {y - 6:.1f}v12")
@@ -124,10 +133,15 @@ class SvgPicture:
                     f'<circle cx="{_px(x)}" cy="{_px(y)}" r="{_px(r)}" class="{under}"></circle>'
                 )
 
-    def _path(self, path: str, kind: str = "") -> None:
-        if path:
-            for under in ("rim", "ink"):
-                self.lines.append(f'<path d="{path}" class="{under}{kind}"></path>')
+    def _path(self, path: str, classes: tuple[str, ...] = ("rim", "ink")) -> None:
+        for name in classes if path else ():
+            self.lines.append(f'<path d="{path}" class="{name}"></path>')
+
+    def _word(self, x: float, y: float, text: str) -> None:
+        for under in ("rim", "ink"):
+            self.lines.append(
+                f'<text x="{_px(x)}" y="{_px(y)}" class="{under} word">{escape(text)}</text>'
+            )
 
 
 def _through(xy: NDArray[np.float64], closed: bool) -> str:

@@ -13,7 +13,7 @@ from tactile_graph.engine.fields import field_getter
 from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
-from tactile_graph.wires.image import UNITS
+from tactile_graph.quantities import unit_of
 
 MOST_COLUMNS = 10
 
@@ -31,8 +31,8 @@ class Column:
     @property
     def scale(self) -> str:
         """Label of the colour bar: the quantity and its unit."""
-        unit = UNITS.get(self.quantity)
-        return f"{self.quantity} in {unit}" if unit else self.quantity
+        unit = unit_of(self.quantity)
+        return f"{self.quantity} in {unit}" if unit != self.quantity else self.quantity
 
 
 def columns(results: Sequence[Outcomes], nodes: Sequence[str] | None) -> list[Column]:

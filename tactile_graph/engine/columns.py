@@ -15,11 +15,7 @@ from tactile_graph.engine.truth import error_names, errors_against, nearest
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, field_type, public_fields
 from tactile_graph.steps.signature import list_item
-
-UNITS = {
-    "cm2": "cm²", "cm": "cm", "mm": "mm", "deg": "°", "rad": "rad", "g": "g", "n": "N", "s": "s",
-    "cm_s": "cm/s", "ms": "ms", "us": "µs", "v": "V", "kpa": "kPa", "ohm": "Ω", "hz": "Hz",
-}  # fmt: skip
+from tactile_graph.vocabulary import words_and_unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,16 +106,6 @@ def _column(output: str, key: str, kind: type, of_image: bool = False) -> Column
 def _error_column(output: str, error: str) -> Column:
     head, _, unit = error.rpartition("_")
     return Column(f"{output}.{head}_error_{unit}", output, *words_and_unit(error), float, error)
-
-
-def words_and_unit(name: str) -> tuple[str, str]:
-    """Return a name's words and its unit: ``("radius", "cm")`` of ``radius_cm``."""
-    for n_words in (2, 1):  # vx_cm_s is in cm_s, not in s
-        head, *tail = name.rsplit("_", n_words)
-        unit = UNITS.get("_".join(tail), "")
-        if unit and head:
-            return head.replace("_", " "), unit
-    return name.replace("_", " "), ""
 
 
 def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:

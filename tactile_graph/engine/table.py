@@ -21,8 +21,8 @@ from tactile_graph.engine.rows import scalars
 from tactile_graph.engine.truth import error_names, errors_against, nearest, shape_kind
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, public_fields
+from tactile_graph.quantities import unit_of
 from tactile_graph.steps.signature import list_item
-from tactile_graph.wires.image import UNITS
 
 Row = dict[str, Any]
 LEAD = (
@@ -56,7 +56,7 @@ def units_of(table: Table, quantity: str) -> dict[str, str]:
 
 
 def _unit(column: Column, quantity: str) -> str:
-    return UNITS.get(quantity, quantity) if column.of_image else column.unit or "1"
+    return unit_of(quantity) if column.of_image else column.unit or "1"
 
 
 def _is_number(kind: type) -> bool:

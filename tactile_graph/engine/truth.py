@@ -8,26 +8,26 @@ from typing import Any
 
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.wires.frame import TrueObject
-from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle, printed_angle_deg
-
-MEASURES: dict[type, tuple[str, ...]] = {
-    Circle: ("radius_cm",),
-    Ellipse: ("semi_major_cm", "semi_minor_cm", "angle_deg"),
-    Rectangle: ("length_cm", "breadth_cm", "angle_deg"),
-    Polygon: ("area_cm2",),
-}
-"""Beside its centre, what of a shape is compared with the truth."""
+from tactile_graph.wires.measure import Measure
 
 
 def shape_kind(kind: Any) -> type | None:
-    """Return which of the shapes a type is; None if it is none."""
-    return next((s for s in MEASURES if isinstance(kind, type) and issubclass(kind, s)), None)
+    """Return which shape a type is: the class that says how it is measured; None if it is none."""
+    if not isinstance(kind, type) or not hasattr(kind, "error_measures"):
+        return None
+    return next(c for c in kind.__mro__ if "error_measures" in vars(c))
+
+
+def measures_of(kind: type) -> tuple[Measure, ...]:
+    """Return what of a kind of shape is held against the truth, beside its centre."""
+    found: tuple[Measure, ...] = vars(kind)["error_measures"]
+    return found
 
 
 def error_names(kind: Any) -> tuple[str, ...]:
     """Return the names of the errors that values of a type can have; empty if it is no shape."""
     shapes = [s for s in map(shape_kind, arms(kind)) if s is not None]
-    measures = dict.fromkeys(m for s in shapes for m in MEASURES[s])
+    measures = dict.fromkeys(m.field for s in shapes for m in measures_of(s))
     return ("centre_cm", *measures) if shapes else ()
 
 
@@ -45,7 +45,7 @@ def errors_against(value: Any, true: TrueObject) -> dict[str, float]:
 
     Parameters
     ----------
-    value : Circle, Ellipse, Rectangle or Polygon
+    value : Circle, Ellipse, Rectangle, Polygon or a plugin's own shape
         What was found.
     true : TrueObject
         Of the same kind, as `nearest` gives it. The angle's error is brought into (-90, 90].
@@ -53,10 +53,7 @@ def errors_against(value: Any, true: TrueObject) -> dict[str, float]:
     kind = shape_kind(type(value))
     assert kind is not None
     errors = {"centre_cm": _centre_cm(value, true.shape)}
-    for name in MEASURES[kind]:
-        off = float(getattr(value, name)) - float(getattr(true.shape, name))
-        errors[name] = printed_angle_deg(math.radians(off)) if name == "angle_deg" else off
-    return errors
+    return errors | {m.field: m.error(value, true.shape) for m in measures_of(kind)}
 
 
 def _centre_cm(a: Any, b: Any) -> float:

@@ -184,11 +184,14 @@ def _impossible(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: R
 def _choices(kind: Any) -> tuple[Any, ...]:
     """Return all that a value can be; nothing where it is not one of a few.
 
-    ``Annotated[str, Literal["a", "b"]]`` says so of a text, beside ``Literal`` itself.
+    ``Annotated[str, Literal["a", "b"]]`` says so of a text, beside ``Literal`` itself; so does a
+    rule that tells its ``choices()``.
     """
     for rule in strip(kind)[1]:
         if get_origin(rule) is Literal:
             return get_args(rule)
+        if callable(getattr(rule, "choices", None)):
+            return tuple(rule.choices())
     found = arms(kind) if kind is not None else ()
     if not found or not all(arm is bool or get_origin(arm) is Literal for arm in found):
         return ()

@@ -41,8 +41,17 @@ def stale(error: BaseException, package: str) -> str:
     return ""
 
 
-def check_hooks(module: ModuleType, known: Iterable[str], project: str) -> None:
+def check_hooks(module: ModuleType, known: Iterable[str], project: str, sure: bool) -> None:
     """Refuse a hook that nobody would ask: misspelt, or without its mark.
+
+    Parameters
+    ----------
+    module : module
+    known : iterable of str
+        All hooks there are.
+    project : str
+    sure : bool
+        Whether these are all: a hook that nobody knows may be one of a plugin that is not there.
 
     Raises
     ------
@@ -53,7 +62,7 @@ def check_hooks(module: ModuleType, known: Iterable[str], project: str) -> None:
         if not name.startswith(f"{project}_") or not callable(value):
             continue
         marked = hasattr(value, f"{project}_impl")
-        if marked and name not in hooks:
+        if marked and name not in hooks and sure:
             hint = did_you_mean(name, hooks) or f"; hooks: {one_of(hooks)}"
             raise PluginError(f"unknown hook {name!r}{hint}")
         if name in hooks and not marked:

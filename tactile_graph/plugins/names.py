@@ -16,7 +16,8 @@ AMBIGUOUS = ("steps", "pipelines", "readers")
 
 def singular(kind: str) -> str:
     """Return the word for one offer of a kind: ``"file kind"`` for ``"file_kinds"``."""
-    return kind.removesuffix("s").replace("_", " ")
+    words = kind.replace("_", " ")
+    return words.removesuffix("ies") + "y" if words.endswith("ies") else words.removesuffix("s")
 
 
 @dataclass

@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
@@ -19,24 +20,19 @@ from tactile_graph.errors import PluginError, UsageError, did_you_mean, shown
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
-from tactile_graph.plugins.names import OWN, Names, Offer, Plugin
+from tactile_graph.plugins.names import OWN, Names, Offer, Plugin, singular
+from tactile_graph.vocabulary import QUANTITIES, UNITS, Vocabulary
 
 if TYPE_CHECKING:
     from tactile_graph.steps.signature import Signature
 
 GROUP = "tactile_graph"
 ENVIRONMENT = "TACTILE_GRAPH_PLUGINS"
-OFFERS = (
-    "steps", "readers", "pipelines", "pads", "presets", "scenes", "file_kinds", "commands",
-    "checks",
-)  # fmt: skip
-_FILES = ("pipelines", "pads", "presets", "scenes")
-_TARGETS: dict[str, Any] = {k: str | Path if k in _FILES else str for k in OFFERS}
-_WANTED = {
-    **dict.fromkeys(OFFERS, 'an import string "module:name" is needed'),
-    **dict.fromkeys(_FILES, "a file's path is needed"),
-    "readers": "the name of its setting is needed",
-}
+Row = tuple[str, str, str, Callable[[], ModuleType]]
+"""A plugin to be: its name, its package, that one's version, and what imports its module."""
+_WORDS: dict[str, Vocabulary] = {"quantities": QUANTITIES, "units": UNITS}
+CORE = "core"
+"""The plugin that the core itself is: nothing goes without it, so no selection leaves it out."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +53,8 @@ class Selection:
 
     def allows(self, name: str) -> bool:
         """Return whether the plugin may load."""
-        return name not in self.blocked and (not self.only or name in self.only)
+        asked = name not in self.blocked and (not self.only or name in self.only)
+        return asked or name == CORE
 
 
 class Registry:
@@ -72,67 +69,97 @@ class Registry:
 
     def __init__(
         self,
-        plugins: Iterable[tuple[str, str, str, Callable[[], ModuleType]]],
+        plugins: Iterable[Row],
         selection: Selection | None = None,
     ) -> None:
         self.plugins: list[Plugin] = []
-        self._offers = {kind: Names(kind) for kind in OFFERS}
+        self._hooks: dict[str, hookspecs.Answer] = {}
+        self._offers: dict[str, Names] = {}
         self._signatures: dict[str, Signature] = {}
         self._manager = pluggy.PluginManager(hookspecs.PROJECT)
-        self._manager.add_hookspecs(hookspecs)
+        self._add_hooks(hookspecs)
         allowed = selection or Selection()
+        modules = []
         for name, package, version, loader in plugins:
             plugin = Plugin(name, package, version, blocked=not allowed.allows(name))
             self.plugins.append(plugin)
             if not plugin.blocked:
-                self._load(plugin, loader)
+                with self._blamed(plugin):
+                    modules.append((plugin, self._module(plugin, loader)))
+        # A hook of a plugin that is down is no misspelt one.
+        sure = len(modules) == len(self.plugins)
+        for plugin, module in modules:  # after all of them: one may have a hook another answers
+            with self._blamed(plugin):
+                self._ask_all(plugin, module, sure)
+            for kind, offers in plugin.offers.items():
+                for name, target in offers.items():
+                    self._offers[kind].add(Offer(name, plugin, target))
+        for kind, words in _WORDS.items():
+            for offer in (self.offer(kind, name) for name in self.offered(kind)):
+                if self._of(kind).spelled(offer) == offer.name:
+                    words.enter(offer.name, offer.target)
 
-    def _load(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> None:
+    @contextmanager
+    def _blamed(self, plugin: Plugin) -> Iterator[None]:
+        """Note what a plugin's code raises and how long it takes; it may raise anything."""
         start = time.perf_counter()
         try:
-            with foreign_code(plugin.name, plugin.label):
-                module = loader()
-            if self._manager.has_plugin(plugin.name):
-                other = next(p for p in self.plugins if p.name == plugin.name)
-                raise PluginError(
-                    f"package {other.package} has a plugin of this name already; "
-                    "give the entry point another"
-                )
-            self._register(module, plugin.name)
-            for kind in OFFERS:
-                with foreign_code(plugin.name, plugin.label):
-                    plugin.offers[kind] = self._ask(module, kind)
-        except Exception as error:  # it may raise anything; the rest must go on
+            yield
+        except Exception as error:  # the rest must go on
             raised = error.error if isinstance(error, Broken) else error
             plugin.error = why(raised) + stale(raised, plugin.package)
             plugin.offers.clear()
-        plugin.import_ms = 1e3 * (time.perf_counter() - start)
-        for kind, offers in plugin.offers.items():
-            for name, target in offers.items():
-                self._offers[kind].add(Offer(name, plugin, target))
+        plugin.import_ms += 1e3 * (time.perf_counter() - start)
 
-    def _register(self, module: ModuleType, name: str) -> None:
-        check_hooks(module, (f"{GROUP}_{kind}" for kind in OFFERS), hookspecs.PROJECT)
-        self._manager.register(module, name)
-        try:
-            self._manager.check_pending()
-        except pluggy.PluginValidationError:
-            self._manager.unregister(module)  # or the next plugin would be blamed for its hooks
-            raise
+    def _module(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> ModuleType:
+        with foreign_code(plugin.name, plugin.label):
+            module = loader()
+        others = [p for p in self.plugins[:-1] if p.name == plugin.name and not p.error]
+        if others:
+            raise PluginError(
+                f"package {others[0].package} has a plugin of this name already; "
+                "give the entry point another"
+            )
+        own = getattr(module, "hookspecs", None)
+        if isinstance(own, ModuleType):
+            self._add_hooks(own)
+        return module
+
+    def _add_hooks(self, module: ModuleType) -> None:
+        """Take the hooks that stand in a module, for all plugins to answer."""
+        answers = {n: getattr(f, f"{GROUP}_answer", None) for n, f in vars(module).items()}
+        found = {n.removeprefix(f"{GROUP}_"): a for n, a in answers.items() if a is not None}
+        taken = [kind for kind in found if kind in self._hooks]
+        if taken:
+            raise PluginError(f"there is a hook {GROUP}_{taken[0]} already; give it another name")
+        if found:
+            self._manager.add_hookspecs(module)
+        self._hooks |= found
+        self._offers |= {kind: Names(kind) for kind in found}
+
+    def _ask_all(self, plugin: Plugin, module: ModuleType, sure: bool) -> None:
+        check_hooks(module, (f"{GROUP}_{kind}" for kind in self._hooks), hookspecs.PROJECT, sure)
+        self._manager.register(module, plugin.name)
+        with foreign_code(plugin.name, plugin.label):
+            for kind in self._hooks:
+                plugin.offers[kind] = self._ask(module, kind)
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")
         answers = [i.function() for i in hook.get_hookimpls() if i.plugin is module]
         if not answers:
             return {}
-        hook_name = f"hook {GROUP}_{kind}"
+        hook_name, wanted = f"hook {GROUP}_{kind}", self._hooks[kind]
         if not isinstance(answers[0], Mapping):
             raise PluginError(f"{hook_name} must return a mapping, got {shown(answers[0])}")
         for name, target in answers[0].items():
             if not isinstance(name, str) or not name:
                 raise PluginError(f"{hook_name}: a name must be a text, got {shown(name)}")
-            if not (isinstance(target, _TARGETS[kind]) or (kind == "steps" and callable(target))):
-                raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {_WANTED[kind]}")
+            if wanted.endings and not (name.startswith(".") and name.islower()):
+                told = "a name must be the ending of files' names in small letters"
+                raise PluginError(f"{hook_name}: {told}, such as '.csv', got {shown(name)}")
+            if not isinstance(target, wanted.types):
+                raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {wanted.wanted}")
         return dict(answers[0])
 
     @property
@@ -140,16 +167,33 @@ class Registry:
         """What is to be told of names that several plugins offer, a line each."""
         return [told for names in self._offers.values() for told in names.clashes]
 
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of things that plugins offer: of the core's hooks first, then of theirs."""
+        return tuple(self._hooks)
+
+    def is_imported(self, kind: str) -> bool:
+        """Return whether what is offered of a kind is named by import string."""
+        return self._hooks[kind].imported
+
     def names(self, kind: str) -> list[str]:
         """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …).
 
         They are plain, but for those that several plugins offer, which are qualified.
         """
-        return sorted(self._offers[kind])
+        return sorted(self._of(kind))
+
+    def offered(self, kind: str) -> list[str]:
+        """Return the names of all offers of a kind, in the order of the plugins."""
+        return [*self._of(kind)]
+
+    def _of(self, kind: str) -> Names:
+        """Return what is offered of a kind; nothing where the plugin whose hook it is is down."""
+        return self._offers.get(kind, Names(kind))
 
     def spelled(self, kind: str, name: str, file: str = "") -> str:
         """Return the shortest name of what a name means, which no other plugin's is called."""
-        return self._offers[kind].spelled(self.offer(kind, name, file))
+        return self._of(kind).spelled(self.offer(kind, name, file))
 
     def offer(self, kind: str, name: str, file: str = "") -> Offer:
         """Return one offer.
@@ -167,7 +211,7 @@ class Registry:
             If nothing of that name is offered, or by several; says what is near, and which plugins
             are down.
         """
-        names = self._offers[kind]
+        names = self._of(kind)
         try:
             found = names.find(name)
         except UsageError:
@@ -184,7 +228,7 @@ class Registry:
 
     def unknown(self, kind: str, name: str) -> str:
         """Return the text that says a name is not on offer, with what is near."""
-        return self._offers[kind].unknown(name) + self.missing_plugins()
+        return self._of(kind).unknown(name) + self.missing_plugins()
 
     def missing_plugins(self) -> str:
         """Return the words that say which plugins offer nothing, and why; "" if all do."""
@@ -198,21 +242,36 @@ class Registry:
 
     def reader(self) -> str | None:
         """Return the first step offered that reads recordings, None if there is none."""
-        return next(iter(self._offers["readers"]), None)
+        return next(iter(self._of("readers")), None)
 
     def has(self, kind: str, name: str) -> bool:
         """Return whether something of that kind and name is on offer."""
-        return name in self._offers[kind]
+        return name in self._of(kind)
 
     def load(self, kind: str, name: str) -> Any:
-        """Return the thing itself, imported if it was offered by import string."""
-        return self._loaded(self.offer(kind, name))
+        """Return the thing itself, imported if it was offered by import string.
 
-    @staticmethod
-    def _loaded(offer: Offer) -> Any:
+        Raises
+        ------
+        PluginError
+            If it cannot be imported, or is not what the hook asks for.
+        """
+        return self._loaded(kind, self.offer(kind, name))
+
+    def _loaded(self, kind: str, offer: Offer) -> Any:
         if isinstance(offer.target, str):
             offer.target = _import(offer)
+            self._hold_against_hook(kind, offer)
         return offer.target
+
+    def _hold_against_hook(self, kind: str, offer: Offer) -> None:
+        module, _, wanted = self._hooks[kind].record.partition(":")
+        record = getattr(importlib.import_module(module), wanted) if module else object
+        if not isinstance(offer.target, record):
+            raise PluginError(
+                f"{singular(kind)} {offer.name!r} of {offer.plugin.label} must be a {wanted}, "
+                f"got {shown(offer.target)}"
+            )
 
     def step(self, name: str, file: str = "") -> Signature:
         """Return what a step needs and gives; imports its module. Parameters as of `offer`."""
@@ -221,7 +280,7 @@ class Registry:
             from tactile_graph.steps.checks import check_signature
             from tactile_graph.steps.signature import read_signature
 
-            target = self._loaded(offer)
+            target = self._loaded("steps", offer)
             try:
                 signature = read_signature(self._offers["steps"].spelled(offer), target)
                 check_signature(signature)
@@ -254,8 +313,13 @@ def _import(offer: Offer) -> Any:
         raise PluginError(f"{where}: {module_name} has no {attribute!r}{hint}") from None
 
 
-def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
-    """Return the installed entry points, sorted, ours first among equals of a name."""
+def core() -> ModuleType:
+    """Return the module in which the core answers its own hooks."""
+    return importlib.import_module("tactile_graph.plugins.core")
+
+
+def found_plugins() -> list[Row]:
+    """Return the core and the installed entry points, sorted, the project's own first."""
 
     packages: dict[int, tuple[str, str]] = {}
 
@@ -273,7 +337,8 @@ def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
         return (name != OWN, entry.name, name)
 
     found = sorted(set(entry_points(group=GROUP)), key=place)
-    return [(e.name, *package(e), e.load) for e in found]
+    own = next((package(e) for e in found if package(e)[0] == OWN), (OWN, ""))
+    return [(CORE, *own, core), *((e.name, *package(e), e.load) for e in found)]
 
 
 _override: str | None = None
@@ -294,4 +359,4 @@ def selected() -> str:
 @cache
 def installed() -> Registry:
     """Return the registry of this environment's plugins; found once per process."""
-    return Registry(_installed(), Selection.parse(selected()))
+    return Registry(found_plugins(), Selection.parse(selected()))

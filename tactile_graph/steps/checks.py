@@ -10,6 +10,7 @@ from typing import Any, Union, get_args, get_origin
 import annotated_types as at
 
 from tactile_graph.errors import PluginError, did_you_mean, one_of, shown
+from tactile_graph.quantities import unknown_quantity
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Setting, Signature, strip, type_name
 
@@ -87,6 +88,9 @@ def _rules(signature: Signature) -> Iterator[str]:
         if rule is None:
             continue
         what = f"the {type(rule).__name__} of {where} names"
+        unknown = unknown_quantity(rule.names if isinstance(rule, Quantity) else ())
+        if unknown:
+            yield f"{where}: {unknown}"
         by_setting = signature.kind is Kind.SOURCE and isinstance(rule, Quantity)
         if by_setting and rule.port in settings:
             continue

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from tactile_graph.errors import RuleError
-from tactile_graph.wires.image import QUANTITIES, Image, Mask
+from tactile_graph.wires.image import Image, Mask
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +32,6 @@ class Quantity:
     port: str = ""
 
     def __init__(self, *names: str, of: str = "") -> None:
-        unknown = set(names) - set(QUANTITIES)
-        if unknown:
-            raise ValueError(
-                f"unknown quantity {sorted(unknown)}, allowed: {', '.join(QUANTITIES)}"
-            )
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "port", of)
 

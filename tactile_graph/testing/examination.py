@@ -16,6 +16,7 @@ from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
 from tactile_graph.testing.same import same
+from tactile_graph.testing.shown import unshown
 from tactile_graph.testing.subject import Bound, Subject
 from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
 
@@ -127,7 +128,8 @@ class Examination:
             return trial  # an error on the way is one of the same kind
         self._tell(case.name, trial.trouble())
         if trial.answered:
-            self._tell(case.name, self.subject.misfit(inputs, trial.value) or _bad(trial.value))
+            misfit = self.subject.misfit(inputs, trial.value)
+            self._tell(case.name, misfit or _bad(trial.value) or unshown(trial.value))
         return trial
 
     def _try(self, call: Callable[..., Any], inputs: Inputs) -> Trial:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from tactile_graph.errors import PipelineError, TactileGraphError, text_of
 from tactile_graph.plugins.names import Plugin, singular
-from tactile_graph.plugins.registry import OFFERS, Registry
+from tactile_graph.plugins.registry import Registry
 from tactile_graph.testing.check import examine_step
 
 FILES = ("pads", "presets", "scenes")
@@ -53,7 +53,7 @@ def examine_plugin(
     report = PluginReport(plugin)
     if plugin.error:
         report.broken.append(plugin.error)
-    for kind in OFFERS:
+    for kind in registry.kinds:
         for plain in plugin.offers.get(kind, ()):
             name = registry.spelled(kind, f"{plugin.name}.{plain}")
             what = f"{singular(kind)} {name!r}"
@@ -87,7 +87,7 @@ def _wrong(registry: Registry, kind: str, name: str) -> Iterator[str]:
             _read(registry, kind, name)
         elif kind == "readers":
             registry.step(name)
-        else:
+        elif registry.is_imported(kind):
             registry.load(kind, name)
     except PipelineError as error:
         yield from (str(p).partition("\n")[0] for p in error.problems)

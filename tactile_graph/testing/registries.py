@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from importlib.metadata import entry_points
 from types import ModuleType
 from typing import Any
 
 from tactile_graph.plugins.hookspecs import hookimpl
-from tactile_graph.plugins.registry import GROUP, Registry
-
-OWN = "tactile-graph"
+from tactile_graph.plugins.names import OWN
+from tactile_graph.plugins.registry import Registry, found_plugins
 
 
 def isolated(
@@ -25,12 +23,7 @@ def isolated(
     plugin : module, optional
         What the entry point of a plugin names: the module with its hooks.
     """
-    found = entry_points(group=GROUP)
-    own = [
-        (e.name, OWN, e.dist.version, e.load)
-        for e in sorted(found, key=lambda e: e.name)
-        if e.dist is not None and e.dist.name == OWN
-    ]
+    own = [row for row in found_plugins() if row[1] == OWN]
     made = {} if plugin is None else {plugin.__name__: plugin}
     if steps is not None:
         made["under-test"] = _offering(dict(steps))

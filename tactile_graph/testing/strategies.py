@@ -10,7 +10,8 @@ import numpy as np
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph.testing.cases import RANGES
-from tactile_graph.wires import QUANTITIES, Frame, Image, Mask, Points
+from tactile_graph.vocabulary import QUANTITIES
+from tactile_graph.wires import Frame, Image, Mask, Points
 
 try:
     from hypothesis import strategies as st

@@ -1,7 +1,7 @@
 """What travels on the wires: records with units, no algorithms."""
 
 from tactile_graph.wires.frame import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, TrueObject
-from tactile_graph.wires.image import QUANTITIES, Image, Mask
+from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle, Shape
 
@@ -9,7 +9,6 @@ __all__ = [
     "FARTHEST_CM",
     "LARGEST",
     "PITCHES_CM",
-    "QUANTITIES",
     "Circle",
     "Ellipse",
     "Frame",

@@ -10,8 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import did_you_mean
-from tactile_graph.wires.image import QUANTITIES, Image, Mask
+from tactile_graph.quantities import checked_quantity
+from tactile_graph.wires.image import Image, Mask
+from tactile_graph.wires.measure import Measured
 from tactile_graph.wires.shapes import Shape
 
 LARGEST = 1e100
@@ -24,9 +25,12 @@ FARTHEST_CM = 1e9
 
 @dataclass(frozen=True, slots=True)
 class TrueObject:
-    """An object that truly lay on the pad when the frame was taken."""
+    """An object that truly lay on the pad when the frame was taken.
 
-    shape: Shape
+    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured.
+    """
+
+    shape: Shape | Measured
     weight_g: float | None = None
     name: str = ""
 
@@ -111,10 +115,8 @@ class Frame:
             time_s = rest.get(name)
             if time_s is not None and not isfinite(time_s):
                 raise ValueError(f"{name} must be finite, got {time_s}")
-        if quantity not in QUANTITIES:
-            hint = did_you_mean(quantity, QUANTITIES) or f"; allowed: {', '.join(QUANTITIES)}"
-            raise ValueError(f"unknown quantity {quantity!r}{hint}")
-        return cls(Image(copy, (x, y), origin_cm, quantity, valid), **rest)
+        named = checked_quantity(quantity)
+        return cls(Image(copy, (x, y), origin_cm, named, valid), **rest)
 
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""

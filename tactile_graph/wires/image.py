@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, NoReturn, get_args
+from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
-"""Units of quantities; counts, raw readings and levels are their own."""
-Known = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level", "binary"]
-QUANTITIES: tuple[str, ...] = get_args(Known)
-"""What an image's values may mean. ``raw`` is a vendor's unit without a stated meaning."""
-
+from tactile_graph.quantities import QuantityName, unit_of
 
 _USUAL_BYTES = frozenset({1, 4, 8})
 """Of a number; whatever takes others is looked at once more."""
@@ -90,7 +85,7 @@ class Image(_Gridded):
     origin_cm : (float, float)
         Top left corner of the first cell, in pad coordinates (x right, y down).
     quantity : str
-        What the values mean, one of `QUANTITIES`.
+        What the values mean, one of `tactile_graph.vocabulary.QUANTITIES`.
     valid : ndarray of bool, shape (rows, columns), optional
         False where a cell is missing or broken (its value is then 0); None where all are good.
     """
@@ -98,7 +93,7 @@ class Image(_Gridded):
     __slots__ = ("quantity", "valid")
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
     image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
-    quantity: Annotated[str, Known]
+    quantity: QuantityName
     valid: NDArray[np.bool_] | None
 
     def __init__(
@@ -150,7 +145,7 @@ class Image(_Gridded):
     @property
     def unit(self) -> str:
         """Unit of the values; the quantity itself where that is its own unit."""
-        return UNITS.get(self.quantity, self.quantity)
+        return unit_of(self.quantity)
 
     @property
     def total(self) -> float:

@@ -14,13 +14,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.wires.measure import Measure, axis_off_deg
+from tactile_graph.wires.measure import printed_angle_deg as printed_angle_deg
 from tactile_graph.wires.points import Points
-
-
-def printed_angle_deg(angle_rad: float) -> float:
-    """Return the axis angle in degrees, brought into (-90, 90]."""
-    degrees = math.degrees(angle_rad) % 180.0
-    return degrees - 180.0 if degrees > 90.0 else degrees
 
 
 def _turned(
@@ -38,6 +34,7 @@ class Circle:
     y_cm: float
     radius_cm: float
     columns_shown: ClassVar[tuple[str, ...]] = ("x_cm", "y_cm", "radius_cm")
+    error_measures: ClassVar[tuple[Measure, ...]] = (Measure("radius_cm"),)
 
     @property
     def area_cm2(self) -> float:
@@ -66,6 +63,11 @@ class Ellipse:
         "semi_major_cm",
         "semi_minor_cm",
         "angle_deg",
+    )
+    error_measures: ClassVar[tuple[Measure, ...]] = (
+        Measure("semi_major_cm", compared_as="length", factor=2.0),
+        Measure("semi_minor_cm", compared_as="breadth", factor=2.0),
+        Measure("angle_deg", axis_off_deg),
     )
 
     @property
@@ -101,6 +103,11 @@ class Rectangle:
         "breadth_cm",
         "angle_deg",
     )
+    error_measures: ClassVar[tuple[Measure, ...]] = (
+        Measure("length_cm"),
+        Measure("breadth_cm"),
+        Measure("angle_deg", axis_off_deg),
+    )
 
     @property
     def angle_deg(self) -> float:
@@ -125,6 +132,7 @@ class Polygon:
 
     xy_cm: NDArray[np.float64]
     columns_shown: ClassVar[tuple[str, ...]] = ("count", "x_cm", "y_cm", "area_cm2")
+    error_measures: ClassVar[tuple[Measure, ...]] = (Measure("area_cm2"),)
     provides: ClassVar[Mapping[type, str]] = {Points: "points"}
 
     def __post_init__(self) -> None:

@@ -23,7 +23,7 @@ from tactile_graph.pipeline.conditions import FUNCTIONS
 from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind, read_signature
-from tactile_graph.wires.image import QUANTITIES
+from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad

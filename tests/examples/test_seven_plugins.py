@@ -12,7 +12,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from functools import partial
-from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
 
@@ -47,11 +46,7 @@ def module(name: str) -> ModuleType:
 
 def offering(*names: str) -> Registry:
     """Return the project's own plugins and some of the seven."""
-    own = [
-        (e.name, e.dist.name, e.dist.version, e.load)
-        for e in sorted(entry_points(group=registry.GROUP), key=lambda e: e.name)
-        if e.dist is not None and e.dist.name == OWN
-    ]
+    own = [row for row in registry.found_plugins() if row[1] == OWN]
     more = [(n.replace("_", "-"), "seven", "1", partial(module, n)) for n in names]
     return Registry([*own, *more])
 

@@ -17,6 +17,7 @@ PUBLIC = (
     "tactile_graph.wires",
     "tactile_graph.steps",
     "tactile_graph.errors",
+    "tactile_graph.exporter",
     "tactile_graph.files",
     "tactile_graph.foreign_text",
     "tactile_graph.locks",
@@ -26,9 +27,11 @@ PUBLIC = (
     "tactile_graph.plugins.file_kind",
     "tactile_graph.inspect",
     "tactile_graph.provenance",
+    "tactile_graph.quantities",
+    "tactile_graph.vocabulary",
 )
-"""What third parties may use: of steps, and (the last two) of whatever looks into pipelines and
-their outcomes and says how it was made, as comparisons do."""
+"""What third parties may use: of steps, of whatever looks into pipelines and their outcomes and
+says how it was made, as comparisons do, and the words that plugins offer."""
 PUBLIC_ROOMS = ("tactile_graph.wires.", "tactile_graph.steps.", "tactile_graph.draw.")
 """Rooms whose every module is public: values, steps, and how both are drawn for people."""
 SHARED = ("tactile_graph.plugins.registry", "tactile_graph.pipeline.document")

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from helpers_filters import drawn, image_of
 from helpers_objects import Spot
 from tactile_graph import loads
+from tactile_graph.draw.display import Label, Outline, Rim, display_list
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame, Image, Mask
 from tactile_graph_filters.contacts.contacts import contacts
@@ -245,3 +246,14 @@ def test_a_source_without_time_counts_frames():
     run = loads(PIPELINE.replace("patience_s: 1", "frame_s: 0.5, patience_s: 1")).runner()
     ages = [run(pad(None, (2, 2)))["tracks"].tracks[0].age_s for _ in range(3)]
     assert ages == pytest.approx([0.0, 0.5, 1.0])
+
+
+def test_a_track_is_drawn_with_its_number_and_the_way_it_goes():
+    mask = Mask(np.ones((1, 1), bool))
+    contact = type("Contact", (), {"mask": mask})()
+    moving = TrackedObject(7, "moves", 1.0, 2.0, 3.0, 10.0, -20.0, 1.0, contact)
+    rim, way, word = display_list([moving])
+    assert (type(rim), type(way), word) == (Rim, Outline, Label(2.0, 3.0, "7"))
+    assert way.drawn_cm.tolist() == [[2.0, 3.0], [3.0, 1.0]]
+    resting = TrackedObject(8, "rests", 1.0, 2.0, 3.0, 0.0, 0.0, 1.0, contact)
+    assert [type(r) for r in display_list([resting])] == [Rim, Label]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph.wires.image import QUANTITIES
+from tactile_graph.quantities import is_quantity
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_classifiers.distances.nearest import Two
@@ -47,7 +47,7 @@ class Lookup:
         if not self.known.objects:
             raise DataError(self.known.where, "no object was learned yet")
         quantity = self.known.quantity
-        self.takes = {"features": (quantity,)} if quantity in QUANTITIES else {}
+        self.takes = {"features": (quantity,)} if is_quantity(quantity) else {}
         # One attribute for both: threads may share a classifier.
         self._last: tuple[tuple[str, ...], NDArray[np.intp]] = ((), np.zeros(0, np.intp))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from tactile_graph_compare.records.comparison import Comparison, Evolution
 from tactile_graph_compare.records.scores import Agreement, Difference, Score
-from tactile_graph_compare.score.quantities import DECIMALS, QUANTITIES
+from tactile_graph_compare.score.quantities import decimals, in_order
 
 LEFT = ("variant", "against", "quantity", "verdict", "guard")
 """Columns of words; all others hold numbers."""
@@ -92,7 +92,10 @@ def agreement(comparison: Comparison) -> Table:
     columns = ("quantity", "variant", "against", "mean", "median", "95 %", "largest", "bias",
                "both", "only it", "only other", "neither")  # fmt: skip
     rows = tuple(
-        _agreement_row(a) for q in QUANTITIES for a in comparison.agreements if a.quantity == q
+        _agreement_row(a)
+        for q in in_order(comparison.units)
+        for a in comparison.agreements
+        if a.quantity == q
     )
     where = "in every frame" if comparison.reference else "where nobody knows what truly lay there"
     note = f"absolute differences of what both found, {where}; neither: frames"
@@ -212,14 +215,14 @@ def number(value: float | None, unit: str) -> str:
     """Return an error as tables show it; nothing where there is none."""
     if value is None:
         return ""
-    return f"{value:.4g}" if abs(value) >= 1e4 else f"{value:.{DECIMALS[unit]}f}"
+    return f"{value:.4g}" if abs(value) >= 1e4 else f"{value:.{decimals(unit)}f}"
 
 
 def signed(value: float | None, unit: str) -> str:
     """Return a difference with its sign."""
     if value is None:
         return ""
-    return f"{value:+.4g}" if abs(value) >= 1e4 else f"{value:+.{DECIMALS[unit]}f}"
+    return f"{value:+.4g}" if abs(value) >= 1e4 else f"{value:+.{decimals(unit)}f}"
 
 
 def us(value: float) -> str:

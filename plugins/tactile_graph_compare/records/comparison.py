@@ -13,6 +13,7 @@ from tactile_graph import Pipeline
 from tactile_graph_compare.records.frames import ChosenFrame, DifferenceImage
 from tactile_graph_compare.records.graph import MergedGraph, Saving, Timeline
 from tactile_graph_compare.records.scores import Agreement, Difference, Score, TimeDifference, Times
+from tactile_graph_compare.score.quantities import in_order
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,10 +143,13 @@ class Comparison:
     @property
     def quantities(self) -> tuple[str, ...]:
         """The quantities that at least one variant was scored on, in a fixed order."""
-        from tactile_graph_compare.score.quantities import QUANTITIES
+        return in_order(s.quantity for s in self.scores)
 
-        found = {s.quantity for s in self.scores}
-        return tuple(q for q in QUANTITIES if q in found)
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each quantity that variants were scored on, or held against each other in."""
+        held = {a.quantity: a.unit for a in self.agreements}
+        return {s.quantity: s.unit for s in self.scores} | held
 
     def variant(self, label: str) -> Variant:
         """Return the variant of that label."""

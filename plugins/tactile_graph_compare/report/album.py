@@ -11,7 +11,7 @@ from tactile_graph.draw.display import display_list, images_in, is_picture, prin
 from tactile_graph.draw.grid_png import pale_uri
 from tactile_graph.draw.paint_svg import LONGEST_NOTE, SvgPicture, View
 from tactile_graph.inspect import scalars
-from tactile_graph.wires.image import UNITS
+from tactile_graph.quantities import unit_of
 from tactile_graph_compare.output.tables import us
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
@@ -173,4 +173,4 @@ def _range(images: list[Any]) -> Range:
     low = min([0.0, *(float(v.min()) for v in known if v.size)])
     high = max((float(v.max()) for v in known if v.size), default=1.0)
     quantity = images[0].quantity
-    return low, high if high > low else low + 1.0, UNITS.get(quantity, quantity)
+    return low, high if high > low else low + 1.0, unit_of(quantity)

@@ -11,7 +11,6 @@ from tactile_graph_compare.records.frames import Choice, ChosenFrame, NodeStory
 from tactile_graph_compare.report.album import Album, Range
 from tactile_graph_compare.report.badges import named
 from tactile_graph_compare.report.markup import Html, counted, details, join, scroll, tag
-from tactile_graph_compare.score.quantities import QUANTITIES
 
 MOST_BYTES = 1_600_000
 """Of pictures; frames beyond it are left out, and it is said."""
@@ -128,7 +127,8 @@ def _row(
 ) -> Html:
     mine = [c for c in frame.choices if c.variant == label]
     badges = [tag("span", _badge(c), class_="badge") for c in mine]
-    errors = [tag("small", told_error(q, e)) for q, e in frame.errors.get(label, {}).items()]
+    units, found = comparison.units, frame.errors.get(label, {})
+    errors = [tag("small", told_error(q, e, units.get(q, ""))) for q, e in found.items()]
     head = tag("th", named(comparison, label), badges, errors, scope="row")
     cells = [tag("td", album.frame(frame))]
     cells += [cell(album, frame, frame.stories[label].get(n), label) for n in columns]
@@ -140,11 +140,10 @@ def _badge(choice: Choice) -> str:
     return f"{words[choice.why]} {choice.quantity}"
 
 
-def told_error(quantity: str, error: float) -> str:
+def told_error(quantity: str, error: float, unit: str) -> str:
     """Return a signed error in words."""
     if quantity == "identity":
         return f"identity {'wrong' if error else 'right'}"
-    unit = QUANTITIES[quantity]
     if quantity == "count":
         return f"count {error:+.0f}"
     return f"{quantity} {signed(error, unit)} {unit}"

@@ -157,6 +157,9 @@ image { image-rendering: pixelated }
   stroke-linecap: round; stroke-linejoin: round }
 .ink { stroke: var(--stroke); stroke-width: 1.6px; stroke-dasharray: var(--dash) }
 .rim { stroke: #fff; stroke-width: 3.2px; opacity: .85 }
+.area { fill: var(--stroke); opacity: .3 }
+.word { font-size: 22px; text-anchor: middle; dominant-baseline: central }
+.ink.word { fill: var(--stroke); stroke: none }
 .ink.dots { stroke-width: 3.6px; stroke-dasharray: none } .rim.dots { stroke-width: 5px }
 .stroke { display: inline-block; width: 26px; border-top: 3px solid var(--stroke);
   vertical-align: middle }

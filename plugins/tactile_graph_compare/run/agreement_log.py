@@ -9,6 +9,7 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.scores import Agreement
 from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.score.agreement import Agreeing, found_in
+from tactile_graph_compare.score.quantities import in_order
 
 MOST_CROSSED = 4
 """Variants up to which each is held against each; beyond, all against the first."""
@@ -32,8 +33,9 @@ class AgreementLog:
         self._pairs = [self._pair(*pair) for pair in _pairs([*self._logs], reference)]
 
     def _pair(self, variant: str, reference: str) -> Agreeing:
-        mine, theirs = (self._logs[x].scorer.answers.quantities for x in (variant, reference))
-        return Agreeing(variant, reference, [q for q in mine if q in theirs])
+        mine, theirs = (self._logs[x].scorer.answers for x in (variant, reference))
+        both = in_order(q for q in mine.quantities if q in theirs.quantities)
+        return Agreeing(variant, reference, {q: mine.units[q] for q in both})
 
     def add(self, position: int, frame: Frame) -> dict[tuple[str, str], dict[str, float]]:
         """Note a frame; return by pair and quantity how far they lie apart in it, at most."""

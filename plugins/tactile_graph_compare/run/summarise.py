@@ -53,7 +53,7 @@ def summarise(
     """
     variants = tuple(_variant(i, log) for i, log in enumerate(session.logs, 1))
     scores = with_pareto(
-        [score_of(log.prepared.label, q, t) for log in session.logs
+        [score_of(log.prepared.label, q, log.scorer.answers.units[q], t) for log in session.logs
          for q, t in _scored(log).items()],
         {v.label: v.times.median_us for v in variants},
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from tactile_graph.inspect import NO_VALUE, with_value
 from tactile_graph_compare.records.scores import Agreement
 from tactile_graph_compare.score.answers import Answers, Outcomes
 from tactile_graph_compare.score.pairing import paired
-from tactile_graph_compare.score.quantities import QUANTITIES, distance_cm, errors_against
+from tactile_graph_compare.score.quantities import distance_cm, errors_against
 from tactile_graph_compare.score.scoring import GATE_CM
 from tactile_graph_compare.score.statistics import frozen
 
@@ -73,19 +73,20 @@ class Agreeing:
     ----------
     variant, reference : str
         Labels.
-    quantities : sequence of str
-        Those that both can answer.
+    units : mapping of str to str
+        The quantities that both can answer, in the order of tables, with their units.
     gate_cm : float
         Where either looks for several things: farther apart is no pair.
     """
 
     def __init__(
-        self, variant: str, reference: str, quantities: Sequence[str], gate_cm: float = GATE_CM
+        self, variant: str, reference: str, units: Mapping[str, str], gate_cm: float = GATE_CM
     ) -> None:
         self.variant = variant
         self.reference = reference
         self.gate_cm = gate_cm
-        self._of = {q: _Differences() for q in QUANTITIES if q in quantities}
+        self.units = units
+        self._of = {q: _Differences() for q in units}
 
     def add(self, position: int, one: Found, other: Found) -> dict[str, float]:
         """Enter a frame; return the largest absolute difference of each quantity in it."""
@@ -154,7 +155,7 @@ class Agreeing:
             self.variant,
             self.reference,
             quantity,
-            QUANTITIES[quantity],
+            self.units[quantity],
             frozen(of.positions, np.int64),
             frozen(values),
             float(off.mean()) if some else None,

@@ -19,7 +19,7 @@ from tactile_graph.inspect import (
     with_value,
 )
 from tactile_graph.steps.signature import list_item
-from tactile_graph_compare.score.quantities import quantities_of
+from tactile_graph_compare.score.quantities import quantities_of, units_of
 
 Outcomes = Callable[[Ref], Any]
 """Gives the outcome at a reference of a variant."""
@@ -69,6 +69,11 @@ class Answers:
         found |= {"count": None} if self.counts else {}
         found |= {"identity": None} if self.identities else {}
         return tuple(found)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each quantity."""
+        return units_of(k for p in self.places for k in p.kinds)
 
     def placed(self, outcomes: Outcomes) -> tuple[Places, Any]:
         """Return the first output that was not skipped; a failed one has no other stand in."""

@@ -3,50 +3,40 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from tactile_graph.inspect import shape_kind
-from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle, printed_angle_deg
+from tactile_graph.inspect import measures_of, shape_kind
+from tactile_graph.wires.measure import Measure, axis_off_deg
 
-QUANTITIES: Mapping[str, str] = {
-    "centre": "cm",
-    "radius": "cm",
-    "length": "cm",
-    "breadth": "cm",
-    "angle": "°",
-    "area": "cm²",
-    "count": "",
-    "identity": "",
-}
-"""Quantity -> unit, in the order of the tables."""
-
-DECIMALS: Mapping[str, int] = {"cm": 3, "°": 2, "cm²": 2, "": 3}
-"""Unit -> decimals that tables show."""
+OF_ANY: Mapping[str, str] = {"centre": "cm", "angle": "°", "count": "", "identity": ""}
+"""Quantity -> unit, of those that are compared whatever the shapes."""
+_FIRST = ("centre", "radius", "length", "breadth", "angle", "area")
+_LAST = ("count", "identity")
+_DECIMALS: Mapping[str, int] = {"cm": 3, "°": 2, "cm²": 2}
+_AXIS = "angle_deg"
 
 
-class Measure(NamedTuple):
-    """Where a shape has a quantity: in a field, times a factor."""
-
-    field: str
-    factor: float = 1.0
+def decimals(unit: str) -> int:
+    """Return how many decimals of a unit tables show."""
+    return _DECIMALS.get(unit, 3)
 
 
-MEASURES: Mapping[type, Mapping[str, Measure]] = {
-    Circle: {"radius": Measure("radius_cm")},
-    Ellipse: {"length": Measure("semi_major_cm", 2.0), "breadth": Measure("semi_minor_cm", 2.0)},
-    Rectangle: {"length": Measure("length_cm"), "breadth": Measure("breadth_cm")},
-    Polygon: {"area": Measure("area_cm2")},
-}
-"""What of each kind of shape is compared beside its centre; an ellipse's axes are whole ones."""
+def in_order(quantities: Iterable[str]) -> tuple[str, ...]:
+    """Return quantities as tables have them: what most shapes have, what others add, the rest."""
+    found = tuple(dict.fromkeys(quantities))
+    others = sorted(q for q in found if q not in (*_FIRST, *_LAST))
+    return tuple(q for q in (*_FIRST, *others, *_LAST) if q in found)
 
-WITH_AXIS = (Ellipse, Rectangle)
-"""The kinds of shape that have an angle to compare, even with what is of another kind."""
+
+def units_of(kinds: Iterable[type]) -> dict[str, str]:
+    """Return the unit of each quantity that there can be where shapes are of some kinds."""
+    return {**{m.quantity: m.unit for k in kinds for m in measures_of(k)}, **OF_ANY}
 
 
 def quantities_of(kind: type) -> tuple[str, ...]:
     """Return the quantities that a kind of shape has."""
-    return ("centre", *MEASURES[kind], *(("angle",) if kind in WITH_AXIS else ()))
+    return ("centre", *(m.quantity for m in measures_of(kind)))
 
 
 def distance_cm(a: Any, b: Any) -> float:
@@ -55,13 +45,18 @@ def distance_cm(a: Any, b: Any) -> float:
 
 
 def errors_against(found: Any, true: Any) -> dict[str, float]:
-    """Return how far each quantity is off, found less true, of those that both have."""
+    """Return how far each quantity is off, found less true, of those that both have.
+
+    An angle is compared even with what is of another kind.
+    """
     errors = {"centre": distance_cm(found, true)}
-    if isinstance(true, WITH_AXIS) and hasattr(found, "angle_deg"):
-        # An axis has no head: 179 degrees off is 1 degree off.
-        errors["angle"] = printed_angle_deg(math.radians(found.angle_deg - true.angle_deg))
-    kind = shape_kind(type(found))
-    if kind is not None and isinstance(true, kind):
-        for quantity, (name, factor) in MEASURES[kind].items():
-            errors[quantity] = factor * (float(getattr(found, name)) - float(getattr(true, name)))
+    kind, mine = shape_kind(type(true)), shape_kind(type(found))
+    if kind is not None and hasattr(found, _AXIS) and _has_axis(measures_of(kind)):
+        errors["angle"] = axis_off_deg(found, true)
+    if mine is not None and isinstance(true, mine):
+        errors |= {m.quantity: m.factor * m.error(found, true) for m in measures_of(mine)}
     return errors
+
+
+def _has_axis(measures: Iterable[Measure]) -> bool:
+    return any(m.field == _AXIS for m in measures)

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference, Times
-from tactile_graph_compare.score.quantities import QUANTITIES
 from tactile_graph_compare.score.scoring import QuantityErrors
 
 Reals = NDArray[np.float64]
@@ -29,7 +28,7 @@ def frozen(values: Sequence[float] | Reals, kind: type = np.float64) -> NDArray[
     return array
 
 
-def score_of(variant: str, quantity: str, found: QuantityErrors) -> Score:
+def score_of(variant: str, quantity: str, unit: str, found: QuantityErrors) -> Score:
     """Return the score of what was collected for one quantity of one variant."""
     errors = np.asarray(found.errors, dtype=np.float64)
     known = errors[~np.isnan(errors)]
@@ -43,7 +42,7 @@ def score_of(variant: str, quantity: str, found: QuantityErrors) -> Score:
     return Score(
         variant,
         quantity,
-        QUANTITIES[quantity],
+        unit,
         frozen(found.positions, np.int64),
         frozen(found.objects, np.int64),
         frozen(errors),

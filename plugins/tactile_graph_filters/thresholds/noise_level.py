@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
-from tactile_graph.wires.image import UNITS
 from tactile_graph_filters.readings.dead_lines import dead_lines
 
 LOW, MIDDLE = 0.05, 0.25
@@ -133,5 +133,5 @@ class LevelledMask(Mask):
     @property
     def assumed(self) -> str:
         """What was taken that nobody said."""
-        unit = UNITS.get(self.quantity, self.quantity)
+        unit = unit_of(self.quantity)
         return f"cells from {self.level:.4g} {unit} on, which is above {self.above}"

@@ -9,6 +9,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.draw.display import Rim
 from tactile_graph.wires import Image, Points
 
 
@@ -60,6 +61,10 @@ class LineField:
         down = np.stack([np.stack([j + 1, i], 1), np.stack([j + 1, i + 1], 1)], 1)
         ends = np.concatenate([across, down]).astype(np.float64)
         return np.asarray(self.origin_cm + ends * np.asarray(self.pitch_cm))
+
+    def drawing(self) -> tuple[Rim]:
+        """Return the lines that are on, for pictures."""
+        return (Rim(self.segments_cm),)
 
     @property
     def middles(self) -> Points:

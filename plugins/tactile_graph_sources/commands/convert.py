@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.say import say
+from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
+    from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
-KINDS = (".zarr", ".npz", ".csv")
+OFFERS = "recording_writers"
 
 
 @click.command()
@@ -57,6 +59,8 @@ def convert(
 ) -> None:
     """Convert recordings, or the frames of a source, to TARGET: .zarr, .npz or .csv by its name.
 
+    Plugins may write other files: 'tactile-graph plugins' lists what is installed.
+
     RECORDING is a Zarr store or any file that the source 'recording' reads. With --source the
     frames are those of any other source, a simulated one or a plugin's.
     """
@@ -65,7 +69,8 @@ def convert(
 
     *recordings, target = paths
     _check(recordings, target, source)
-    report, kept = Report(), _Kept()
+    writer: RecordingWriter = installed().load(OFFERS, target.suffix)
+    report, kept = Report(), _Carried()
     try:
         frames = _frames(recordings, source, settings, told, seed, report)
         frames = islice(frames, n_frames)
@@ -74,7 +79,7 @@ def convert(
 
             frames = with_truth(frames, truth)
         about = source or ", ".join(r.name for r in recordings)
-        n = _write(target, kept.watch(frames), about)
+        n = writer.write(target, kept.watch(frames), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
     say(f"{target}: {n} frame{'s' if n != 1 else ''}")
@@ -83,15 +88,17 @@ def convert(
             say(f"{what}: {count}", err=True)
     for where, trouble in report.troubles:
         say(f"{where}: {trouble}", err=True)
-    if target.suffix == ".csv" and kept.names:
-        say(f"left out, as a table has no place for it: {', '.join(kept.names)}", err=True)
+    lost = [name for name in kept.names if name in writer.loses]
+    if lost:
+        say(f"left out, as a {target.suffix} has no place for it: {', '.join(lost)}", err=True)
 
 
 def _check(recordings: list[Path], target: Path, source: str | None) -> None:
     from tactile_graph.files import check_target
 
-    if target.suffix not in KINDS:
-        raise click.UsageError(f"TARGET must end in {', '.join(KINDS)}, got {target.name!r}")
+    kinds = installed().offered(OFFERS)
+    if target.suffix not in kinds:
+        raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {target.name!r}")
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")
     if target.exists():
@@ -115,23 +122,8 @@ def _frames(
     return frames_of_source(source or "recording", given, report, seed)
 
 
-def _write(target: Path, frames: Iterator[Frame], about: str) -> int:
-    from tactile_graph_sources.writers.write_csv import write_csv
-    from tactile_graph_sources.writers.write_npz import write_npz
-    from tactile_graph_sources.writers.write_store import StoreWriter
-
-    if target.suffix == ".npz":
-        return write_npz(target, frames)
-    if target.suffix == ".csv":
-        return write_csv(target, frames)
-    with StoreWriter(target, about={"converted_from": about}) as store:
-        for frame in frames:
-            store.write(frame)
-    return store.n_frames
-
-
-class _Kept:
-    """Notes what frames carry that a table cannot."""
+class _Carried:
+    """Notes what frames carry beside their values, which not every file has a place for."""
 
     def __init__(self) -> None:
         self.names: dict[str, None] = {}

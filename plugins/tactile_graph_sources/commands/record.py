@@ -1,13 +1,13 @@
-"""``tactile-graph record``: a pad on a serial port, or any other source, into a Zarr store."""
+"""``tactile-graph record``: a pad on a port, or any other source, into a Zarr store."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,9 +16,12 @@ from tactile_graph.cli.say import say
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
+    from tactile_graph_sources.devices.capture import CaptureDevice
     from tactile_graph_sources.writers.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
+DEVICES = "devices"
+OPTIONS = {"preset": "--preset", "baud": "--baud", "give_up_s": "--give-up"}
 UNTOLD = ("bytes", "good frames", "frames", "troubles")
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 
@@ -26,6 +29,8 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 @click.command()
 @click.argument("target", type=click.Path(path_type=Path))
 @click.option("--port", help="Device or pyserial URL; see 'ports'.")
+@click.option("--device", default="serial", show_default=True,
+              help="How the pad hangs on this machine; plugins may know other ways.")  # fmt: skip
 @click.option("--preset", help="The kit's name, or a YAML file.")
 @click.option("--source", metavar="STEP", help="Take frames from this source step instead.")
 @click.option(
@@ -33,7 +38,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
     "settings",
     metavar="KEY=VALUE",
     multiple=True,
-    help="A setting of that source, as under 'with:' in YAML; can be repeated.",
+    help="A setting of that source, or of the device's, as under 'with:'; can be repeated.",
 )
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
 @click.option("--frames", "n_frames", type=click.IntRange(min=1), help="End after so many.")
@@ -55,6 +60,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 def record(
     target: Path,
     port: str | None,
+    device: str,
     preset: str | None,
     source: str | None,
     settings: tuple[str, ...],
@@ -74,24 +80,14 @@ def record(
     from tactile_graph.cli.interrupt import Ended, Interrupts, code_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
-    from tactile_graph_sources.serial_port import serial
     from tactile_graph_sources.writers.write_store import StoreWriter
 
-    _check_source(port, preset, source)
+    told = {"preset": preset, "baud": baud, "give_up_s": give_up}
+    step, given = _captured(port, device, told, source)
     _check_target(target)
     report = Report(listener=lambda where, what: say(f"{where}: {what}", err=True))
-    if source is not None:
-        frames = _until(_of_source(source, settings, n_frames, report), seconds)
-    else:
-        frames = serial(
-            port=port or "",
-            preset=preset or "",
-            baud=baud,
-            n_frames=n_frames,
-            seconds=seconds,
-            give_up_s=give_up,
-            report=report,
-        )
+    limits = {"n_frames": n_frames, "seconds": seconds}
+    frames = _frames(step, given, settings, limits, report)
     failure: Exception | None = None
     ended: KeyboardInterrupt | None = None
     store: StoreWriter | None = None
@@ -116,22 +112,57 @@ def record(
         click.get_current_context().exit(code_of(ended))
 
 
-def _check_source(port: str | None, preset: str | None, source: str | None) -> None:
-    """Refuse a command line that names no pad and no other source, or both."""
-    if source is not None and (port or preset):
-        raise click.UsageError("give --port and --preset, or --source, and not both")
-    if source is None:
-        for option, value in (("--port", port), ("--preset", preset)):
-            if value is None:
-                raise click.UsageError(f"Missing option '{option}' (or '--source').")
+def _captured(
+    port: str | None, name: str, told: Mapping[str, Any], source: str | None
+) -> tuple[str, dict[str, Any]]:
+    """Return the source step that is meant, and the settings that options give it.
+
+    Raises
+    ------
+    UsageError
+        If the command line names no pad and no other source, or both, or gives a device what it
+        does not take.
+    """
+    from tactile_graph.plugins.registry import installed
+
+    if source is not None:
+        if port or told["preset"]:
+            raise click.UsageError("give --port and --preset, or --source, and not both")
+        return source, {}
+    registry = installed()
+    device: CaptureDevice = registry.load(DEVICES, name)
+    known = {s.name: s for s in registry.step(device.step).settings}
+    given: dict[str, Any] = {device.address: port}
+    for setting, value in told.items():
+        if setting in known:
+            given[setting] = value
+        elif value is not None:
+            option = OPTIONS[setting]
+            raise click.UsageError(f"{option} is nothing that --device {name} takes")
+    for setting, value in given.items():
+        if value is None and known[setting].required:
+            option = "--port" if setting == device.address else OPTIONS[setting]
+            raise click.UsageError(f"Missing option '{option}' (or '--source').")
+    return device.step, {k: v for k, v in given.items() if v is not None}
 
 
-def _of_source(
-    step: str, settings: tuple[str, ...], n_frames: int | None, report: Report
+def _frames(
+    step: str,
+    given: Mapping[str, Any],
+    texts: tuple[str, ...],
+    limits: Mapping[str, Any],
+    report: Report,
 ) -> Iterator[Frame]:
+    """Return the frames of a source, as many and as long as it is told; it may end by itself."""
+    from tactile_graph.plugins.registry import installed
     from tactile_graph_sources.commands.any_source import frames_of_source, given_settings
 
-    return islice(frames_of_source(step, given_settings(settings), report), n_frames)
+    known = [s.name for s in installed().step(step).settings]
+    own = {k: v for k, v in limits.items() if k in known and v is not None}
+    frames = frames_of_source(step, {**given, **given_settings(texts), **own}, report)
+    if set(own) == {k for k, v in limits.items() if v is not None}:
+        return frames
+    return _until(islice(frames, limits["n_frames"]), limits["seconds"])
 
 
 def _check_target(target: Path) -> None:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, field_validator, model_validator
 
-from tactile_graph.wires.image import QUANTITIES
+from tactile_graph.quantities import QuantityName
 
 Number = Literal["u8", "i8", "u16le", "u16be", "u32le", "u32be", "i16le", "i16be", "f32le"]
 DTYPES: dict[str, str] = {
@@ -281,15 +281,8 @@ class Geometry(Record):
     column_map: tuple[int, ...] | None = None
     valid_range: tuple[float, float] | None = None
     invert_from: float | None = None
-    quantity: str = "counts"
+    quantity: QuantityName = "counts"
     pitch_cm: float | tuple[float, float] = 1.0
-
-    @field_validator("quantity")
-    @classmethod
-    def _known(cls, value: str) -> str:
-        if value not in QUANTITIES:
-            raise ValueError(f"must be one of {', '.join(QUANTITIES)}, got {value!r}")
-        return value
 
     @model_validator(mode="after")
     def _maps(self) -> Geometry:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.quantities import unit_of
 from tactile_graph_sources.inspection.look import Looked, Sensor
 from tactile_graph_sources.inspection.measure import stack_of_frames
 from tactile_graph_sources.inspection.words import fullest
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MARKS = {"dead": ("x", "white"), "stuck": ("o", "red"), "noisy": ("^", "orange")}
-_UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 
 
 def save_picture(looked: Sequence[Looked], path: Path) -> None:
@@ -54,7 +54,7 @@ def figure_of(looked: Sequence[Looked]) -> Figure:
 
 def _unit(sensor: Sensor) -> str:
     quantity = sensor.frames[0].image.quantity
-    return _UNITS.get(quantity, quantity)
+    return unit_of(quantity)
 
 
 def _frame(axes: Axes, sensor: Sensor, label: str) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.look import Looked, Sensor
 from tactile_graph_sources.inspection.measure import Cells, Measured
@@ -17,7 +18,6 @@ SHADES = " .:-=+*#%@"
 WIDEST, HIGHEST = 72, 32
 MOST_CELLS_NAMED = 8
 MOST_TROUBLES = 5
-_UNITS = {"volt": "V", "siemens": "S", "gram": "g", "kilopascal": "kPa"}
 
 
 def data_of(looked: Looked) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def lines_of(looked: Looked) -> Iterator[str]:
 
 def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
     measured, image = sensor.measured, sensor.frames[0].image
-    unit = _UNITS.get(image.quantity, image.quantity)
+    unit = unit_of(image.quantity)
     x, y = image.pitch_cm
     known = "assumed: give pitch_cm" if looked.pitch_assumed else "known"
     if sensor.label:

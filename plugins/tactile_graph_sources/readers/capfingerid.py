@@ -10,9 +10,9 @@ import numpy as np
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 
-NAME = "CapFingerId .txt"
 SHAPE = (27, 15)
 DEVICE = "the CapFingerId phone"
 PITCH_CM = (0.41, 0.41)
@@ -71,3 +71,6 @@ def _values(record: list[str], cells: list[str], n: int) -> tuple[int, np.ndarra
     if len(cells) != n:
         raise ValueError(f"{len(cells)} values, not {n}")
     return int(record[0]) * 10**9 + int(record[1]), np.array(floats(cells))
+
+
+FORMAT = RecordingFormat("CapFingerId .txt", recognises, read)

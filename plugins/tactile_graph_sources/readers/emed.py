@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.units import length_cm
 
-NAME = "novel emed .lst"
 _MATRIX = re.compile(r"Matrix:\s*(\d{1,6})\s*x\s*(\d{1,6})")
 _SIZE = re.compile(r"Sensor size:\s*([\d.,]+)\s*x\s*([\d.,]+)\s*(\w+)")
 _TIME = re.compile(r"Time/picture:\s*([\d.,]+)\s*ms")
@@ -201,3 +201,6 @@ def _check_force(
             f"{name} adds up to {force_n:.2f} N, the page says {pages[0].force_n:.2f} N; "
             "the frame is kept",
         )
+
+
+FORMAT = RecordingFormat("novel emed .lst", recognises, read)

@@ -1,83 +1,69 @@
-"""The formats that are known, and which of them a file is, by its content alone."""
+"""Which of the formats on offer a recording is of, by its content alone."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Protocol
+from pathlib import Path
 
-from tactile_graph.errors import DataError
-from tactile_graph.wires import Frame
-from tactile_graph_sources.readers import (
-    capfingerid,
-    emed,
-    hdf5,
-    json_stack,
-    matlab,
-    mcap_log,
-    npy,
-    npz,
-    pictures,
-    pliance,
-    popu_bed,
-    tekscan,
-    xsensor,
-)
+from tactile_graph.errors import DataError, PluginError, text_of
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.others import remedy_for, remedy_without_header
-from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.tables import flat, long, stacked
+from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.told import Told
+
+OFFERS = "recording_formats"
 
 
-class Reader(Protocol):
-    """What a reader's module has."""
-
-    NAME: str
-
-    def recognises(self, head: Head) -> bool:
-        """Return whether the file is of this format."""
-
-    def read(self, reading: Reading) -> Iterator[Frame]:
-        """Yield the file's frames."""
-
-
-# The surest marks first; plain tables last, as any of the others could look like one.
-READERS: tuple[Reader, ...] = (
-    npy,
-    pictures,
-    npz,
-    hdf5,
-    matlab,
-    mcap_log,
-    popu_bed,
-    xsensor,
-    tekscan,
-    pliance,
-    emed,
-    capfingerid,
-    json_stack,
-    long,
-    stacked,
-    flat,
-)
+def formats(of_folders: bool = False) -> list[RecordingFormat]:
+    """Return the formats of files, or of folders, in the order in which they are asked."""
+    found = [f for _, f in _offered() if f.of_folders == of_folders]
+    return sorted(found, key=lambda f: f.plain)  # stable: as they were offered
 
 
 def known() -> str:
-    """Return the names of all formats, for messages."""
-    return ", ".join(reader.NAME for reader in READERS)
+    """Return the names of all formats of files, for messages."""
+    return ", ".join(f.name for f in formats())
 
 
-def reader_of(head: Head) -> Reader:
-    """Return the reader for a file.
+def format_of(head: Head) -> RecordingFormat:
+    """Return the format of a file.
 
     Raises
     ------
     DataError
         If the file is of no known format.
     """
-    reader = next((r for r in READERS if r.recognises(head)), None)
-    if reader is None:
-        formats = f"{remedy_without_header(head)}formats that are read: {known()}"
-        raise DataError(
-            str(head.path), f"no recording: {head.found()}; {remedy_for(head) or formats}"
-        )
-    return reader
+    found = next((f for f in formats() if _recognised(f, head)), None)
+    if found is None:
+        told = f"{remedy_without_header(head)}formats that are read: {known()}"
+        raise DataError(str(head.path), f"no recording: {head.found()}; {remedy_for(head) or told}")
+    return found
+
+
+def format_of_folder(path: Path, told: Told) -> RecordingFormat | None:
+    """Return the format of a folder; None if it is of none."""
+    head = Head(path, b"", told)
+    return next((f for f in formats(of_folders=True) if _recognised(f, head)), None)
+
+
+def _recognised(found: RecordingFormat, head: Head) -> bool:
+    try:
+        return found.recognises(head)
+    except (OSError, DataError):
+        raise
+    except Exception as error:  # a plugin's code may raise anything
+        owner = next(owner for owner, offered in _offered() if offered is found)
+        told = f"{type(error).__name__}: {text_of(error)}"
+        raise PluginError(
+            f"recording format {found.name!r} of {owner} cannot tell whether {head.path} is one: "
+            f"{told}"
+        ) from error
+
+
+def _offered() -> Iterator[tuple[str, RecordingFormat]]:
+    """Yield every format and the plugin that offers it."""
+    from tactile_graph.plugins.registry import installed
+
+    registry = installed()
+    for name in registry.offered(OFFERS):
+        yield registry.offer(OFFERS, name).plugin.label, registry.load(OFFERS, name)

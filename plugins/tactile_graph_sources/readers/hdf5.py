@@ -15,9 +15,9 @@ from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, numb
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.matlab import frames_first
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.preamble import described
 
-NAME = "HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)"
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
 LARGE, MOST_TIMES = 64_000_000, 200
@@ -140,3 +140,6 @@ def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
             f"of which {packed / 1e6:,.1f} are written; allowed are {MOST_TIMES} times that "
             f"beyond {LARGE / 1e6:g} MB",
         )
+
+
+FORMAT = RecordingFormat("HDF5 (.h5, .hdf5, MATLAB 7.3 .mat)", recognises, read)

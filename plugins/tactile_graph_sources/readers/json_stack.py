@@ -16,13 +16,13 @@ from tactile_graph.errors import DataError, one_of
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import clock_s
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import unit_of
 from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
-NAME = "JSON of frames"
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 _NUMBERED = re.compile(r"(\D*)(\d{1,9})")
@@ -292,3 +292,6 @@ def _time(entries: Entries, k: int, factor: float) -> float | None:
         return None
     time_s = float(time) * factor if abs(time) < 1e300 else np.inf
     return time_s if np.isfinite(time_s) else None
+
+
+FORMAT = RecordingFormat("JSON of frames", recognises, read)

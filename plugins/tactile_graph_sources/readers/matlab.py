@@ -17,9 +17,9 @@ from tactile_graph_sources.readers.datasets import Held, chosen, frames_of, time
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.mat5 import DamagedError, variables
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.preamble import described
 
-NAME = "MATLAB 5 to 7 (.mat)"
 _MARKS = (b"\x00\x01IM", b"\x01\x00MI")
 LONGEST_SIDE = 4
 """Times both others: a longer axis is the frames'."""
@@ -132,3 +132,6 @@ def frames_first(
             f"axis, or {first} frames of {middle} x {last} along the first; give rows and columns",
         )
     return values if votes == {first} else np.moveaxis(values, -1, 0)
+
+
+FORMAT = RecordingFormat("MATLAB 5 to 7 (.mat)", recognises, read)

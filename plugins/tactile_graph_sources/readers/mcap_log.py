@@ -18,9 +18,9 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.json_stack import Entries, entries_of, frames_of
 from tactile_graph_sources.readers.mcap_chunks import check_chunks
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.preamble import Described
 
-NAME = "MCAP"
 _MARK = b"\x89MCAP0\r\n"
 
 
@@ -118,3 +118,6 @@ def _topics(reading: Reading) -> dict[str, _Topic]:
             raise DataError(where, f"the MCAP file cannot be read: {told}") from error
         reading.damaged("its end", f"cannot be read: {str(error)[:80]}")
     return topics
+
+
+FORMAT = RecordingFormat("MCAP", recognises, read)

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
-from tactile_graph.wires import QUANTITIES, Frame
+from tactile_graph.quantities import is_quantity
+from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 
 FORMAT = "tactile-graph node images"
 """What such files say of themselves."""
-NAME = "images of nodes, as runs write them (.h5, .zarr)"
 _METADATA = "zarr.json"
 _BLOCK = 256
 MOST_CELLS, MOST_PIECES = 4_000_000, 1_000
@@ -157,7 +158,7 @@ def _chosen(reading: Reading, group: Any, names: list[str]) -> str:
 def _place(where: str, node: str, about: Mapping[str, Any]) -> dict[str, Any]:
     """Return pitch, place and quantity of a node's images."""
     missing = [name for name in _PLACE if name not in about]
-    if missing or about.get("quantity") not in QUANTITIES:
+    if missing or not is_quantity(str(about.get("quantity"))):
         lost = missing[0] if missing else "a quantity that is known"
         raise DataError(where, f"node {node!r}: its attributes do not say {lost}")
     (x, y), (left, top) = about["pitch_cm"], about["origin_cm"]
@@ -166,3 +167,11 @@ def _place(where: str, node: str, about: Mapping[str, Any]) -> dict[str, Any]:
         "origin_cm": (float(left), float(top)),
         "quantity": str(about["quantity"]),
     }
+
+
+STORE = RecordingFormat(
+    "images of nodes, as runs write them (.h5, .zarr)",
+    lambda head: is_store_of_images(head.path),
+    read_store,
+    of_folders=True,
+)

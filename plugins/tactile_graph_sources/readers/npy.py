@@ -10,9 +10,8 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.stack import stack_of
-
-NAME = "NumPy .npy"
 
 
 def recognises(head: Head) -> bool:
@@ -57,3 +56,6 @@ def read(reading: Reading) -> Iterator[Frame]:
     reading.report.expect(len(values))
     for matrix in values:
         yield reading.frame(matrix)
+
+
+FORMAT = RecordingFormat("NumPy .npy", recognises, read)

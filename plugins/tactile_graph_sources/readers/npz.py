@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph.wires import QUANTITIES, Frame
+from tactile_graph.quantities import unknown_quantity
+from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import capcontact
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
@@ -26,6 +27,7 @@ from tactile_graph_sources.readers.datasets import (
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.others import document_in
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.truth import Truth, truth_from_json
@@ -36,7 +38,6 @@ SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
 OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
         "pitch_cm", "origin_cm", "truth")  # fmt: skip
-NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
 
 
 def recognises(head: Head) -> bool:
@@ -227,8 +228,8 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     doubtful = arrays.optional("doubtful", (n,), "b")
     labels = arrays.optional("label", (n,), "U")
     quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
-    if quantity not in QUANTITIES:
-        raise DataError(arrays.where, f"unknown quantity {quantity!r}, known: {one_of(QUANTITIES)}")
+    if unknown := unknown_quantity([quantity]):
+        raise DataError(arrays.where, unknown)
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     reading.report.expect(n)
@@ -267,3 +268,8 @@ def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth]:
         reading.report.trouble(reading.at("truth"), f"the truth is left out: {error}")
         return [None] * n
     return truths
+
+
+FORMAT = RecordingFormat(
+    "NumPy .npz (ours, CapContact, or one stack of matrices)", recognises, read
+)

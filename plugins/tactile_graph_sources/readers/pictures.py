@@ -21,8 +21,8 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 
-NAME = "pictures (PNG, TIFF, JPEG, GIF, BMP; single, many pages or a zip of them)"
 _MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
 NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
 MOST_BYTES = 1 << 28
@@ -197,3 +197,11 @@ def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:
         "the picture is in colours, from which no values can be had back; save the values, or "
         "shades of grey",
     )
+
+
+FORMAT = RecordingFormat(
+    "pictures (PNG, TIFF, JPEG, GIF, BMP; single, many pages or a zip of them)", recognises, read
+)
+FOLDER = RecordingFormat(
+    FORMAT.name, lambda head: bool(pictures_in(head.path)), read_folder, of_folders=True
+)

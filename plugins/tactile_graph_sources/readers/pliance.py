@@ -13,11 +13,11 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.told import MOST_CELLS
 from tactile_graph_sources.readers.units import pressure_unit
 
-NAME = "novel pliance .asc"
 SUMMARIES = ("MPP", "MVP")
 _UNIT = re.compile(r"pressure values in\s+(\S+)", re.IGNORECASE)
 
@@ -170,3 +170,6 @@ def _steps(position: NDArray[np.float64]) -> tuple[NDArray[np.intp] | None, floa
     number = (position - distinct[0]) / step
     whole = np.round(number)
     return (whole.astype(np.intp), step) if np.abs(number - whole).max() < 0.1 else (None, 0.0)
+
+
+FORMAT = RecordingFormat("novel pliance .asc", recognises, read)

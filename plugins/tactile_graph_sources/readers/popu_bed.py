@@ -12,8 +12,8 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 
-NAME = "bed mat .json (tactilus_readings)"
 SHAPE = (64, 27)
 _KEY = "tactilus_readings"
 
@@ -68,3 +68,6 @@ def _values(entry: object) -> np.ndarray[Any, np.dtype[np.float64]] | None:
         return np.array(readings, dtype=np.float64)
     except (ValueError, OverflowError):
         return None
+
+
+FORMAT = RecordingFormat("bed mat .json (tactilus_readings)", recognises, read)

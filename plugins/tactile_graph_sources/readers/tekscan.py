@@ -12,10 +12,10 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import Dialect
 from tactile_graph_sources.readers.units import length_cm, pressure_unit
 
-NAME = "Tekscan .asf/.csv"
 _FRAME = re.compile(r"Frame\s+(\d{1,9})\b[\s,;]*(\d[\d.]*)?", re.IGNORECASE)
 _RAW_SUM = re.compile(r"Raw Sum=?[\s,;]*(\d[\d.]*)", re.IGNORECASE)
 _BLANKS = " \t,;"
@@ -155,3 +155,6 @@ def _check_sum(reading: Reading, block: _Block, frame: Frame, quantity: str) -> 
             f"frame {block.number} adds up to {frame.image.total:g}, "
             f"its Raw Sum says {said[1]}; the frame is kept",
         )
+
+
+FORMAT = RecordingFormat("Tekscan .asf/.csv", recognises, read)

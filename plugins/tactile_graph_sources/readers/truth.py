@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from tactile_graph.errors import UsageError, one_of
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape, TrueObject
+from tactile_graph.wires.measure import Measured
 
 _FIELDS: dict[str, tuple[type[Circle | Ellipse | Rectangle], tuple[str, ...]]] = {
     "circle": (Circle, ("x_cm", "y_cm", "radius_cm")),
@@ -18,10 +20,13 @@ _FIELDS: dict[str, tuple[type[Circle | Ellipse | Rectangle], tuple[str, ...]]] =
 Truth = tuple[TrueObject, ...] | None
 
 
-def _shape_to_json(shape: Shape) -> dict[str, Any]:
+def _shape_to_json(shape: Shape | Measured) -> dict[str, Any]:
     if isinstance(shape, Polygon):
         return {"kind": "polygon", "xy_cm": shape.xy_cm.tolist()}
     kind = type(shape).__name__.lower()
+    if kind not in _FIELDS:
+        told = one_of([*_FIELDS, "polygon"])
+        raise UsageError(f"a true {type(shape).__name__} cannot be written; what can is: {told}")
     return {"kind": kind, **{f: float(getattr(shape, f)) for f in _FIELDS[kind][1]}}
 
 
@@ -40,7 +45,13 @@ def _shape_from_json(entry: dict[str, Any]) -> Shape:
 
 
 def truth_to_json(truths: Sequence[Truth]) -> str:
-    """Return the truth of frames as a JSON text; null where nobody knows."""
+    """Return the truth of frames as a JSON text; null where nobody knows.
+
+    Raises
+    ------
+    UsageError
+        If a true shape is a plugin's own.
+    """
     return json.dumps(
         [
             truth

@@ -12,10 +12,10 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import Dialect
 from tactile_graph_sources.readers.units import length_cm, pressure_unit
 
-NAME = "XSENSOR .csv"
 _KEYED = re.compile(r'"?[A-Za-z]')
 _CLOCK = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
 _LENGTH_KEY = re.compile(r"Sensel (Width|Height) \(([^)]*)\)", re.IGNORECASE)
@@ -184,3 +184,6 @@ def _pitch(sensor: _Sensor) -> tuple[float, float] | None:
 def _peak_unit(sensor: _Sensor) -> str:
     found = (_PRESSURE_KEY.fullmatch(key) for key in sensor.keys)
     return next((f[1] for f in found if f), "raw")
+
+
+FORMAT = RecordingFormat("XSENSOR .csv", recognises, read)

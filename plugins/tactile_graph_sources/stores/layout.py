@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.wires.image import QUANTITIES
+from tactile_graph.quantities import unknown_quantity
 
 FORMAT = "tactile-graph recording"
 VERSION = 3
@@ -76,8 +76,8 @@ def check_attributes(path: Path, attributes: Mapping[str, Any]) -> None:
     if version not in READ:
         allowed = f"{', '.join(map(str, READ[:-1]))} and {READ[-1]}"
         raise DataError(str(path), f"is a recording of version {version}, {allowed} can be read")
-    if attributes.get("quantity") not in QUANTITIES:
-        raise DataError(str(path), f"unknown quantity {attributes.get('quantity')!r}")
+    if unknown := unknown_quantity([str(attributes.get("quantity"))]):
+        raise DataError(str(path), unknown)
     for name in ("pitch_cm", "origin_cm"):
         try:
             x, y = attributes[name]

@@ -10,6 +10,7 @@ from pathlib import Path
 from tactile_graph.errors import DataError
 from tactile_graph.files import whole_file
 from tactile_graph.wires.frame import Frame
+from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
 
 def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
@@ -69,3 +70,9 @@ def _line(path: Path, frame: Frame, n: int, first: Frame) -> str:
     values = frame.image.filled(float("nan")).astype(float).ravel().tolist()
     fields += [repr(v).removesuffix(".0") for v in values]
     return ",".join(fields) + "\n"
+
+
+WRITER = RecordingWriter(
+    lambda path, frames, about: write_csv(path, frames),
+    loses=("truth", "device time", "gaps", "doubts", "labels"),
+)

@@ -11,6 +11,7 @@ import numpy as np
 from tactile_graph.files import whole_file
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.truth import truth_to_json
+from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
 
 def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
@@ -83,3 +84,6 @@ def _arrays(frames: list[Frame]) -> dict[str, Any]:
     if any(f.truth is not None for f in frames):
         arrays["truth"] = np.array(truth_to_json([f.truth for f in frames]))
     return arrays
+
+
+WRITER = RecordingWriter(lambda path, frames, about: write_npz(path, frames))

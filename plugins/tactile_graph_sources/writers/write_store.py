@@ -6,7 +6,7 @@ import json
 import shlex
 import shutil
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -34,6 +34,7 @@ from tactile_graph_sources.stores.layout import (
 from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
 from tactile_graph_sources.stores.sole_writer import SoleWriter
 from tactile_graph_sources.stores.stored import UNSURE, Lost, open_stored
+from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
 CHUNK = 256
 SMALL_CHUNKS = 16
@@ -305,3 +306,13 @@ def _note(frame: Frame) -> bytes:
     if frame.truth is not None:
         note["truth"] = truth_to_json([frame.truth])
     return json.dumps(note).encode() if note else b""
+
+
+def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
+    with StoreWriter(path, about={"converted_from": about}) as store:
+        for frame in frames:
+            store.write(frame)
+    return store.n_frames
+
+
+WRITER = RecordingWriter(_converted)

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Image
 from tactile_graph_stress.case import Case
 from tactile_graph_stress.cases.images import image_cases
+from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.references.network import readings
 from tactile_graph_stress.subject import Subject
 
 Values = NDArray[np.float64]
 
-CIRCUITS: dict[str, dict[str, Any]] = {
+TRIED: dict[str, dict[str, Any]] = {
     "divider": {"kind": "divider", "bias_ohm": 33e3},
     "divider with drivers": {"kind": "divider", "bias_ohm": 33e3, "driver_ohm": 60.0,
                              "mux_ohm": 100.0},
@@ -41,7 +42,7 @@ def circuit_cases(subject: Subject, rng: np.random.Generator, quick: bool) -> It
     """Yield the cases, few of each circuit if ``quick``."""
     few = 3 if quick else 6
     takes_pads = subject.signature.name == "decouple"
-    for kind, circuit in CIRCUITS.items() if takes_pads else ():
+    for kind, circuit in TRIED.items() if takes_pads else ():
         pad = _pad(circuit)
         for name, low, high in LOADS[:few]:
             siemens = 10.0 ** rng.uniform(low, high, (SIZE, SIZE))
@@ -64,3 +65,6 @@ def _pad(circuit: dict[str, Any]) -> Any:
     from tactile_graph_pads.pad import load_pad
 
     return load_pad({"circuit": circuit})
+
+
+CIRCUITS = StressCases(lambda subject: subject.kind == "decouple", circuit_cases)

@@ -12,6 +12,7 @@ from tactile_graph.wires import Image
 from tactile_graph_stress import scenes
 from tactile_graph_stress.affine import Affine
 from tactile_graph_stress.case import Case
+from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.subject import Subject
 
 Values = NDArray[np.float64]
@@ -83,3 +84,8 @@ def _odd(values: Values, rng: np.random.Generator) -> Iterator[tuple[str, str, V
     for name, bad in (("a NaN", np.nan), ("infinity", np.inf), ("-infinity", -np.inf)):
         yield "NaN", name, np.where(x == 27, bad, values)
     yield "NaN", "all NaN", np.full((8, 8), np.nan)
+
+
+IMAGES = StressCases(
+    lambda subject: subject.feed == "image" and subject.kind != "decouple", image_cases
+)

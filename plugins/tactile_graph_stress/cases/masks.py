@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Mask
 from tactile_graph_stress import scenes
 from tactile_graph_stress.case import Case
+from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.subject import Subject
 
@@ -79,3 +80,6 @@ def _odd(rng: np.random.Generator) -> Iterator[tuple[str, Cells]]:
     yield "1 x 1, off", np.zeros((1, 1), np.bool_)
     yield "1 x 40", rng.random((1, 40)) < 0.7
     yield "40 x 1", rng.random((40, 1)) < 0.7
+
+
+MASKS = StressCases(lambda subject: subject.feed == "mask", mask_cases)

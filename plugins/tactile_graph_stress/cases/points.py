@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Points
 from tactile_graph_stress import scenes
 from tactile_graph_stress.case import Case
+from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.subject import Subject
 
@@ -137,3 +138,6 @@ def _numbers(subject: Subject, base: Values, few: int) -> Iterator[Case]:
         xy[3, 1] = bad
         yield Case("NaN", name, Points(xy), must_refuse=True)
     yield Case("NaN", "all NaN", Points(np.full_like(base, np.nan)), must_refuse=True)
+
+
+POINTS = StressCases(lambda subject: subject.feed == "points", point_cases)

@@ -41,7 +41,8 @@ def markdown(rows: Sequence[Row], command: str) -> str:
 
 
 def _matrix(rows: Sequence[Row]) -> list[str]:
-    groups = [g for g in GROUPS if any(r.group == g for r in rows)]
+    found = dict.fromkeys(r.group for r in rows)
+    groups = [*(g for g in GROUPS if g in found), *(g for g in found if g not in GROUPS)]
     lines = [
         "| step | " + " | ".join(groups) + " |",
         "|---|" + "---|" * len(groups),

@@ -253,7 +253,9 @@ def shape_of(frame: Frame) -> Shape:
     frame : Frame
     """
     assert frame.truth is not None
-    return frame.truth[0].shape
+    shape = frame.truth[0].shape
+    assert isinstance(shape, Shape)
+    return shape
 
 
 def name_of(frame: Frame) -> str:

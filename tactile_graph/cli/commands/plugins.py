@@ -113,7 +113,7 @@ def _offers(found: registry.Registry, plugin: Plugin, broken: Mapping[str, str])
         if found.spelled("steps", f"{plugin.name}.{n}") not in broken
     ]}  # fmt: skip
     parts = [
-        f"{len(names)} {singular(kind)}{'s' if len(names) != 1 else ''}"
+        f"{len(names)} {kind.replace('_', ' ') if len(names) != 1 else singular(kind)}"
         for kind, names in usable.items()
         if names
     ]

@@ -21,7 +21,7 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.output.outputs import FORMATS, Output
+from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain
@@ -29,8 +29,8 @@ from tactile_graph.files import is_plain
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
-    from tactile_graph.cli.output.outputs import Writer
     from tactile_graph.engine.table import Table
+    from tactile_graph.exporter import Writer
 
 LONG_RUN = 200
 STALLED_S = 1.0
@@ -58,8 +58,9 @@ STALLED_S = 1.0
 @click.option(
     "--format",
     "form",
-    type=click.Choice(FORMATS),
-    help="Format of what is written, where the file's name does not say; alone it means '-o -'.",
+    metavar="FORMAT",
+    help="Format of what is written, as a file's name would end (jsonl, csv, …; plugins may have "
+    "more), where the name does not say; alone it means '-o -'.",
 )
 @click.option(
     "--full",

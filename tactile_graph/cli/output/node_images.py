@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,11 +23,12 @@ from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
+from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, said, uninterrupted
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
+from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Frame, Image, Mask
-from tactile_graph.wires.image import UNITS
 
 OUTCOMES = ("value", "skipped", "failed")
 NO_MASK = 255
@@ -234,7 +235,7 @@ class _Stack:
         cells = place.shape[0] * place.shape[1] * (1 if mask else 8)
         chunk = min(max(CHUNK_BYTES // max(cells, 1), 1), MOST_A_CHUNK)
         kept = Cells("uint8", NO_MASK, chunk) if mask else Cells("float64", np.nan, chunk)
-        unit = UNITS.get(place.quantity, "1")
+        unit = unit_of(place.quantity)
         about = {**self.about, **place._asdict(), "unit": unit, "axes": "frame, row, column"}
         del about["shape"]
         array = container.array(f"{self.name}/values", place.shape, kept, about)
@@ -251,3 +252,20 @@ def _cells(value: Image | Mask) -> Any:
     if isinstance(value, Mask):
         return value.values.astype(np.uint8)
     return np.asarray(value.values if value.valid is None else value.filled(np.nan), np.float64)
+
+
+def _store(form: str) -> Callable[[Export], Writer]:
+    def opened(export: Export) -> Writer:
+        check_nodes(export.pipeline, export.asked)
+        return ImageStore(export.name, form, export.pipeline, export.asked)
+
+    return opened
+
+
+def _check(name: str) -> None:
+    if name != "-":
+        check_store("-o", name)
+
+
+HDF5 = Exporter("HDF5", "images", _store("hdf5"))
+ZARR = Exporter("a Zarr store", "images", _store("zarr"), _check)

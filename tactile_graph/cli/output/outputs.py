@@ -4,37 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 from tactile_graph.errors import UsageError, did_you_mean
-from tactile_graph.files import check_target
+from tactile_graph.exporter import Export, Exporter, Writer
+from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
-    from tactile_graph.api.result import Result
     from tactile_graph.engine.table import Table
 
-SUFFIXES = {
-    ".jsonl": "jsonl", ".ndjson": "jsonl", ".csv": "csv", ".parquet": "parquet",
-    ".h5": "hdf5", ".hdf5": "hdf5", ".zarr": "zarr",
-}  # fmt: skip
-FORMATS = tuple(dict.fromkeys(SUFFIXES.values()))
-TABLES = ("csv", "parquet")
-STACKS = ("hdf5", "zarr")
-_CALLED = {"csv": "CSV", "parquet": "Parquet", "hdf5": "HDF5", "zarr": "a Zarr store"}
-
-
-class Writer(Protocol):
-    """Takes results while they come."""
-
-    broken: bool
-    """Whether something could not be written."""
-
-    def write(self, result: Result) -> None:
-        """Take in a frame."""
-
-    def close(self) -> None:
-        """Write what is left."""
+OFFERS = "exporters"
+USUAL = ".jsonl"
+SCREEN = "a table on the screen"
 
 
 @dataclass(frozen=True)
@@ -45,13 +27,12 @@ class Output:
     ----------
     name : str
         A file, or ``-`` for stdout.
-    form : str
-        One of `FORMATS`.
+    exporter : Exporter
     full, long : bool
     """
 
     name: str
-    form: str
+    exporter: Exporter
     full: bool
     long: bool
 
@@ -68,73 +49,62 @@ class Output:
         if name is None:
             for option, told in (("--long", long), ("--full", full)):
                 if told:
-                    raise UsageError(_no_place(option, "a table on the screen"))
+                    raise UsageError(_no_place(option, SCREEN))
             return None
-        output = cls(name, form or _by_name(name), full, long)
-        if long and output.form not in TABLES:
-            what = "JSON lines" if output.form == "jsonl" else _CALLED[output.form]
-            raise UsageError(_no_place("--long", what))
-        if full and output.form != "jsonl":
-            raise UsageError(_no_place("--full", _CALLED[output.form]))
-        return output
+        exporter: Exporter = installed().load(OFFERS, _ending(name, form))
+        if long and exporter.holds != "numbers":
+            raise UsageError(_no_place("--long", exporter.called, exporter.holds))
+        if full and exporter.holds != "records":
+            raise UsageError(_no_place("--full", exporter.called, exporter.holds))
+        return cls(name, exporter, full, long)
 
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""
-        if self.form == "parquet":
-            from tactile_graph.cli.output.parquet import pyarrow
-
-            pyarrow()
-        if self.form == "zarr" and self.name != "-":
-            from tactile_graph.cli.output.node_images import check_store
-
-            check_store("-o", self.name)
-        elif self.name != "-":
-            check_target("-o", self.name)
+        self.exporter.check(self.name)
 
     def writer(self, pipeline: Pipeline, asked: tuple[str, ...]) -> tuple[Writer, Table | None]:
         """Return who writes it, and the table it is, if it is one."""
-        if self.form == "jsonl":
-            from tactile_graph.cli.output.writers import JsonLines, LineFile
+        table = None
+        if self.exporter.holds == "numbers":
+            from tactile_graph.engine.table import make_table
 
-            return LineFile(self.name, JsonLines(self.full)), None
-        if self.form in STACKS:
-            from tactile_graph.cli.output.node_images import ImageStore, check_nodes
-
-            check_nodes(pipeline, asked)
-            return ImageStore(self.name, self.form, pipeline, asked), None
-        from tactile_graph.engine.table import make_table
-
-        table = make_table(pipeline, asked, self.long)
-        made: Any
-        if self.form == "csv":
-            from tactile_graph.cli.output.writers import Csv, LineFile
-
-            made = LineFile(self.name, Csv(table))
-        else:
-            from tactile_graph.cli.output.parquet import ParquetFile
-
-            made = ParquetFile(self.name, table)
-        return made, table
+            table = make_table(pipeline, asked, self.long)
+        export = Export(self.name, pipeline, asked, self.full, table)
+        return self.exporter.opened(export), table
 
 
-def _no_place(option: str, what: str) -> str:
+def forms() -> list[str]:
+    """Return what ``--format`` takes: the endings of files, without their dots."""
+    return [ending.removeprefix(".") for ending in _endings()]
+
+
+def _endings() -> list[str]:
+    return installed().offered(OFFERS)
+
+
+def _no_place(option: str, what: str, holds: str = "numbers") -> str:
     if option == "--long":
         why = {
             "a table on the screen": "has a row a frame",
             "JSON lines": "they hold every list already",
-        }.get(what, "holds images")
+        }.get(what, f"holds {holds}")
         return f"--long: {what}: {why}; give -o FILE.csv or -o FILE.parquet"
-    why = "holds images" if what in (_CALLED[f] for f in STACKS) else "holds single numbers only"
+    why = "holds images" if holds == "images" else "holds single numbers only"
     return f"--full: {what.removesuffix(' on the screen')} {why}; give -o FILE.jsonl or -o -"
 
 
-def _by_name(name: str) -> str:
+def _ending(name: str, form: str | None) -> str:
+    """Return the ending that files of the form have, by what is told or by the file's name."""
+    known = _endings()
+    if form is not None:
+        if f".{form}" not in known:
+            near = did_you_mean(form, forms())
+            raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}")
+        return f".{form}"
     suffix = Path(name).suffix.lower()
-    if name != "-" and suffix not in SUFFIXES:
-        if Path(name).is_dir():
-            raise UsageError(f"-o {name}: is a folder; name a file in it")
-        near = did_you_mean(suffix, SUFFIXES) if suffix else ""
-        raise UsageError(
-            f"-o {name}: its name must end in {', '.join(SUFFIXES)}, or give --format{near}"
-        )
-    return SUFFIXES.get(suffix, "jsonl")
+    if name == "-" or suffix in known:
+        return USUAL if name == "-" else suffix
+    if Path(name).is_dir():
+        raise UsageError(f"-o {name}: is a folder; name a file in it")
+    near = did_you_mean(suffix, known) if suffix else ""
+    raise UsageError(f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}")

@@ -14,6 +14,7 @@ from tactile_graph.api.result import Result
 from tactile_graph.engine.columns import Column
 from tactile_graph.engine.table import Row, Table, units_of
 from tactile_graph.errors import UsageError
+from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import said, uninterrupted
 
 ROWS_A_GROUP = 10_000
@@ -122,3 +123,16 @@ def _plain(cell: Any, kind: type) -> Any:
         return None
     number = issubclass(kind, bool | int | float | np.generic)
     return cell if number else str(cell)
+
+
+def _check(name: str) -> None:
+    pyarrow()
+    check_plain(name)
+
+
+def _opened(export: Export) -> Writer:
+    assert export.table is not None  # it holds numbers
+    return ParquetFile(export.name, export.table)
+
+
+PARQUET = Exporter("Parquet", "numbers", _opened, _check)

@@ -14,6 +14,7 @@ from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.table import Table
 from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
+from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said
 from tactile_graph.foreign_text import csv_line, visible
 
@@ -175,3 +176,16 @@ class LineFile:
         n = self._n_lines
         kept = f"the first {n} frame{'s are' if n > 1 else ' is'} in it" if n else "it is empty"
         raise UsageError(f"{self.output}: {why}; {kept}") from error
+
+
+def _json_lines(export: Export) -> Writer:
+    return LineFile(export.name, JsonLines(export.full))
+
+
+def _csv(export: Export) -> Writer:
+    assert export.table is not None  # it holds numbers
+    return LineFile(export.name, Csv(export.table))
+
+
+JSON_LINES = Exporter("JSON lines", "records", _json_lines)
+CSV = Exporter("CSV", "numbers", _csv)

@@ -124,6 +124,8 @@ def ranges(annotation: Any) -> list[str]:
         if isinstance(rule, Quantity):
             found.append(f"{rule.port or 'image'} must be {' or '.join(rule.names)}")
             continue
+        if callable(getattr(rule, "choices", None)):
+            found.append(", ".join(rule.choices()))
         found += [f"{sign} {value:g}" for name, sign in SIGNS.items()
                   if isinstance(value := getattr(rule, name, None), int | float)]  # fmt: skip
         least, most = getattr(rule, "min_length", 0), getattr(rule, "max_length", None)

@@ -9,10 +9,12 @@ import pytest
 
 from tactile_graph import Circle, Frame, Image, Mask, Points, Rectangle
 from tactile_graph.draw.display import (
+    Area,
     Cells,
     Cross,
     Dots,
     Heat,
+    Label,
     Note,
     Number,
     Outline,
@@ -23,6 +25,7 @@ from tactile_graph.draw.display import (
     truth_list,
 )  # fmt: skip
 from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.errors import PluginError
 from tactile_graph.wires import TrueObject
 
 ON = Mask(np.ones((1, 2), bool), (2.0, 1.0), (10.0, 5.0))
@@ -113,3 +116,35 @@ def test_bare_values_are_no_picture(value: object) -> None:
 
 def test_the_images_of_a_value_are_those_shown_as_heat() -> None:
     assert images_in([IMAGE, ON, Frame(IMAGE)]) == [IMAGE, IMAGE]
+
+
+class Kite:
+    """Draws itself."""
+
+    x_cm = y_cm = 1.0
+
+    def drawing(self):
+        yield Area(np.eye(3, 2))
+        yield Label(1.0, 2.0, "kite")
+        yield Outline(np.eye(2), closed=False)
+        yield Note("tail", 3.0)
+
+
+def test_a_value_that_draws_itself_is_drawn_so_in_its_role_and_without_a_number():
+    kinds = [Area, Label, Outline, Note]
+    assert [type(r) for r in display_list(Kite())] == kinds
+    assert [type(r) for r in display_list([Kite(), Kite()])] == 2 * kinds
+    assert {r.role for r in display_list(Kite(), "true")[:3]} == {"true"}
+
+
+def test_of_what_is_true_only_lines_are_drawn():
+    assert [type(r) for r in truth_list([TrueObject(Kite())])] == [Outline, Note]
+
+
+def test_what_is_no_record_is_refused():
+    class Wrong:
+        def drawing(self):
+            return [Heat(IMAGE)]
+
+    with pytest.raises(PluginError, match=r"Wrong\.drawing\(\) must give records to draw, got"):
+        display_list(Wrong())

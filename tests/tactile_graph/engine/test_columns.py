@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Ellipse, Image, Mask, Points, Polygon, Rectangle
-from tactile_graph.engine.columns import _columns, words_and_unit
+from tactile_graph.engine.columns import _columns
 from tactile_graph.engine.rows import scalars
+from tactile_graph.vocabulary import words_and_unit
 
 
 class Inner(NamedTuple):

@@ -10,9 +10,9 @@ import pytest
 
 from helpers_graphs import frame, registry
 from tactile_graph import Circle, Degenerate, Frame, Image, load, loads
-from tactile_graph.engine.columns import words_and_unit
 from tactile_graph.engine.table import ObjectTable, make_table, units_of
 from tactile_graph.errors import UsageError
+from tactile_graph.vocabulary import words_and_unit
 from tactile_graph.wires import TrueObject
 
 

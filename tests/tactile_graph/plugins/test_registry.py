@@ -318,7 +318,7 @@ def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch]:
 
 def test_the_environment_and_the_flag_restrict_plugins(fresh: pytest.MonkeyPatch) -> None:
     fresh.setenv("TACTILE_GRAPH_PLUGINS", "filters")
-    assert {p.name for p in installed().plugins if not p.blocked} == {"filters"}
+    assert {p.name for p in installed().plugins if not p.blocked} == {"core", "filters"}
     restrict("-filters")
     left = {p.name: p.blocked for p in installed().plugins}
     assert left["filters"]
@@ -331,4 +331,5 @@ def test_the_installed_plugins_load_without_trouble(fresh: pytest.MonkeyPatch) -
     ours = [p for p in found.plugins if p.package == "tactile-graph"]
     assert [p.error for p in ours] == [""] * len(ours)
     assert found.clashes == []
-    assert [p.name for p in ours] == sorted(p.name for p in ours)
+    assert ours[0].name == "core"
+    assert [p.name for p in ours[1:]] == sorted(p.name for p in ours[1:])

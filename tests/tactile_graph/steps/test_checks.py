@@ -63,6 +63,10 @@ def port(image: Image, mask: Annotated[Mask, Grid.like("pad")]) -> Image:
     return image
 
 
+def misspelt(image: Annotated[Image, Quantity("volts")]) -> Image:
+    return image
+
+
 def maybe(image: Image) -> Circle | None:
     return None
 
@@ -88,6 +92,10 @@ def returned(*, n: int = 3) -> Iterator[Frame]:
         (grid, "names 'factr', which is no setting; did you mean 'factor'?"),
         (setting, "the Quantity of setting 'level_v' names 'picture', which is no port"),
         (port, "the Grid of port 'mask' names 'pad', which is no port; ports: image, mask"),
+        (
+            misspelt,
+            "step 'x': port 'image': unknown quantity 'volts'; did you mean 'volt'?",
+        ),
         (maybe, "it may return None (Circle | None): where there is no answer, raise Degenerate"),
         (returned, "it promises frames, but is no generator function: yield them"),
     ],

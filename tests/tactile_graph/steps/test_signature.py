@@ -309,10 +309,3 @@ def test_list_ports_are_told_by_their_item(kind: Any, item: Any) -> None:
 )
 def test_types_are_named_as_a_person_would(kind: Any, name: str) -> None:
     assert type_name(kind) == name
-
-
-def test_a_rule_about_a_quantity_that_is_none_is_refused() -> None:
-    with pytest.raises(
-        ValueError, match=r"unknown quantity \['volts'\], allowed: counts, volt, si"
-    ):
-        Quantity("volts")

@@ -16,7 +16,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.testing import BrokenPromises, Case, all_cases, check_step, examine_step
 from tactile_graph.testing import examination as trials
-from tactile_graph.wires import QUANTITIES
+from tactile_graph.vocabulary import QUANTITIES
 
 
 def all_finite(image: Image) -> None:
@@ -290,7 +290,7 @@ def test_every_case_has_a_name_and_fits_together() -> None:
         assert case.xy_cm.shape[1:] == (2,)
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("quantity", sorted(QUANTITIES))
 def test_a_case_makes_new_values_each_time(quantity: str) -> None:
     case: Case = next(iter(all_cases()))
     one, other = case.image(quantity), case.image(quantity)

@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Image, Mask, Points
+from tactile_graph.draw.display import Outline
 from tactile_graph.errors import Degenerate
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.same import same
+from tactile_graph.testing.shown import unshown
 from tactile_graph.testing.trial import attempt
+from tactile_graph.wires.measure import Measure
 
 
 class Pair(NamedTuple):
@@ -38,6 +41,47 @@ class Pair(NamedTuple):
 )
 def test_a_number_that_is_none_is_told_by_its_path(value: Any, told: str) -> None:
     found = not_finite(value)
+    assert told in found
+    assert bool(found) == bool(told)
+
+
+class Drawn(NamedTuple):
+    """Draws what it is told to."""
+
+    records: Any
+
+    def drawing(self) -> Any:
+        return self.records
+
+
+class Measured:
+    """Says that it is measured by what it has not, or what is off by itself."""
+
+    x_cm = y_cm = 1.0
+
+    def __init__(self, *measures: Measure) -> None:
+        self.length_cm = 2.0
+        type(self).error_measures = measures  # type: ignore[attr-defined]
+
+
+class Shown:
+    columns_shown = ("nothing",)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: Circle(1.0, 2.0, 3.0), ""),
+        (lambda: Shown(), "its columns cannot be had: AttributeError: 'Shown' object has no"),
+        (lambda: Drawn([3]), "its drawing cannot be had: PluginError: Drawn.drawing() must give"),
+        (lambda: Drawn([Outline(np.zeros(4))]), "places have the shape (4,), (places, 2) is"),
+        (lambda: Measured(Measure("width_cm")), "its error against the truth cannot be had: Attr"),
+        (lambda: [Measured(Measure("length_cm", lambda a, b: 1.0))], "itself is 1, not 0"),
+        (lambda: Measured(Measure("length_cm")), ""),
+    ],
+)
+def test_what_an_answer_cannot_show_of_itself_is_told(make: Any, told: str) -> None:
+    found = unshown(make())
     assert told in found
     assert bool(found) == bool(told)
 

@@ -378,12 +378,12 @@ def test_the_file_is_written_whole_or_not_at_all(
     before = path.read_bytes()
     assert before.startswith(b"<!doctype html>")
     read_html(before.decode())
-    monkeypatch.setattr("tactile_graph_compare.report.page.provenance", partial(_fail))
+    monkeypatch.setattr("tactile_graph_compare.report.page.section", partial(_fail))
     with pytest.raises(RuntimeError, match="no"):
         write_report(c, str(path))
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.glob("*r.html*")] == ["r.html"]
 
 
-def _fail(comparison: Comparison) -> None:
+def _fail(*_: object) -> None:
     raise RuntimeError("no")

@@ -14,7 +14,7 @@ from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.records.scores import Agreement
 from tactile_graph_compare.score.agreement import Agreeing, Found, found_in
 from tactile_graph_compare.score.answers import Answers, Places
-from tactile_graph_compare.score.quantities import quantities_of
+from tactile_graph_compare.score.quantities import quantities_of, units_of
 
 SKIPPED = Skipped("a", "nothing there")
 FAILED = Failed("a", Degenerate("no"))
@@ -25,7 +25,7 @@ def one(*things: Any, **rest: Any) -> Found:
 
 
 def agreed(quantities: tuple[str, ...], *frames: tuple[Found, Found]) -> dict[str, Agreement]:
-    agreeing = Agreeing("b", "a", quantities)
+    agreeing = Agreeing("b", "a", {q: units_of([Circle, Rectangle])[q] for q in quantities})
     for position, (mine, theirs) in enumerate(frames):
         agreeing.add(position, mine, theirs)
     return {a.quantity: a for a in agreeing.agreements()}

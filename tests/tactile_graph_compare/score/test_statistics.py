@@ -29,7 +29,7 @@ def targets(errors, objects=None, offsets=None):
 
 
 def test_a_score_sums_up_absolute_errors_and_counts_what_is_missing():
-    got = score_of("v", "radius", targets([-1.0, 3.0, NAN, 2.0]))
+    got = score_of("v", "radius", "cm", targets([-1.0, 3.0, NAN, 2.0]))
     assert (got.mean, got.median, got.largest) == (2.0, 2.0, 3.0)
     assert got.p95 == pytest.approx(2.9)
     assert got.bias == pytest.approx(4 / 3)
@@ -37,18 +37,18 @@ def test_a_score_sums_up_absolute_errors_and_counts_what_is_missing():
 
 
 def test_the_bias_of_centres_is_the_length_of_the_mean_offset():
-    got = score_of("v", "centre", targets([5.0, 5.0], offsets=[(3.0, 4.0), (-3.0, 4.0)]))
+    got = score_of("v", "centre", "cm", targets([5.0, 5.0], offsets=[(3.0, 4.0), (-3.0, 4.0)]))
     assert (got.mean, got.bias) == (5.0, 4.0)
 
 
 def test_without_any_answer_there_are_no_figures():
-    got = score_of("v", "angle", targets([NAN]))
+    got = score_of("v", "angle", "°", targets([NAN]))
     assert (got.mean, got.p95, got.bias, got.n_missing) == (None, None, None, 1)
 
 
 def test_paired_differences_take_only_what_both_answered():
-    one = score_of("b", "radius", targets([1.0, -2.0, NAN, 4.0, NAN]))
-    other = score_of("a", "radius", targets([0.5, 1.0, 7.0, NAN, NAN]))
+    one = score_of("b", "radius", "cm", targets([1.0, -2.0, NAN, 4.0, NAN]))
+    other = score_of("a", "radius", "cm", targets([0.5, 1.0, 7.0, NAN, NAN]))
     got = difference_of(one, other, np.random.default_rng(0))
     assert got.mean == pytest.approx(0.75)
     assert (got.n_both, got.n_only_variant, got.n_only_reference, got.n_neither) == (2, 1, 1, 1)
@@ -63,7 +63,7 @@ def test_objects_of_one_frame_count_as_one_frame():
         made = QuantityErrors()
         for number, error in enumerate(errors):
             made.add(0, number, error)
-        return score_of(label, "radius", made)
+        return score_of(label, "radius", "cm", made)
 
     got = difference_of(score("b", [2.0, 4.0]), score("a", [1.0, 1.0]), np.random.default_rng(0))
     assert (got.mean, got.low, got.high, got.n_both) == (2.0, None, None, 2)
@@ -102,16 +102,16 @@ def test_times_leave_out_reused_frames_and_one_stall_moves_no_median():
 
 
 def test_the_front_is_what_nobody_beats_in_both():
-    scores = [score_of(v, "radius", targets([e])) for v, e in
+    scores = [score_of(v, "radius", "cm", targets([e])) for v, e in
               (("slow", 1.0), ("fast", 2.0), ("bad", 2.5), ("equal", 1.0))]  # fmt: skip
-    scores.append(score_of("silent", "radius", targets([NAN])))
+    scores.append(score_of("silent", "radius", "cm", targets([NAN])))
     times = {"slow": 9.0, "fast": 3.0, "bad": 3.0, "equal": 9.0, "silent": 0.0}
     front = [s.variant for s in with_pareto(scores, times) if s.pareto]
     assert front == ["slow", "fast", "equal"]
 
 
 def test_who_answers_less_beats_nobody():
-    often = score_of("often", "radius", targets([2.0, 2.0]))
-    seldom = score_of("seldom", "radius", targets([1.0, NAN]))
+    often = score_of("often", "radius", "cm", targets([2.0, 2.0]))
+    seldom = score_of("seldom", "radius", "cm", targets([1.0, NAN]))
     front = with_pareto([often, seldom], {"often": 5.0, "seldom": 1.0})
     assert [s.pareto for s in front] == [True, True]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import loads
+from tactile_graph.draw.display import display_list
 from tactile_graph.wires import Image
 from tactile_graph_mrf.energy.line_field import LineField
 
@@ -35,3 +36,9 @@ def test_no_lines():
     assert lines.segments_cm.shape == (0, 2, 2)
     with pytest.raises(ValueError, match="read-only"):
         LineField.none(Image(np.zeros((2, 2)))).vertical[0, 0] = True
+
+
+def test_its_lines_are_what_pictures_show():
+    field = LineField(np.array([[True, False]]), np.zeros((2, 1), bool), (2.0, 1.0), (5.0, 3.0))
+    (rim,) = display_list(field)
+    assert rim.edges_cm.tolist() == [[[5.0, 4.0], [7.0, 4.0]]]

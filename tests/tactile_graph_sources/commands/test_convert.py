@@ -49,7 +49,7 @@ def test_there_and_back_again_nothing_is_lost(tmp_path: Path, made: list[Frame])
 def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: list[Frame]) -> None:
     output = run(tmp_path / "a.npz", tmp_path / "b.csv")
     assert "b.csv: 6 frames" in output
-    assert "left out, as a table has no place for it: gaps" in output
+    assert "left out, as a .csv has no place for it: gaps" in output
     told = ("--rows", 3, "--columns", 5, "--quantity", "volt", "--pitch-cm", 1.3)
     run(tmp_path / "b.csv", tmp_path / "c.zarr", *told)
     read = list(recording(path=tmp_path / "c.zarr", report=Report()))

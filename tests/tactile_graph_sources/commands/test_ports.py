@@ -25,13 +25,13 @@ def test_no_ports_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_port_that_appears_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(port_list, "wait_for_new_port", lambda timeout_s: PAD)
+    monkeypatch.setattr(port_list, "wait_for_new_port", lambda timeout_s, listing: PAD)
     result = CliRunner().invoke(ports, ["--wait", "1"])
     assert result.output.endswith("/dev/ttyACM0  Teensy  16c0:0483  Teensyduino  12345\n")
 
 
 def test_no_new_port_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(port_list, "wait_for_new_port", lambda timeout_s: None)
+    monkeypatch.setattr(port_list, "wait_for_new_port", lambda timeout_s, listing: None)
     result = CliRunner().invoke(cli, ["ports", "--wait", "1"])
     assert result.exit_code == 2
     assert "no new port within 1 s" in result.output

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.wires import Circle, Ellipse, Rectangle, TrueObject
 from tactile_graph_sources.readers.truth import truth_to_json
 from tactile_graph_sources.readers.truth_file import with_truth
@@ -78,3 +78,12 @@ def test_json_that_is_no_truth_says_so(tmp_path: Path) -> None:
     path.write_text('[[{"kind": "cube"}]]')
     with pytest.raises(DataError, match="no list of true objects"):
         list(with_truth(frames(1), path))
+
+
+def test_a_true_shape_of_a_plugins_own_cannot_be_written():
+    class Stroke(Circle):
+        pass
+
+    told = "a true Stroke cannot be written; what can is: circle, ellipse, polygon, rectangle"
+    with pytest.raises(UsageError, match=told):
+        truth_to_json([(TrueObject(Stroke(1.0, 2.0, 3.0)),)])

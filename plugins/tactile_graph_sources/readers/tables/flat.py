@@ -10,18 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
-from tactile_graph.wires.image import QUANTITIES
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.told import Told
 
-NAME = "table, one frame a line"
 _OWN = re.compile(
     r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
     r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
@@ -92,7 +92,7 @@ def _own_word(head: Head, n_values: int) -> Told:
         x, y, left, top = (float(w or 0) for w in found.group(3, 4, 5, 6))
     except ValueError:
         return Told()
-    true = rows * columns == n_values and quantity in QUANTITIES and min(x, y) > 0
+    true = rows * columns == n_values and is_quantity(quantity) and min(x, y) > 0
     if not true or not np.isfinite([x, y, left, top]).all():
         return Told()  # somebody changed the table, so its comment may be wrong in all
     return Told(rows, columns, (x, y), (left, top), quantity)
@@ -142,3 +142,6 @@ def _matrix(
     matrix = np.full(shape[0] * shape[1], np.nan)
     matrix[list(layout.places)] = cells
     return matrix.reshape(shape)
+
+
+FORMAT = RecordingFormat("table, one frame a line", recognises, read, plain=True)

@@ -13,12 +13,12 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 
-NAME = "table, one cell a line (row, column, value)"
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
 FEWEST_OF_GRID = 0.02
@@ -301,3 +301,8 @@ def _one_by_one(
             cells.append(cell)
             numbers.append(number)
     return np.concatenate(cells), numbers
+
+
+FORMAT = RecordingFormat(
+    "table, one cell a line (row, column, value)", recognises, read, plain=True
+)

@@ -12,6 +12,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.breaks import (
     FRAME_LINE,
     Stamp,
@@ -23,7 +24,6 @@ from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_
 from tactile_graph_sources.readers.tables.layout import Layout
 from tactile_graph_sources.readers.tables.table import ENDLESS, is_blank, is_comment
 
-NAME = "table of stacked matrices"
 _DAY_S = 86400.0
 
 
@@ -167,3 +167,6 @@ def _flush(reading: Reading, layout: Layout, matrix: _Matrix, times: _Times) -> 
             factor=said.factor,
             time_s=times.of(matrix.stamp, n),
         )
+
+
+FORMAT = RecordingFormat("table of stacked matrices", recognises, read, plain=True)

@@ -90,7 +90,7 @@ def test_a_plugins_kind_that_is_none_is_told_by_plugin(
     install(monkeypatch, hand_made, ("lamps", "lamp-package", "1", bad))
     got = call("schema", "torch")
     assert got.exit_code == 2
-    told = "file kind 'torch' of plugin 'lamps' (package lamp-package) is no FileKind: 3"
+    told = "file kind 'torch' of plugin 'lamps' (package lamp-package) must be a FileKind, got 3"
     assert told in got.stderr
 
 

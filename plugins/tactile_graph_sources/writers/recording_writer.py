@@ -1,0 +1,27 @@
+"""``RecordingWriter``: how frames become a file of one kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from tactile_graph.wires import Frame
+
+
+class RecordingWriter(NamedTuple):
+    """How frames become a recording of one kind.
+
+    Attributes
+    ----------
+    write : callable
+        Writes the frames to a path that does not exist yet, so that it is there whole or not at
+        all; returns how many there were. The third argument says in a line where they come from.
+        Raises `DataError` for frames that have no place in it, `UsageError` if it cannot write.
+    loses : tuple of str
+        What of a frame has no place in it: ``"truth"``, ``"device time"``, ``"gaps"``,
+        ``"doubts"``, ``"labels"``.
+    """
+
+    write: Callable[[Path, Iterator[Frame], str], int]
+    loses: tuple[str, ...] = ()

@@ -1,0 +1,77 @@
+"""What a plugin offers that writes what runs come to: `Exporter`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+
+from tactile_graph.files import check_target
+
+if TYPE_CHECKING:
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
+    from tactile_graph.engine.table import Table
+
+
+class Writer(Protocol):
+    """Takes results while they come."""
+
+    broken: bool
+    """Whether something could not be written."""
+
+    def write(self, result: Result) -> None:
+        """Take in a frame; raises `UsageError` if it cannot be written."""
+
+    def close(self) -> None:
+        """Write what is left."""
+
+
+class Export(NamedTuple):
+    """What is to be written.
+
+    Attributes
+    ----------
+    name : str
+        A file's path, or ``-`` for stdout.
+    pipeline : Pipeline
+    asked : tuple of str
+        Outputs or nodes, in order.
+    full : bool
+        Whether every field and array of records is, where the form has a place for them.
+    table : Table, optional
+        The columns, with their units, and what makes rows of results, where the form holds numbers.
+    """
+
+    name: str
+    pipeline: Pipeline
+    asked: tuple[str, ...]
+    full: bool = False
+    table: Table | None = None
+
+
+def check_plain(name: str) -> None:
+    """Refuse a file that could not be written in the end; stdout always can."""
+    if name != "-":
+        check_target("-o", name)
+
+
+class Exporter(NamedTuple):
+    """How ``run`` writes files of one form.
+
+    Attributes
+    ----------
+    called : str
+        As people call such a file: ``"CSV"``.
+    holds : str
+        ``"records"``, whole or by their summary; single ``"numbers"``, a row a frame or object; or
+        the ``"images"`` of nodes.
+    opened : callable
+        Returns who takes the results.
+    check : callable
+        Refuses a name, or that something is not installed, before the work; raises `UsageError`.
+    """
+
+    called: str
+    holds: Literal["records", "numbers", "images"]
+    opened: Callable[[Export], Writer]
+    check: Callable[[str], None] = check_plain
