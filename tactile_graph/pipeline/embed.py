@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.facts import embedded_facts, source_facts
+from tactile_graph.pipeline.facts import embedded_facts, frame_facts, ref_facts
 from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
@@ -59,9 +59,8 @@ def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
 
 
 def _facts_at(ref: Ref, inner: Graph) -> Facts:
-    if ref.node == FRAME:
-        return source_facts(None) if ref.path in ((), ("image",)) else Facts()
-    return inner.nodes[ref.node].facts if ref.whole else Facts()
+    known = {FRAME: frame_facts(), **{name: node.facts for name, node in inner.nodes.items()}}
+    return ref_facts(ref, known)
 
 
 def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list[str]]:
@@ -97,7 +96,7 @@ def map_node(inner: Graph, at: Embedding) -> tuple[Node, str]:
     binding = Binding(Port(FRAME, list[Image]), (fitted,))
     node = Node(
         at.name, NodeKind.MAP, _map_output(at.name, inner), at.mark, inputs=(binding,),
-        guard=at.guard, each=True, inner=inner,
+        guard=at.guard, each=True, inner=inner, facts=Facts(dict.fromkeys(at.facts.by_frame, "")),
     )  # fmt: skip
     return node, trouble
 

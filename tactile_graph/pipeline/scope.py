@@ -15,6 +15,7 @@ from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.wires import Frame
+from tactile_graph.wires.image import QUANTITIES
 
 Overrides = Mapping[str, Mapping[str, Any]]
 """Node name -> settings that replace the file's."""
@@ -40,6 +41,8 @@ class Scope:
     ----------
     types, facts, keys, nodes : dict
         By the names that may be referred to: type, facts and key of each value, and its node.
+    frames : tuple of str
+        Quantities that the source's frames may be in.
     """
 
     declaration: Declaration
@@ -50,6 +53,7 @@ class Scope:
     facts: dict[str, Facts] = field(default_factory=dict, init=False)
     nodes: dict[str, Node] = field(default_factory=dict, init=False)
     keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME}, init=False)
+    frames: tuple[str, ...] = field(default=QUANTITIES, init=False)
     rules: list[FrameRule] = field(default_factory=list, init=False)
     condition_errors: list[tuple[NodeDeclaration, ConditionError]] = field(
         default_factory=list, init=False

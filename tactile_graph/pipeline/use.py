@@ -9,7 +9,7 @@ from tactile_graph.errors import PipelineError, TactileGraphError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import Embedding, inline_nodes, map_node
-from tactile_graph.pipeline.facts import embedded_rules, ref_facts
+from tactile_graph.pipeline.facts import embedded_rules, limited, ref_facts, where_reached
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
 from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.wiring import Ref
@@ -23,9 +23,8 @@ def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) ->
         scope.add_unknown(declared.name)
         return
     ref, kind = found
-    at = Embedding(
-        declared.name, scope.mark(declared), ref, kind, ref_facts(ref, scope.facts), guard
-    )
+    facts = limited(ref_facts(ref, scope.facts), where_reached(scope.facts, guard))
+    at = Embedding(declared.name, scope.mark(declared), ref, kind, facts, guard)
     if declared.each:
         _map(scope, declared, inner, at)
     else:
@@ -86,7 +85,7 @@ def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -
 
 def _inline(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
     nodes, troubles = inline_nodes(inner, at)
-    broken, rules = embedded_rules(at.name, inner.frame_rules, at.facts)
+    broken, rules = embedded_rules(at.name, inner.frame_rules, at.facts, scope.frames)
     scope.rules += rules
     for trouble in [*troubles, *broken]:
         scope.problem(declared, f": {trouble}", "in")
