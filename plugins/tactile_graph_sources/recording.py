@@ -12,7 +12,7 @@ from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import QuantityName
-from tactile_graph.steps import Report
+from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
 from tactile_graph_sources.readers.garbage import without_garbage
@@ -47,7 +47,7 @@ def recording(
     value_column: str = "",
     cells: str = "",
     report: Report,
-) -> Iterator[Frame]:
+) -> Iterator[Annotated[Frame, Quantity(of="quantity")]]:
     """Frames of one or more recordings, whatever device or program wrote them.
 
     The format is recognised by content, never by the file's name; units, pitch and missing cells

@@ -154,21 +154,22 @@ def check_frame(image: Image, plan: Plan) -> None:
     Raises
     ------
     RuleError
-        Naming the node, its step, what is allowed and what came.
+        Naming each node, its step, what is allowed and what came.
     """
     if image.values.ndim != 2 or 0 in image.values.shape:
         raise RuleError(f"a frame holds values of shape (rows, columns), got {image.values.shape}")
-    for rule in plan.rules:
-        trouble = _broken(rule, image)
-        if trouble:
-            raise RuleError(f"pipeline {plan.pipeline.name!r}, node {rule.node!r}: {trouble}")
+    troubles = [(rule.node, trouble) for rule in plan.rules if (trouble := _broken(rule, image))]
+    if troubles:
+        lines = [f"node {node!r}: {trouble}" for node, trouble in troubles]
+        raise RuleError(f"pipeline {plan.pipeline.name!r}, " + "\n  ".join(dict.fromkeys(lines)))
 
 
 def _broken(rule: FrameRule, image: Image) -> str:
-    quantity = rule.quantity
-    if quantity is not None:
-        got = image.quantity
-        return quantity_trouble(rule.step, rule.port, quantity, got, rule.setting, frame=True)
+    came = rule.came.get(image.quantity)
+    if came is None:
+        return ""
+    if rule.quantity is not None:
+        return quantity_trouble(rule, came, image.quantity)
     rows, columns = image.shape
     if (rule.rows or rows) != rows or (rule.columns or columns) != columns:
         wanted = f"{rule.rows or 'any'} x {rule.columns or 'any'}"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import compile_condition
 from tactile_graph.pipeline.facts import ref_facts
-from tactile_graph.pipeline.graph import FRAME
 from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.wiring import Ref
@@ -40,10 +41,11 @@ def check_fields_read(scope: Scope) -> None:
         declared = scope.declaration.nodes.get(name)
         for ref in node.guard.refs if node.guard and declared else ():
             wanted = _quantities_of(scope, ref)
-            got = _quantity_read(scope, ref.node)
-            if declared and wanted and got not in ("", FRAME, *wanted):
+            came = _quantities_read(scope, ref.node) if wanted else {}
+            here = [came[q] for q in scope.frames if q in came]
+            if declared and here and not {"", *wanted}.intersection(here):
                 scope.problem(declared, f", 'when': {ref} is there for images in "
-                              f"{' or '.join(wanted)}, here they are in {got}: it never runs",
+                              f"{' or '.join(wanted)}, here they are in {here[0]}: it never runs",
                               "when")  # fmt: skip
 
 
@@ -53,11 +55,11 @@ def _quantities_of(scope: Scope, ref: Ref) -> tuple[str, ...]:
     return tuple(fields.get(ref.path[0], ())) if ref.path else ()
 
 
-def _quantity_read(scope: Scope, name: str) -> str:
-    """Return the quantity of the first image a node reads, as far as it is known."""
+def _quantities_read(scope: Scope, name: str) -> Mapping[str, str]:
+    """Return the quantity of the first image a node reads, by the frame's, where it is known."""
     bindings = scope.nodes[name].inputs if name in scope.nodes else ()
-    known = (ref_facts(b.refs[0], scope.facts).quantity for b in bindings if b.refs)
-    return next((quantity for quantity in known if quantity), "")
+    known = (ref_facts(b.refs[0], scope.facts).by_frame for b in bindings if b.refs)
+    return next((by_frame for by_frame in known if any(by_frame.values())), {})
 
 
 def _condition_problem(

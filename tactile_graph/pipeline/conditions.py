@@ -70,6 +70,32 @@ class Guard:
         read = ", ".join(dict.fromkeys(told))
         return f"when {self.text} is false" + (f" ({read})" if read else "")
 
+    def settled(self, known: Mapping[Ref, str]) -> bool | None:
+        """Return what comes out where all that is known are these values; None if that is open."""
+        values = {f"v{i}": known[ref] for i, ref in enumerate(self.refs) if ref in known}
+        tree = ast.parse(self.meaning, mode="eval").body
+        return _settled(tree, values) if values else None
+
+
+def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
+    if isinstance(node, ast.BoolOp):
+        parts = [_settled(part, values) for part in node.values]
+        decides = isinstance(node.op, ast.Or)
+        if decides in parts:
+            return decides
+        return None if None in parts else not decides
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+        inner = _settled(node.operand, values)
+        return None if inner is None else not inner
+    names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)} - FUNCTIONS.keys()
+    if not names <= values.keys():
+        return None
+    code = compile(ast.Expression(node), "<condition>", "eval")
+    try:
+        return bool(eval(code, {"__builtins__": {}, **FUNCTIONS}, dict(values)))  # whitelisted
+    except Exception:  # fails for the frame too, which says why
+        return None
+
 
 def _one_line(text: str) -> str:
     """Return the text as one line: a YAML block keeps its line ends, Python minds them."""

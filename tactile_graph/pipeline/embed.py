@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.facts import embedded_facts, source_facts
+from tactile_graph.pipeline.facts import embedded_facts, frame_facts, ref_facts
 from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
@@ -66,9 +66,11 @@ def given_troubles(inner: Graph, at: Embedding) -> Iterator[tuple[str, str]]:
     for name, value in at.given.items():
         node = inner.nodes[name]
         own = embedded_facts(node.facts, at.frame.facts)
-        quantities = {value.facts.quantity, own.quantity}
-        if len(quantities) == 2 and not quantities & {"", FRAME}:
-            yield name, f"{value.ref} is in {value.facts.quantity}, {name} in {own.quantity}"
+        here, there = value.facts.by_frame, own.by_frame
+        pairs = {(here[q], there[q]) for q in here if q in there}
+        if pairs and all(a and b and a != b for a, b in pairs):
+            got, wanted = sorted(pairs)[0]
+            yield name, f"{value.ref} is in {got}, {name} in {wanted}"
         if None not in (value.facts.grid, own.grid) and value.facts.grid != own.grid:
             yield name, f"{value.ref} has another grid than {name}"
 
@@ -103,9 +105,8 @@ def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
 
 
 def _facts_at(ref: Ref, inner: Graph) -> Facts:
-    if ref.node == FRAME:
-        return source_facts(None) if ref.path in ((), ("image",)) else Facts()
-    return inner.nodes[ref.node].facts if ref.whole else Facts()
+    known = {FRAME: frame_facts(), **{name: node.facts for name, node in inner.nodes.items()}}
+    return ref_facts(ref, known)
 
 
 def _renamer(inner: Graph, at: Embedding) -> tuple[Callable[[Ref], Ref], list[str]]:
@@ -165,6 +166,7 @@ def map_node(inner: Graph, at: Embedding) -> tuple[Node, list[str]]:
     node = Node(
         at.name, NodeKind.MAP, _map_output(at.name, inner), at.mark, inputs=tuple(bindings),
         guard=at.guard, each=True, inner=_with_given(inner, at),
+        facts=Facts(dict.fromkeys(at.frame.facts.by_frame, "")),
     )  # fmt: skip
     return node, troubles
 

@@ -2,47 +2,129 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Binding, Facts, FrameRule, Node, Source
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.rules import Grid, GridFact, Quantity
 from tactile_graph.steps.signature import Signature
+from tactile_graph.vocabulary import QUANTITIES
 
 FactTable = Mapping[str, Facts]
 
 
-def source_facts(source: Source | None) -> Facts:
-    """Return what the source says of its frames before the first one comes."""
+def frame_facts() -> Facts:
+    """Return what is known of frames, whoever gives them."""
+    return Facts({q: q for q in QUANTITIES}, GridFact(FRAME), ("image",))
+
+
+def source_quantities(source: Source | None) -> tuple[str, ...]:
+    """Return the quantities that frames of a source may be in, all where it does not say."""
     rule = source.signature.output_quantity if source else None
-    names = rule.names if rule else ()
-    if source and rule and rule.port:
-        names = tuple(n for n in names if n == source.settings.get(rule.port))
-    return Facts(names[0] if len(names) == 1 else FRAME, GridFact(FRAME), of_frame=True)
+    if source is None or rule is None:
+        return tuple(QUANTITIES)
+    told = source.settings.get(rule.port) if rule.port else None
+    return (str(told),) if told else rule.names or tuple(QUANTITIES)
 
 
 def ref_facts(ref: Ref, facts: FactTable) -> Facts:
-    """Return what is known of the image at a reference."""
+    """Return what is known of the value at a reference."""
     known = facts.get(ref.node, Facts())
-    if ref.whole:
+    if ref.whole or (not ref.item_path and ref.path in [(view,) for view in known.views]):
         return known
-    return known if ref == Ref(FRAME, ("image",)) else Facts()
+    return Facts(dict.fromkeys(known.by_frame, ""))
+
+
+# -- whether there is a value ----------------------------------------------------------------
+
+
+def where_reached(
+    facts: FactTable, guard: Guard | None, inputs: Sequence[Binding] = ()
+) -> list[str]:
+    """Return the quantities of frames for which a node with this guard and inputs can run."""
+    refs = [*(guard.refs if guard else ()), *(b.refs[0] for b in inputs if _needed(b))]
+    settled = [ref_facts(ref, facts).by_frame for ref in refs]
+    several = [
+        [ref_facts(ref, facts).by_frame for ref in b.refs]
+        for b in inputs
+        if b.collects and b.port.required and b.refs
+    ]
+    return [
+        q
+        for q in QUANTITIES
+        if all(q in by_frame for by_frame in settled)
+        and all(any(q in by_frame for by_frame in some) for some in several)
+        and (guard is None or guard.settled(_known(guard, q, facts)) is not False)
+    ]
+
+
+def _needed(binding: Binding) -> bool:
+    return bool(binding.refs) and binding.port.required and not binding.collects
+
+
+def _known(guard: Guard, quantity: str, facts: FactTable) -> dict[Ref, str]:
+    """Return which of the quantities that a guard reads are known for frames of one."""
+    known: dict[Ref, str] = {}
+    for ref in guard.refs:
+        if ref.path[-1:] == ("quantity",):
+            of_image = Ref(ref.node, ref.path[:-1])
+            found = ref_facts(of_image, facts).by_frame.get(quantity, "")
+            known |= {ref: found} if found else {}
+    return known
+
+
+def limited(facts: Facts, quantities: Sequence[str]) -> Facts:
+    """Return facts of a value that is there for frames of these quantities alone."""
+    return replace(facts, by_frame={q: g for q, g in facts.by_frame.items() if q in quantities})
+
+
+# -- what a node gives -----------------------------------------------------------------------
 
 
 def output_facts(
-    signature: Signature, settings: Mapping[str, Any], inputs: tuple[Binding, ...], facts: FactTable
+    signature: Signature,
+    settings: Mapping[str, Any],
+    inputs: tuple[Binding, ...],
+    facts: FactTable,
+    guard: Guard | None,
 ) -> Facts:
     """Return what is known of a step's output."""
-    by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in inputs if b.refs}
-    like, quantity = Facts(), signature.output_quantity
-    if quantity is not None and quantity.port:
-        like = by_port.get(quantity.port, like)
-    elif quantity is not None and len(quantity.names) == 1:
-        like = Facts(quantity.names[0])
+    by_port = _by_port(inputs, facts)
+    like, rule = Facts(), signature.output_quantity
+    if rule is not None and rule.port:
+        like = by_port.get(rule.port, like)
+    elif rule is not None and len(rule.names) == 1:
+        like = Facts(dict.fromkeys(QUANTITIES, rule.names[0]))
+    reached = where_reached(facts, guard, inputs)
     views = tuple(getattr(signature.output, "provides", {}).values())
-    return replace(like, grid=_output_grid(signature.output_grid, settings, by_port), views=views)
+    return Facts(
+        {q: like.by_frame.get(q, "") for q in reached},
+        _output_grid(signature.output_grid, settings, by_port),
+        views,
+    )
+
+
+def _by_port(inputs: Sequence[Binding], facts: FactTable) -> dict[str, Facts]:
+    return {b.port.name: ref_facts(b.refs[0], facts) for b in inputs if b.refs}
+
+
+def choice_facts(choices: Sequence[Ref], facts: FactTable, guard: Guard | None) -> Facts:
+    """Return what is known of the first of several that has a value."""
+    known = [ref_facts(choice, facts) for choice in choices]
+    by_frame: dict[str, str] = {}
+    for q in where_reached(facts, guard):
+        found = {one.by_frame[q] for one in known if q in one.by_frame}
+        if found:
+            by_frame[q] = found.pop() if len(found) == 1 else ""
+    grids, views = {one.grid for one in known}, {one.views for one in known}
+    return Facts(
+        by_frame,
+        grids.pop() if len(grids) == 1 else None,
+        views.pop() if len(views) == 1 else (),
+    )
 
 
 def _output_grid(
@@ -57,97 +139,132 @@ def _output_grid(
     return known.refined(factor)
 
 
+# -- what steps demand -----------------------------------------------------------------------
+
 Trouble = tuple[str, str]
 
 
 def step_troubles(
-    node: str,
-    signature: Signature,
-    given: Mapping[str, Any],
-    settings: Mapping[str, Any],
-    inputs: tuple[Binding, ...],
-    facts: FactTable,
+    node: Node, given: Mapping[str, Any], facts: FactTable, frames: Sequence[str]
 ) -> tuple[list[Trouble], list[FrameRule]]:
-    """Return the rules a node breaks, by port, and those that only a frame can settle."""
-    troubles: list[Trouble] = []
-    rules: list[FrameRule] = []
-    by_port = {b.port.name: ref_facts(b.refs[0], facts) for b in inputs if b.refs}
-    wanted = [(b.port.name, b.port.quantity, "") for b in inputs if b.port.quantity]
+    """Return the rules a node breaks, by port, and those that only a frame can settle.
+
+    Parameters
+    ----------
+    node : Node
+    given : mapping
+        The settings that somebody spelled out.
+    facts : mapping
+        By node.
+    frames : sequence of str
+        Quantities that the source's frames may be in.
+    """
+    signature = node.signature
+    assert signature is not None
+    wanted = [(b.port.name, b.port.quantity, "") for b in node.inputs if b.port.quantity]
     wanted += [
         (s.quantity.port, s.quantity, s.name)
         for s in signature.settings
         if s.quantity and s.quantity.port and given.get(s.name) is not None
     ]
-    for port, quantity, setting in wanted:
-        known = by_port.get(port, Facts())
-        if known.of_frame:
-            rules.append(FrameRule(node, port, signature.name, quantity, setting=setting))
-        text = quantity_trouble(signature.name, port, quantity, known.quantity, setting)
-        troubles += [(port, text)] if text else []
-    for binding in inputs:
+    rules = [
+        FrameRule(node.name, port, signature.name, _at_port(node, port, facts), quantity,
+                  setting=setting)
+        for port, quantity, setting in wanted
+    ]  # fmt: skip
+    troubles, kept = _checked(rules, frames)
+    by_port = _by_port(node.inputs, facts)
+    for binding in node.inputs:
         if binding.port.grid is not None:
-            trouble, rule = _grid_trouble(node, signature, binding, by_port)
+            trouble, rule = _grid_trouble(node, binding, by_port)
             troubles += [trouble] if trouble else []
-            rules += [rule] if rule else []
-    return troubles, rules
+            kept += [rule] if rule else []
+    return troubles, kept
 
 
-def quantity_troubles(node: Node, facts: FactTable) -> tuple[list[Trouble], list[FrameRule]]:
+def quantity_troubles(
+    node: Node, facts: FactTable, frames: Sequence[str]
+) -> tuple[list[Trouble], list[FrameRule]]:
     """Return what is wrong at the ports of a step that, made with its settings, takes less.
 
-    It says so itself: ``takes`` holds the quantities by port, ``takes_by`` the setting at fault.
+    It says so itself: ``takes`` holds the quantities by port, ``takes_by`` the setting at fault,
+    ``takes_hint`` what to do.
     """
-    made = node.callable
-    takes = {p: Quantity(*names) for p, names in getattr(made, "takes", {}).items()}
-    setting = getattr(made, "takes_by", "")
+    made, ports = node.callable, {b.port.name for b in node.inputs if b.refs}
+    setting, hint = getattr(made, "takes_by", ""), getattr(made, "takes_hint", "")
+    return _checked(
+        [
+            FrameRule(node.name, port, node.what, _at_port(node, port, facts), Quantity(*names),
+                      setting=setting, hint=hint)
+            for port, names in getattr(made, "takes", {}).items()
+            if port in ports
+        ],
+        frames,
+    )  # fmt: skip
+
+
+def _at_port(node: Node, port: str, facts: FactTable) -> dict[str, str]:
+    """Return the quantity of what comes to a port, by that of the frame, where the node runs."""
+    known = _by_port(node.inputs, facts).get(port, Facts()).by_frame
+    return {q: known.get(q, "") for q in node.facts.by_frame}
+
+
+def _checked(
+    rules: Iterable[FrameRule], frames: Sequence[str]
+) -> tuple[list[Trouble], list[FrameRule]]:
+    """Return which rules no frame of the source can keep, and those that some frame breaks."""
     troubles: list[Trouble] = []
-    rules: list[FrameRule] = []
-    by_port = {b.port.name: _view_facts(b.refs[0], facts) for b in node.inputs if b.refs}
-    for port in takes.keys() & by_port.keys():
-        known, what = by_port[port], node.what
-        text = quantity_trouble(what, port, takes[port], known.quantity, setting)
-        troubles += [(port, text)] if text else []
-        if known.of_frame:
-            rules.append(FrameRule(node.name, port, what, takes[port], setting=setting))
-    return troubles, rules
+    kept: list[FrameRule] = []
+    for rule in rules:
+        here = [rule.came[q] for q in frames if q in rule.came]
+        texts = [quantity_trouble(rule, got) for got in here]
+        troubles += [(rule.port, texts[0])] if texts and all(texts) else []
+        kept += [rule] if any(quantity_trouble(rule, got) for got in rule.came.values()) else []
+    return troubles, kept
 
 
-def _view_facts(ref: Ref, facts: FactTable) -> Facts:
-    """Return what is known of the value at a reference, or of what a record is seen as there."""
-    known = facts.get(ref.node, Facts())
-    return known if ref.path in [(view,) for view in known.views] else ref_facts(ref, facts)
+def quantity_trouble(rule: FrameRule, got: str, frame: str = "") -> str:
+    """Return the words for a quantity that does not fit; none where it fits or is not known.
 
-
-def quantity_trouble(
-    step: str, port: str, wanted: Quantity, got: str, setting: str = "", frame: bool = False
-) -> str:
-    """Return the words for a quantity that does not fit; none where it fits or is not known."""
-    if got in ("", FRAME) or not wanted.names or got in wanted.names:
+    Parameters
+    ----------
+    rule : FrameRule
+    got : str
+    frame : str
+        Quantity of the frame at hand, if there is one.
+    """
+    names = rule.quantity.names if rule.quantity else ()
+    if not got or not names or got in names:
         return ""
-    source = "a frame of " if frame else ""
-    who = f"setting {setting!r} of step {step!r}" if setting else f"step {step!r}"
-    return f"{who} takes {' or '.join(wanted.names)} at port {port!r}, got {source}{got}"
+    came = (
+        got if not frame else f"a frame of {got}" if frame == got else f"{got} of a {frame} frame"
+    )
+    step = f"step {rule.step!r}"
+    who = f"setting {rule.setting!r} of {step}" if rule.setting else step
+    hint = f"; {rule.hint}" if rule.hint else ""
+    return f"{who} takes {' or '.join(names)} at port {rule.port!r}, got {came}{hint}"
 
 
 def _grid_trouble(
-    node: str, signature: Signature, binding: Binding, by_port: Mapping[str, Facts]
+    node: Node, binding: Binding, by_port: Mapping[str, Facts]
 ) -> tuple[Trouble | None, FrameRule | None]:
-    rule, port = binding.port.grid, binding.port.name
+    rule, port, step = binding.port.grid, binding.port.name, node.what
     assert rule is not None
     mine = by_port[port].grid
     if rule.port:
         other = by_port.get(rule.port, Facts()).grid
         if mine is not None and other is not None and mine != other:
             ratio = mine.finer / other.finer
-            text = f"step {signature.name!r} needs {port!r} on the same grid as {rule.port!r}" + (
+            text = f"step {step!r} needs {port!r} on the same grid as {rule.port!r}" + (
                 f", but its cells are {float(1 / ratio):g} times as wide" if ratio != 1 else ""
             )
             return (port, text), None
         return None, None
     try:
         return None, coarser(
-            FrameRule(node, port, signature.name, None, rule.rows, rule.columns, rule.pitch_cm,
-                      rule.min_rows, rule.min_columns), mine)  # fmt: skip
+            FrameRule(node.name, port, step, dict.fromkeys(node.facts.by_frame, ""), None,
+                      rule.rows, rule.columns, rule.pitch_cm, rule.min_rows, rule.min_columns),
+            mine)  # fmt: skip
     except ValueError as error:
         return (port, str(error)), None
 
@@ -179,29 +296,40 @@ def coarser(rule: FrameRule, grid: GridFact | None) -> FrameRule | None:
     )
 
 
+# -- pipelines within pipelines --------------------------------------------------------------
+
+
 def embedded_facts(inner: Facts, outer: Facts) -> Facts:
     """Return what is known of an embedded node's image, given what its pipeline's frame is."""
-    quantity = outer if inner.of_frame else inner
     grid = None
     if inner.grid is not None and outer.grid is not None:
         grid = outer.grid.refined(int(inner.grid.finer))
-    return Facts(quantity.quantity, grid, quantity.of_frame)
+    return Facts(_composed(inner.by_frame, outer), grid, inner.views)
+
+
+def _composed(inner: Mapping[str, str], outer: Facts) -> dict[str, str]:
+    """Return an embedded pipeline's quantities by that of the outer frames."""
+    always = {*inner.values()}
+    unknown = always.pop() if len(always) == 1 else ""
+    return {
+        q: inner[its] if its else unknown
+        for q, its in outer.by_frame.items()
+        if (its in inner if its else inner)
+    }
 
 
 def embedded_rules(
-    name: str, rules: Iterable[FrameRule], outer: Facts
+    name: str, rules: Iterable[FrameRule], outer: Facts, frames: Sequence[str]
 ) -> tuple[list[str], list[FrameRule]]:
     """Return which rules an embedded pipeline's frame breaks, and those left for the frame."""
     troubles: list[str] = []
     left: list[FrameRule] = []
     for inner in rules:
-        rule = replace(inner, node=f"{name}/{inner.node}")
+        rule = replace(inner, node=f"{name}/{inner.node}", came=_composed(inner.came, outer))
         if rule.quantity is not None:
-            trouble = quantity_trouble(
-                rule.step, rule.port, rule.quantity, outer.quantity, rule.setting
-            )
-            troubles += [f"{rule.node}: {trouble}"] if trouble else []
-            left += [rule] if outer.of_frame else []
+            texts, kept = _checked([rule], frames)
+            troubles += [f"{rule.node}: {text}" for _, text in texts]
+            left += kept
             continue
         try:
             found = coarser(rule, outer.grid)

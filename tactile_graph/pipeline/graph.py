@@ -17,6 +17,7 @@ from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import GridFact, Quantity
 from tactile_graph.steps.signature import Kind, Port, Signature
+from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph.wires.frame import Frame
 
 FRAME = "frame"
@@ -54,15 +55,14 @@ class Binding:
 class Facts:
     """What the loader knows of a node's image before the first frame.
 
-    ``quantity`` is the name of a quantity, or `FRAME` for "that of the frame", or "". With
-    ``of_frame`` it is the frame's, whether the source names it or not: who runs the pipeline on
-    other frames is told. ``views`` are the attributes through which the value is seen otherwise.
+    ``by_frame`` holds its quantity for each that frames may be in: "" where nobody knows it, and
+    nothing where the node has no value then. ``views`` are the attributes through which the value
+    is seen otherwise.
     """
 
-    quantity: str = ""
+    by_frame: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(QUANTITIES, ""))
     grid: GridFact | None = None
-    of_frame: bool = False
-    views: tuple[str, ...] = field(default=(), compare=False)
+    views: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class Node:
     guard: Guard | None = None
     each: bool = False
     inner: Graph | None = None
-    facts: Facts = Facts()
+    facts: Facts = field(default_factory=Facts)
     key: str = ""
     callable: Callable[..., Any] | None = None
 
@@ -166,11 +166,16 @@ def node_key(*parts: object) -> str:
 
 @dataclass(frozen=True)
 class FrameRule:
-    """A demand on the frames themselves that is left to check when one comes."""
+    """A demand on the frames themselves that is left to check when one comes.
+
+    ``came`` holds what quantity they bring to the port, by their own; of others the node has no
+    value. ``hint`` says what to do.
+    """
 
     node: str
     port: str
     step: str
+    came: Mapping[str, str]
     quantity: Quantity | None = None
     rows: int | None = None
     columns: int | None = None
@@ -178,6 +183,7 @@ class FrameRule:
     min_rows: int = 1
     min_columns: int = 1
     setting: str = ""
+    hint: str = ""
 
 
 @dataclass(frozen=True)

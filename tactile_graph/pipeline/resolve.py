@@ -13,15 +13,16 @@ from tactile_graph.pipeline.checks import check_conditions, check_fields_read, c
 from tactile_graph.pipeline.conditions import Guard, compile_condition
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.facts import (
+    choice_facts,
+    frame_facts,
     output_facts,
     quantity_troubles,
-    source_facts,
+    source_quantities,
     step_troubles,
 )
 from tactile_graph.pipeline.graph import (
     FRAME,
-    Binding,
-    Facts,
+    FrameRule,
     Graph,
     Node,
     NodeKind,
@@ -55,7 +56,8 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         Whether another pipeline uses it: its frames are then not those of its own source.
     """
     source = _source(scope, replaced)
-    scope.facts[FRAME] = source_facts(None if embedded else source)
+    scope.facts[FRAME] = frame_facts()
+    scope.frames = source_quantities(None if embedded else source)
     order, cycles = resolvable_order(scope.declaration)
     for loop in cycles:
         text = f"the nodes form a cycle: {' -> '.join(loop)}"
@@ -132,12 +134,10 @@ def _first_of(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> N
     found = [scope.ref(declared, t, "first_of", i) for i, t in enumerate(declared.first_of or [])]
     choices = tuple(f[0] for f in found if f)
     kind = common_type([f[1] for f in found if f]) if choices else UNKNOWN
-    facts = [scope.facts.get(c.node, Facts()) for c in choices if not c.path]
-    same = facts[0] if len(facts) == len(choices) and len(set(facts)) == 1 else Facts()
     key = node_key("first_of", [scope.ref_key(c) for c in choices], scope.guard_key(guard))
     scope.add(
         Node(declared.name, NodeKind.FIRST_OF, kind, scope.mark(declared), choices=choices,
-             guard=guard, facts=same, key=key)
+             guard=guard, facts=choice_facts(choices, scope.facts, guard), key=key)
     )  # fmt: skip
 
 
@@ -175,7 +175,6 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     before = len(scope.document.problems)
     settings = _settings(scope, declared, signature)
     inputs = bind_inputs(scope, declared, signature)
-    _rules(scope, declared, signature, settings, inputs)
     output: Any = signature.output
     if declared.each:
         output = list[output]
@@ -190,8 +189,10 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     node = Node(
         declared.name, NodeKind.STEP, output, scope.mark(declared), signature, settings, inputs,
         guard=guard, each=declared.each, key=key,
-        facts=output_facts(signature, settings, inputs, scope.facts),
+        facts=output_facts(signature, settings, inputs, scope.facts, guard),
     )  # fmt: skip
+    given = scope.given(declared)
+    _rules(scope, declared, *step_troubles(node, given, scope.facts, scope.frames))
     if len(scope.document.problems) == before and signature.kind is Kind.CLASS:
         node = _made(scope, declared, node)
     scope.add(node)
@@ -207,27 +208,18 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"
         scope.problem(declared, f": {text}", "with")
         return node
-    troubles, rules = quantity_troubles(made, scope.facts)
-    scope.rules += rules
-    _report_ports(scope, declared, troubles)
+    _rules(scope, declared, *quantity_troubles(made, scope.facts, scope.frames))
     return made
 
 
 def _rules(
     scope: Scope,
     declared: NodeDeclaration,
-    signature: Signature,
-    settings: dict[str, Any],
-    inputs: tuple[Binding, ...],
+    troubles: list[tuple[str, str]],
+    rules: list[FrameRule],
 ) -> None:
-    troubles, rules = step_troubles(
-        declared.name, signature, scope.given(declared), settings, inputs, scope.facts
-    )
+    """Report the rules a node breaks, by port, and keep those that only a frame can settle."""
     scope.rules += rules
-    _report_ports(scope, declared, troubles)
-
-
-def _report_ports(scope: Scope, declared: NodeDeclaration, troubles: list[tuple[str, str]]) -> None:
     for port, message in troubles:
         path = ("in", port) if isinstance(declared.inputs, dict) else ("in",)
         scope.problem(declared, f": {message}", *path)

@@ -14,6 +14,7 @@ from tactile_graph.pipeline.graph import FRAME, Facts, FrameRule, Graph, Node
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, when_known
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph.wires import Frame
 
 Overrides = Mapping[str, Mapping[str, Any]]
@@ -40,6 +41,8 @@ class Scope:
     ----------
     types, facts, keys, nodes : dict
         By the names that may be referred to: type, facts and key of each value, and its node.
+    frames : tuple of str
+        Quantities that the source's frames may be in.
     """
 
     declaration: Declaration
@@ -50,6 +53,7 @@ class Scope:
     facts: dict[str, Facts] = field(default_factory=dict, init=False)
     nodes: dict[str, Node] = field(default_factory=dict, init=False)
     keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME}, init=False)
+    frames: tuple[str, ...] = field(default_factory=lambda: tuple(QUANTITIES), init=False)
     rules: list[FrameRule] = field(default_factory=list, init=False)
     condition_errors: list[tuple[NodeDeclaration, ConditionError]] = field(
         default_factory=list, init=False

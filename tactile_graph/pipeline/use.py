@@ -16,7 +16,7 @@ from tactile_graph.pipeline.embed import (
     map_node,
     replaced_nodes,
 )
-from tactile_graph.pipeline.facts import embedded_rules, ref_facts
+from tactile_graph.pipeline.facts import embedded_rules, limited, ref_facts, where_reached
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
 from tactile_graph.pipeline.scope import Scope
 
@@ -29,6 +29,8 @@ def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) ->
         scope.add_unknown(declared.name)
         return
     frame = wired.pop(FRAME)
+    facts = limited(frame.facts, where_reached(scope.facts, guard))
+    frame = replace(frame, facts=facts)
     at = Embedding(declared.name, scope.mark(declared), frame, guard, wired)
     _check_given(scope, declared, inner, at)
     if declared.each:
@@ -124,7 +126,7 @@ def _inline(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding
     nodes, troubles = inline_nodes(inner, at)
     gone = replaced_nodes(inner, at.given)
     left = [rule for rule in inner.frame_rules if rule.node not in gone]
-    broken, rules = embedded_rules(at.name, left, at.frame.facts)
+    broken, rules = embedded_rules(at.name, left, at.frame.facts, scope.frames)
     scope.rules += rules
     for trouble in [*troubles, *broken]:
         scope.problem(declared, f": {trouble}", "in")

@@ -24,7 +24,7 @@ class Quantity:
     """What an image's values mean.
 
     On a port: the quantities it takes. On a return value: the one it gives; of a source whose
-    setting ``of`` names it, those it may name. On a setting: what the port ``of`` must carry
+    setting ``of`` names it, what is told there. On a setting: what the port ``of`` must carry
     whenever the setting is given.
     """
 

@@ -80,7 +80,9 @@ def test_features_are_chosen_by_name_in_any_order_of_the_reading(kind):
 @EACH
 def test_a_reading_in_another_unit_is_refused(kind):
     one = kind(database=export_of(three_objects()))
-    with pytest.raises(DataError, match="learned in gram, this reading is in volt"):
+    with pytest.raises(
+        DataError, match="this reading is in volt; the objects were learned in gram; learn"
+    ):
         one(reading(500.0, 40.0, "volt"))
     assert one(reading(500.0, 40.0, "")).name == "light"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,16 @@ import pytest
 
 import tactile_graph_thesis
 from helpers_cli import call
-from tactile_graph import Circle, Frame, load
-from tactile_graph.errors import RuleError
+from tactile_graph import Circle, load
+from tactile_graph.errors import PipelineError, RuleError
 from tactile_graph.plugins.registry import installed
 
-GRIDS = ((16, 16), (28, 28), (12, 40))
-PEAKS = {"raw": 500.0, "counts": 900.0, "volt": 1.2, "gram": 60.0, "kilopascal": 30.0}
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from any_units import GRIDS, PEAKS, disc, outcomes
+
 SHIPPED = installed().names("pipelines")
 IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
-    *("adaptive", "circle-by-order", "circle-followed", "circle-full")
+    *("adaptive", "circle-followed", "circle-full")
 }
 """Those that weigh a pad's volts: they cannot do with less."""
 KNOWN_IN_GRAMS = {
@@ -44,18 +46,6 @@ def slow_where_much_is_compiled(names: set[str]) -> list[Any]:
     ]
 
 
-def disc(shape: tuple[int, int], quantity: str, seed: int = 0) -> Frame:
-    """A round object in the middle of the pad, of uneven load, with noise around."""
-    rng = np.random.default_rng(seed)
-    rows, columns = shape
-    y, x = np.mgrid[:rows, :columns]
-    dome = 1.0 - ((x - columns / 2) ** 2 + (y - rows / 2) ** 2) / (0.28 * min(shape)) ** 2
-    values = np.sqrt(np.clip(dome, 0.0, None)) * (1.0 + 0.1 * rng.normal(size=shape))
-    values = PEAKS[quantity] * (values + 0.003 * rng.normal(size=shape))
-    whole = quantity in ("raw", "counts")
-    return Frame.of(np.round(values) if whole else values, 1.0, quantity=quantity)
-
-
 @pytest.mark.parametrize("quantity", PEAKS)
 @pytest.mark.parametrize(
     "name", slow_where_much_is_compiled(set(SHIPPED) - IN_VOLTS - KNOWN_IN_GRAMS)
@@ -77,9 +67,27 @@ def test_one_that_needs_volts_says_so_before_it_computes(name: str, quantity: st
 
 @pytest.mark.parametrize("quantity", ["raw", "counts", "kilopascal"])
 @pytest.mark.parametrize("name", slow_where_much_is_compiled(KNOWN_IN_GRAMS))
-def test_one_that_knows_objects_by_grams_says_so(name: str, quantity: str) -> None:
-    failed = load(name).run(disc((16, 16), quantity)).outcome("identity")
-    assert "the objects were learned in gram" in failed.reason
+def test_one_that_knows_objects_by_grams_says_so_before_it_computes(
+    name: str, quantity: str
+) -> None:
+    words = f"takes gram at port 'features', got a frame of {quantity}; .*were learned in gram; lea"
+    with pytest.raises(RuleError, match=words):
+        load(name).run(disc((16, 16), quantity))
+
+
+def test_a_source_that_says_its_unit_is_refused_when_it_is_loaded() -> None:
+    with pytest.raises(PipelineError, match=r"takes gram at port .*, got kilopascal; .*learn"):
+        load("identify-any").with_source("recording", path="any.npz", quantity="kilopascal")
+    load("identify-any").with_source("recording", path="any.npz", quantity="volt")
+    load("identify-any").with_source("recording", path="any.npz")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["identify-any", "circle-3", "objects-likelihood", "contacts"])
+def test_the_table_of_units_and_grids_has_no_late_word(name: str) -> None:
+    found = [*outcomes(name)]
+    assert len(found) == 15
+    assert {one.what for one in found} <= {"answers", "says so before"}, found
 
 
 @pytest.mark.parametrize("quantity", sorted(set(PEAKS) - {"volt"}))

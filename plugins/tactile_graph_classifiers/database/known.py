@@ -144,6 +144,14 @@ class Known:
             np.array_equal(a.readings, b.readings) for a, b in zip(mine, theirs, strict=True)
         )
 
+    @property
+    def remedy(self) -> str:
+        """What to do about readings in another unit."""
+        return (
+            f"the objects were learned in {self.quantity}; learn them from recordings like these,"
+            " into another database, and name that as the step's database"
+        )
+
     def measured(self, quantity: str) -> None:
         """Check that a reading is in the unit the objects were learned in.
 
@@ -158,9 +166,4 @@ class Known:
             If it is not.
         """
         if quantity and self.quantity and quantity != self.quantity:
-            raise OtherQuantityError(
-                self.where,
-                f"the objects were learned in {self.quantity}, this reading is in {quantity}; learn"
-                " them from recordings like these, into another database, and name that as the"
-                " step's database",
-            )
+            raise OtherQuantityError(self.where, f"this reading is in {quantity}; {self.remedy}")

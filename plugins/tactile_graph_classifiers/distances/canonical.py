@@ -11,6 +11,8 @@ from scipy.linalg import solve_triangular
 Array = NDArray[np.float64]
 RESOLUTION = 1e-3
 """Share of a feature's deviation over all readings below which a spread is not believed."""
+ROUNDING = 1e-12
+"""Share of a feature's size below which its deviation is that of rounding."""
 
 
 class WithLogarithms(NamedTuple):
@@ -75,7 +77,8 @@ class Space(NamedTuple):
         off = rows - means[labels]
         freedom = max(len(rows) - len(means), 1)
         total = rows.std(axis=0)
-        floor = np.where(total > 0.0, RESOLUTION * total, np.maximum(1.0, np.abs(rows[0])))
+        varies = total > ROUNDING * np.abs(rows).max(axis=0)
+        floor = np.where(varies, RESOLUTION * total, np.maximum(1.0, np.abs(rows[0])))
         scale = np.maximum(np.sqrt((off * off).sum(axis=0) / freedom), floor)
         off = off / scale
         covariance = (1.0 - shrinkage) / freedom * (off.T @ off)

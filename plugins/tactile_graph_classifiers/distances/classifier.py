@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,24 @@ DEFAULT_FEATURES = ["weight", "area_cm2"]
 """The two features of thesis section 4.4."""
 
 
+class Taken(NamedTuple):
+    """What a classifier says to the loader of the quantities it takes.
+
+    Parameters
+    ----------
+    takes : dict
+        Quantities by port.
+    takes_by : str
+        The setting that is due to; empty where nobody gave it.
+    takes_hint : str
+        What to do about another one.
+    """
+
+    takes: dict[str, tuple[str, ...]]
+    takes_by: str
+    takes_hint: str
+
+
 class Lookup:
     """The known objects a classifier chooses from, and the way from a reading to its vector.
 
@@ -34,8 +52,8 @@ class Lookup:
 
     Attributes
     ----------
-    takes : dict
-        The quantity the objects were learned in, by port, for the loader to check.
+    taken : Taken
+        The quantity the objects were learned in, for the loader to check.
     """
 
     def __init__(
@@ -47,7 +65,11 @@ class Lookup:
         if not self.known.objects:
             raise DataError(self.known.where, "no object was learned yet")
         quantity = self.known.quantity
-        self.takes = {"features": (quantity,)} if is_quantity(quantity) else {}
+        self.taken = Taken(
+            {"features": (quantity,)} if is_quantity(quantity) else {},
+            "" if database is None else "database",
+            f"{self.known.where}: {self.known.remedy}",
+        )
         # One attribute for both: threads may share a classifier.
         self._last: tuple[tuple[str, ...], NDArray[np.intp]] = ((), np.zeros(0, np.intp))
 

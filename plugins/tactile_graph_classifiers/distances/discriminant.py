@@ -63,7 +63,7 @@ class CanonicalDiscriminant:
         confidence: Annotated[float, Gt(0), Lt(1)] = CONFIDENCE,
     ) -> None:
         self._lookup = Lookup(database, features)
-        self.takes = self._lookup.takes
+        self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         examples = Examples.of(known)
         manner = (known.choice or choose(examples)).manner

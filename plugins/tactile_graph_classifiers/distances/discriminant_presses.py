@@ -55,7 +55,8 @@ class DiscriminantOfPresses:
         self._discriminant = CanonicalDiscriminant(
             database=database, features=features, reject=reject, confidence=confidence
         )
-        self.takes = self._discriminant.takes
+        self.takes, self.takes_by = self._discriminant.takes, self._discriminant.takes_by
+        self.takes_hint = self._discriminant.takes_hint
         self._presses = presses
         self._kept: list[Measurements] = []
         self._start_anew_s = start_anew_s

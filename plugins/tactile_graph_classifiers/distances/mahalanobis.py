@@ -66,7 +66,7 @@ class Mahalanobis:
         confidence: Annotated[float, Gt(0), Lt(1)] = 0.99,
     ) -> None:
         self._lookup = Lookup(database, features)
-        self.takes = self._lookup.takes
+        self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         shrinkage = _Shrinkage.of(known, prior_readings)
         covariances = shrinkage(known.scatters, known.counts - 1.0)

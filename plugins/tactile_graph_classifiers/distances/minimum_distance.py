@@ -64,7 +64,7 @@ class MinimumDistance:
         confidence: Annotated[float, Gt(0), Lt(1)] = 0.99,
     ) -> None:
         self._lookup = Lookup(database, features)
-        self.takes = self._lookup.takes
+        self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         share = share_of_features(weights, len(known.features))
         power = 2 if over == "variance" else 1

@@ -68,7 +68,7 @@ class MinimumDistanceNormalised:
         confidence: Annotated[float, Gt(0), Lt(1)] = 0.99,
     ) -> None:
         self._lookup = Lookup(database, features)
-        self.takes = self._lookup.takes
+        self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         if reject and len(known.objects) < 2:
             raise ValueError(

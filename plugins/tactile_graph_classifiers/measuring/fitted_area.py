@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 from tactile_graph.errors import Degenerate
+from tactile_graph.steps import Quantity
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 
 def fitted_area(
     features: Measurements, shape: Circle | Ellipse | Rectangle | Polygon
-) -> Measurements:
+) -> Annotated[Measurements, Quantity.like("features")]:
     """Return the features with the area of a shape that was fitted to the object.
 
     Parameters

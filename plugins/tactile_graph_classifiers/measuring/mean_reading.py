@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.steps import TimeGap
+from tactile_graph.steps import Quantity, TimeGap
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 
@@ -34,7 +34,9 @@ class MeanReading:
         self._names: tuple[str, ...] = ()
         self._start_anew_s = start_anew_s
 
-    def __call__(self, features: Measurements, *, gap_s: TimeGap = None) -> Measurements:
+    def __call__(
+        self, features: Measurements, *, gap_s: TimeGap = None
+    ) -> Annotated[Measurements, Quantity.like("features")]:
         """Return the mean with this reading included."""
         long = gap_s is not None and self._start_anew_s is not None and gap_s > self._start_anew_s
         if long or features.names != self._names:

@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 DIRECTIONS = np.exp(1j * np.linspace(0.0, math.pi, 36, endpoint=False))
 ORDERS = ((2, 0), (3, 0), (2, 1), (4, 0), (3, 1), (2, 2), (5, 0), (6, 0))
 """Powers of z and of its conjugate; their difference says which turns leave a shape as it is."""
+ROUNDING = 1e-12
+"""Of a moment that is 0: its logarithm must not pass for a measurement."""
 MOMENTS = tuple(f"moment_{p}{q}" for p, q in ORDERS)
 REACHES = (10, 50, 90)
 NAMES = (
@@ -81,7 +83,8 @@ def moments(z: NDArray[Any], shares: Array) -> list[float]:
     for _ in range(6):
         powers.append(powers[-1] * z)
     conjugate = z.conj()
-    return [float(abs((powers[p] * conjugate**q).sum())) for p, q in ORDERS]
+    sizes = [float(abs((powers[p] * conjugate**q).sum())) for p, q in ORDERS]
+    return [size if size > ROUNDING else 0.0 for size in sizes]
 
 
 def _hull(on: NDArray[np.bool_], px: float, py: float) -> NDArray[np.complex128]:

@@ -145,6 +145,9 @@ class Threshold:
             volts = () if level_v is None else ("volt",)
             self.takes = {"image": tuple({self._recorded.quantity, *volts})}
             self.takes_by = "noise_of"
+        self.takes_hint = (
+            "" if level == "auto" else "level: auto finds one above each frame's noise"
+        )
         self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
 
     def _reached(self, level: float | None) -> float | None:

@@ -227,6 +227,6 @@ def _takes_noise(node: Node) -> bool:
 
 def _reason(text: str) -> str:
     """Return why a pipeline refuses a frame, without its own name, so that reasons can be alike."""
-    _, _, rest = text.partition(": ")
+    _, _, rest = text.splitlines()[0].partition("; ")[0].partition(": ")
     takes = rest[rest.find(" takes ") + 1 :] if " takes " in rest else rest
     return takes.replace(" at port 'image'", "")

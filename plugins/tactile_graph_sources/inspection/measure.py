@@ -27,6 +27,9 @@ NOISY = 5.0
 ABOVE_NOISE = 5.0
 SHARE_OF_PEAK = 0.05
 SMALLEST_CONTACT = 2
+LASTING = 0.25
+"""Share of the highest reading that a patch must reach at rest to be an object that stays there:
+what pads read by themselves differs less from cell to cell."""
 FULL_SCALES = (255, 511, 1023, 2047, 4095, 8191, 16383, 32767, 65535)
 Cells = tuple[tuple[int, int], ...]
 
@@ -62,6 +65,8 @@ class Measured:
         Patches of two cells or more above ``contact_level``, for each frame.
     contact_level : float
         Above the offset: five times the noise, or a twentieth of the highest reading.
+    n_lasting : int
+        Those that are there in every frame, as what lies on the pad from first to last.
     n_gaps, n_truths : int
         Frames that follow a gap, and that carry truth.
     """
@@ -84,6 +89,7 @@ class Measured:
     missing: Cells
     n_contacts: tuple[int, ...]
     contact_level: float
+    n_lasting: int
     n_gaps: int
     n_truths: int
 
@@ -119,6 +125,9 @@ def measure(frames: Sequence[Frame]) -> Measured:
         dead, stuck = _still(filled, idle, known, _Levels(offset, highest, noise or 0.0))
         rate, jitter, duration = _rate(frames)
         spread = np.quantile(idle[known], [0.1, 0.9]) if known.any() else np.zeros(2)
+        lasting, n_lasting = _lasting(
+            np.where(stuck, offset, idle) - offset, level, highest - offset
+        )
         return Measured(
             len(frames),
             (stack.shape[1], stack.shape[2]),
@@ -136,8 +145,9 @@ def measure(frames: Sequence[Frame]) -> Measured:
             _cells(stuck),
             _cells(_noisy(sigma, noise, known & ~dead & ~stuck)),
             _cells(~known),
-            tuple(_contacts(f - idle, level) for f in filled),
+            tuple(_contacts(f - np.where(lasting, offset, idle), level) for f in filled),
             level,
+            n_lasting,
             sum(f.gap for f in frames),
             sum(f.truth is not None for f in frames),
         )
@@ -247,6 +257,26 @@ def _noisy(sigma: Stack | None, noise: float | None, known: NDArray[np.bool_]) -
 
 def _cells(mask: NDArray[np.bool_]) -> Cells:
     return tuple((int(r), int(c)) for r, c in np.argwhere(mask))
+
+
+def _lasting(rest: Stack, level: float, highest: float) -> tuple[NDArray[np.bool_], int]:
+    """Return the cells of patches that no frame is without, and how many patches.
+
+    Parameters
+    ----------
+    rest : ndarray, shape (rows, columns)
+        What cells read at rest, above the offset.
+    level, highest : float
+        From which on a cell belongs to a contact; the highest reading. Both above the offset.
+    """
+    from scipy import ndimage
+
+    labels, n = ndimage.label(rest > level, structure=np.ones((3, 3)))
+    numbers = np.arange(1, n + 1)
+    sizes = np.bincount(labels.ravel(), minlength=n + 1)[1:]
+    peaks = np.atleast_1d(ndimage.maximum(rest, labels, numbers)) if n else np.zeros(0)
+    kept = numbers[(sizes >= SMALLEST_CONTACT) & (peaks >= LASTING * highest)]
+    return np.isin(labels, kept), len(kept)
 
 
 def _contacts(above: Stack, level: float) -> int:

@@ -96,11 +96,12 @@ def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
         yield _line("gaps", f"{measured.n_gaps} frames follow one")
     if measured.n_truths:
         yield _line("truth", f"known for {measured.n_truths} frames")
-    n = measured.n_contacts
+    n, stays = measured.n_contacts, measured.n_lasting
+    lasting = f", {stays} of them in every frame" if stays and measured.n_frames > 1 else ""
     yield _line(
         "contacts",
-        f"{median(n):g} a frame as a rule, {min(n)} to {max(n)} (patches of two cells or more "
-        f"that rise {_number(measured.contact_level)} {unit} above rest)",
+        f"{median(n):g} a frame as a rule, {min(n)} to {max(n)}{lasting} (patches of two cells or"
+        f" more that rise {_number(measured.contact_level)} {unit} above rest)",
     )
 
 

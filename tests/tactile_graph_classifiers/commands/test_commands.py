@@ -250,8 +250,8 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
     assert (code, text) == (2, "")
     told = " ".join(told.split())
     assert (
-        "the objects were learned in gram, this reading is in raw; learn them from recordings like"
-        in told
+        "takes gram at port 'features', got a frame of raw; tactile-objects.sqlite: the objects"
+        " were learned in gram; learn them from recordings like these" in told
     )
 
 

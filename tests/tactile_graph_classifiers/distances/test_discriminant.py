@@ -116,6 +116,16 @@ def test_features_that_say_nothing_or_never_vary_do_no_harm():
     assert one(Measurements(names, np.array([505.0, 41.0, 0.0, 7.0, 0.1]), "gram")).name == "light"
 
 
+def test_features_that_never_vary_but_for_rounding_make_nobody_a_stranger():
+    names = ("weight", *(f"size_{k}" for k in range(2, 200)))
+    rows = np.tile([500.0, *np.sqrt(np.arange(2.0, 200.0))], (7, 1))
+    rows[:, 0] += np.arange(7)
+    assert (rows.std(axis=0)[1:] > 0.0).any()  # the mean of seven equal numbers may be another
+    one = CanonicalDiscriminant(database=export_of({"mug": rows}, names))
+    for row in rows:
+        assert one(Measurements(names, row.copy(), "gram")).known
+
+
 def test_fewer_readings_than_features_and_one_of_a_single_reading_are_borne():
     objects = {k: v[:3] for k, v in many(4, seed=2, apart=40.0).items()}
     objects["object 3"] = objects["object 3"][:1]

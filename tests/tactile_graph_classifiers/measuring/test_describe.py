@@ -96,6 +96,11 @@ def test_it_says_all_that_features_says():
     assert measured.summary()["solidity"] == measured.solidity < 1.0
 
 
+def test_a_moment_that_is_0_for_symmetry_is_0_and_no_rounding():
+    found = described(np.ones((6, 6), dtype=bool))
+    assert [found[f"moment_{n}"] for n in ("20", "30", "21", "31", "50", "60")] == [0.0] * 6
+
+
 def test_a_single_cell_has_finite_numbers():
     on = np.zeros((3, 3), dtype=bool)
     on[1, 1] = True

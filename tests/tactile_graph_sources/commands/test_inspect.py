@@ -67,6 +67,20 @@ def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
     assert max(sensor["n_contacts"]) >= 2
 
 
+def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_rests(
+    tmp_path: Path,
+) -> None:
+    values = np.random.default_rng(0).integers(0, 4, (9, 16, 16)).astype(float)
+    values[:, 3:7, 4:9] += 300.0
+    values[5:, 11:14, 11:14] += 200.0
+    path = tmp_path / "lies.npz"
+    np.savez(path, frames=values)
+    (sensor,) = looked(path)["sensors"]
+    assert sensor["n_contacts"] == [1] * 5 + [2] * 4
+    assert sensor["n_lasting"] == 1
+    assert "1 a frame as a rule, 1 to 2, 1 of them in every frame" in run(path)
+
+
 def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     text = run(mat)
     assert "format    NumPy .npz" in text
