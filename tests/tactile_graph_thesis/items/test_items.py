@@ -42,6 +42,7 @@ def test_each_comes_out(name: str, work: Work) -> None:
     for finding in made.findings:
         assert isinstance(finding.holds, bool)
         assert "nan" not in finding.found
+        assert "refuted" not in finding.found
     if made.table is not None:
         assert all(len(row) == len(made.table.columns) for row in made.table.rows)
     if made.figure is not None:

@@ -91,11 +91,13 @@ def _table_4_4(work: Work) -> Made:
             Finding(
                 "the radius improves somewhat over the first algorithm",
                 f"mean error {_said(now, before, 'cm')}",
+                "no smaller error",
                 now < before,
             ),
             Finding(
                 "the centres stay approximately the same",
                 f"mean error {_said(float(centre[1]), float(centre[0]), 'cm')}",
+                "a change by a tenth",
                 bool(abs(centre[1] / centre[0] - 1.0) < 0.1),
             ),
         ),
@@ -114,16 +116,19 @@ def _table_4_5(work: Work) -> Made:
             Finding(
                 "the convex hull improves the radius dramatically",
                 f"mean error {_said(now, before, 'cm')}",
+                "half the error or more left",
                 now < 0.5 * before,
             ),
             Finding(
                 "the centres are somewhat improved",
                 f"mean error {_said(float(centre[1]), float(centre[0]), 'cm')}",
+                "no smaller error",
                 bool(centre[1] < centre[0]),
             ),
             Finding(
                 "errors are typically within or around 1 cm, less than an element's pitch",
                 f"largest average error {worst:.2f} cm",
+                "an average error of 1 cm",
                 bool(worst < 1.0),
             ),
         ),
@@ -144,6 +149,7 @@ def _table_4_7(work: Work) -> Made:
             Finding(
                 "the only large error is that of RECTANGLE I's length",
                 f"RECTANGLE I {one:.2f} cm on average, RECTANGLE II {two:.2f} cm",
+                "a larger one of RECTANGLE II",
                 one > two,
             ),
         ),
@@ -158,6 +164,7 @@ def _table_4_8(work: Work) -> Made:
             Finding(
                 f"morphological cleaning somewhat improves the {quantity}",
                 f"mean error {_said(now, before, 'cm')}",
+                "no smaller error",
                 now < before,
             )
         )
