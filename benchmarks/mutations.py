@@ -1,4 +1,4 @@
-"""What the tests notice: small changes to the code, one at a time, and how many of them fail a test.
+"""What the tests notice: small changes to the code, one at a time, that should fail a test.
 
     python benchmarks/mutations.py thesis mrf filters fitters --mutants 60 -o found.json
     python benchmarks/mutations.py --again found.json -o found.json     # survivors once more
@@ -6,10 +6,10 @@
 
 A mutant is a module with one comparison, operator, number, flag, condition or returned value
 changed, or a shipped pipeline with one setting changed. It is never written into the tree: a
-process of its own imports the changed code, and runs first the tests that import the module, then
-all of its family's. Kernels are answered by their plain loops, so that no machine code of
-yesterday answers for them. A sample is drawn from all places in a family with a seed; the
-interval is Wilson's, at 95 %.
+process of its own imports the changed code, and runs first the tests of files that name the
+module, then the others of the folder that mirrors its own. Kernels are answered by their plain
+loops, so that no machine code of yesterday answers for them. A sample is drawn from all places in
+a family with a seed; the interval is Wilson's, at 95 %.
 
 Left out: annotations, texts, what only draws, prints or writes, and tests that take longer than
 ``SLOW_S`` seconds each in plain loops (their number is told).
@@ -388,7 +388,9 @@ class Watch:
             self.failed.append(report.nodeid)
 
 
-def in_a_child(tests: list[str], mutant: Mutant | None, limit_s: float, stop: bool) -> dict[str, Any]:
+def in_a_child(
+    tests: list[str], mutant: Mutant | None, limit_s: float, stop: bool, loops: bool = False
+) -> dict[str, Any]:
     """Run tests in a process of its own; return exit code, times and failures.
 
     Parameters
@@ -401,11 +403,15 @@ def in_a_child(tests: list[str], mutant: Mutant | None, limit_s: float, stop: bo
         Then it is stopped, which tells an endless loop.
     stop : bool
         Whether the first failure ends it.
+    loops : bool
+        Whether kernels with a reference answer by their loops.
     """
     with tempfile.TemporaryDirectory() as folder:
         answer = Path(folder) / "answer.json"
         pid = os.fork()
         if pid == 0:
+            if loops:
+                _loops_answer()
             _child(tests, mutant, stop, answer)
         start = time.monotonic()
         while time.monotonic() - start < limit_s:
@@ -436,6 +442,22 @@ def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path) ->
         code = 1
     answer.write_text(json.dumps({"code": code, "seconds": watch.seconds, "failed": watch.failed}))
     os._exit(0)
+
+
+def _loops_answer() -> None:
+    """Let every kernel of this process run its loops, also where a reference stands beside them."""
+    from tactile_graph.compiled.kernel import Kernel
+
+    beside = Kernel._plain
+
+    def plain(self: Any, *args: Any) -> Any:
+        reference, self.reference = self.reference, self.loops
+        try:
+            return beside(self, *args)
+        finally:
+            self.reference = reference
+
+    Kernel._plain = plain  # type: ignore[method-assign]
 
 
 # -- what tests there are ----------------------------------------------------------------------
@@ -483,7 +505,7 @@ def quick_tests(family: str, kept: Path) -> dict[str, float]:
 
 
 def in_stages(mutant: Mutant, tests: dict[str, float]) -> list[list[str]]:
-    """Return first the tests of files that name the module, then the others.
+    """Return first the tests of files that name the module, then the others of its room.
 
     Parameters
     ----------
@@ -497,10 +519,21 @@ def in_stages(mutant: Mutant, tests: dict[str, float]) -> list[list[str]]:
         for file in {name.partition("::")[0] for name in tests}
         if Path(file).stem == f"test_{stem}" or names.search((ROOT / file).read_text())
     }
+    room = {str(home / _room(mutant)) for home in homes(mutant.family)}
     stages: list[list[str]] = [[], []]
     for name in tests:
-        stages[name.partition("::")[0] not in near].append(name)
+        file = name.partition("::")[0]
+        if file in near:
+            stages[0].append(name)
+        elif str((ROOT / file).parent) in room:
+            stages[1].append(name)
     return [stage for stage in stages if stage]
+
+
+def _room(mutant: Mutant) -> str:
+    """Return the folder of the module within its family; pipelines have none."""
+    parts = Path(mutant.path).parent.parts
+    return "" if mutant.family == "pipelines" else "/".join(parts[2:])
 
 
 def killer(mutant: Mutant, tests: dict[str, float]) -> str:
@@ -512,14 +545,26 @@ def killer(mutant: Mutant, tests: dict[str, float]) -> str:
     tests : dict
         Name -> seconds.
     """
-    for stage in in_stages(mutant, tests):
+    stages = in_stages(mutant, tests)
+    for stage in stages:
         limit_s = LEAST_TIMEOUT_S + 4.0 * sum(tests[name] for name in stage)
         found = in_a_child(stage, mutant, limit_s, stop=True)
         if found["code"] == -9:
             return "time"
         if found["code"]:
             return (found.get("failed") or ["import"])[0]
+    if "compiled_twin_of" in (ROOT / mutant.path).read_text():
+        return _killer_of_loops(mutant, stages[0])
     return ""
+
+
+def _killer_of_loops(mutant: Mutant, tests: list[str]) -> str:
+    """Return the test that fails where loops answer in place of their references.
+
+    That is slow, so what takes too long tells nothing.
+    """
+    found = in_a_child(tests, mutant, LEAST_TIMEOUT_S, stop=True, loops=True)
+    return (found.get("failed") or [""])[0] if found["code"] > 0 else ""
 
 
 # -- the run -----------------------------------------------------------------------------------
@@ -543,7 +588,14 @@ def preload() -> None:
     """Import what every child needs and no mutant changes, once."""
     for name in ("numpy", "scipy.optimize", "scipy.ndimage", "scipy.stats", "networkx", "pytest"):
         importlib.import_module(name)
-    for name in ("hypothesis", "pydantic", "yaml", "skimage.measure", "tactile_graph", "rich.table"):
+    for name in (
+        "hypothesis",
+        "pydantic",
+        "yaml",
+        "skimage.measure",
+        "tactile_graph",
+        "rich.table",
+    ):
         importlib.import_module(name)
 
 

@@ -12,12 +12,14 @@ CONTENTS = {
     "chapter_2": (
         "section_2_2_2_converter",
         "section_2_2_3_samples",
+        "section_2_3_2_coupling_directions",
         "figures_2_8_to_2_11_bias",
         "figures_2_12_to_2_14_footprints",
         "figures_2_15_to_2_17_groups_of_four",
         "figure_2_18_calibration_curve",
         "figure_2_19_weight_against_area",
     ),
+    "chapter_3": ("section_3_1_3_morphology",),
     "chapter_4": (
         "figures_4_1_to_4_3_threshold",
         "figures_4_4_and_4_5_variance",
@@ -26,15 +28,18 @@ CONTENTS = {
         "figures_4_22_to_4_28_rectangles",
         "figures_4_29_to_4_36_rounding",
         "figures_4_37_to_4_43_identification",
+        "section_4_3_4_broken_image",
         "tables_4_3_to_4_8_errors",
         "table_4_9_identification",
     ),
     "chapter_5": (
+        "section_5_3_2_line_patterns",
         "section_5_4_1_schedule",
         "figures_5_8_to_5_14_restoration",
         "table_5_2_radii",
     ),
     "chapter_6": (
+        "section_6_1_2_finer_pad",
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",
         "section_6_1_3_noise_before_blocks",

@@ -19,7 +19,8 @@ FIGURES = (
 )
 WISHES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
 SCHEDULE = ("annealing", "state-space")
-STUDIES = ("converter", "samples", *SCHEDULE, *WISHES)
+TEXT = ("coupling-directions", "morphology", "broken-image", "line-patterns", "finer-pad")
+STUDIES = ("converter", "samples", *TEXT, *SCHEDULE, *WISHES)
 
 
 def test_every_table_and_figure_is_there_once() -> None:
@@ -38,7 +39,7 @@ def test_the_order_is_that_of_the_thesis() -> None:
         ("table-5.2", "figure-5.13", "figure-5.14"),
     ):
         assert ids.index(before) < ids.index(table) < ids.index(after)
-    assert tuple(ids[:3]) == ("converter", "samples", "figure-2.8")
+    assert tuple(ids[:4]) == ("converter", "samples", "coupling-directions", "figure-2.8")
     assert tuple(ids[-len(WISHES) :]) == WISHES
 
 
