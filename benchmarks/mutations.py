@@ -2,14 +2,16 @@
 
     python benchmarks/mutations.py thesis mrf filters fitters --mutants 60 -o found.json
     python benchmarks/mutations.py --again found.json -o found.json     # survivors once more
+    python benchmarks/mutations.py --again found.json --compiled ...    # by machine code
     python benchmarks/mutations.py --table found.json                   # for docs/mutations.md
 
 A mutant is a module with one comparison, operator, number, flag, condition or returned value
 changed, or a shipped pipeline with one setting changed. It is never written into the tree: a
 process of its own imports the changed code, and runs first the tests of files that name the
 module, then the others of the folder that mirrors its own. Kernels are answered by their plain
-loops, so that no machine code of yesterday answers for them. A sample is drawn from all places in
-a family with a seed; the interval is Wilson's, at 95 %.
+loops, so that no machine code of yesterday answers for them; ``--compiled`` lets tests that are
+too slow for that judge the survivors, each with a copy of the machine code on disk. A sample is
+drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
 Left out: annotations, texts, what only draws, prints or writes, and tests that take longer than
 ``SLOW_S`` seconds each in plain loops (their number is told).
@@ -26,6 +28,7 @@ import math
 import os
 import random
 import re
+import shutil
 import signal
 import sys
 import tempfile
@@ -46,7 +49,11 @@ THESIS_WAYS = ("circle-1", "circle-2", "circle-3", "rectangle-1", "rectangle-2",
 UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
 SLOW_S = 4.0
+MUTANT_S = 30
+"""After which a test of a mutant is stopped, which is a failure."""
 LEAST_TIMEOUT_S = 60.0
+COMPILED_S = 150.0
+PLAIN = "TACTILE_GRAPH_KERNELS"
 COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
     ast.Lt: (ast.LtE, ast.GtE),
     ast.LtE: (ast.Lt, ast.Gt),
@@ -375,21 +382,43 @@ def _read_instead(path: Path, text: str) -> None:
 
 
 class Watch:
-    """Notes how long each test takes, and which one fails first."""
+    """Notes how long each test takes and which ones fail, and stops those that never end.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    limit_s : int
+        Of a test.
+    """
+
+    def __init__(self, limit_s: int) -> None:
         self.seconds: dict[str, float] = {}
         self.failed: list[str] = []
+        self._limit_s = limit_s
+        signal.signal(signal.SIGALRM, self._over)
+
+    @staticmethod
+    def _over(*_: object) -> None:
+        raise TimeoutError("takes too long")
+
+    def pytest_runtest_setup(self) -> None:
+        """Begin to count a test's time."""
+        signal.alarm(self._limit_s)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """Add a test's time; keep its name if it fails."""
+        signal.alarm(0 if report.when == "teardown" else self._limit_s)
         self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
         if report.failed:
             self.failed.append(report.nodeid)
 
 
 def in_a_child(
-    tests: list[str], mutant: Mutant | None, limit_s: float, stop: bool, loops: bool = False
+    tests: list[str],
+    mutant: Mutant | None,
+    limit_s: float,
+    stop: bool,
+    loops: bool = False,
+    cache: str = "",
 ) -> dict[str, Any]:
     """Run tests in a process of its own; return exit code, times and failures.
 
@@ -405,11 +434,14 @@ def in_a_child(
         Whether the first failure ends it.
     loops : bool
         Whether kernels with a reference answer by their loops.
+    cache : str
+        Folder of machine code; kernels are compiled, and all in plain loops if not given.
     """
     with tempfile.TemporaryDirectory() as folder:
         answer = Path(folder) / "answer.json"
         pid = os.fork()
         if pid == 0:
+            os.environ |= {"NUMBA_CACHE_DIR": cache} if cache else {PLAIN: "plain"}
             if loops:
                 _loops_answer()
             _child(tests, mutant, stop, answer)
@@ -428,11 +460,11 @@ def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path) ->
     import pytest
 
     os.setpgid(0, 0)
-    os.environ["TACTILE_GRAPH_KERNELS"] = "plain"
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nowhere, stream)
-    watch = Watch()
+    limit_s = math.ceil(2 * SLOW_S) if mutant is None else MUTANT_S
+    watch = Watch(limit_s if PLAIN in os.environ else math.ceil(COMPILED_S))
     told = ["-n0", "-p", "no:cacheprovider", "-m", "not slow", "--no-header", "--tb=no", *UNWARNED]
     try:
         if mutant is not None:
@@ -536,6 +568,27 @@ def _room(mutant: Mutant) -> str:
     return "" if mutant.family == "pipelines" else "/".join(parts[2:])
 
 
+def killer_compiled(mutant: Mutant) -> str:
+    """Return the test that fails on a mutant where kernels are machine code, nothing if none does.
+
+    Parameters
+    ----------
+    mutant : Mutant
+    """
+    files = sorted(p for home in homes(mutant.family) for p in home.rglob("test_*.py"))
+    every = {str(path.relative_to(ROOT)): 0.0 for path in files}
+    for stage in in_stages(mutant, every):
+        with tempfile.TemporaryDirectory() as folder:
+            copied = Path(folder) / "cache"
+            shutil.copytree(os.environ["NUMBA_CACHE_DIR"], copied)
+            found = in_a_child(stage, mutant, COMPILED_S, stop=True, cache=str(copied))
+        if found["code"] > 0:
+            return (found.get("failed") or ["import"])[0]
+        if found["code"] < 0:
+            return ""
+    return ""
+
+
 def killer(mutant: Mutant, tests: dict[str, float]) -> str:
     """Return the test that fails on a mutant, ``time`` if one never ends, nothing if it survives.
 
@@ -599,22 +652,29 @@ def preload() -> None:
         importlib.import_module(name)
 
 
-def run(chosen: list[Mutant], kept: Path, out: Path, found: dict[str, dict[str, Any]]) -> None:
+def run(
+    chosen: list[Mutant],
+    kept: Path | None,
+    out: Path,
+    found: dict[str, dict[str, Any]],
+) -> None:
     """Try mutants one after the other, and write what came of each at once.
 
     Parameters
     ----------
     chosen : list of Mutant
-    kept : Path
-        Folder of what the tests take.
+    kept : Path, optional
+        Folder of what the tests take in plain loops; without it kernels are compiled.
     out : Path
     found : dict
         What is known already, by file and place.
     """
     for k, mutant in enumerate(chosen, 1):
-        tests = quick_tests(mutant.family, kept / f"{mutant.family}.json")
         start = time.monotonic()
-        by = killer(mutant, tests)
+        if kept is None:
+            by = killer_compiled(mutant)
+        else:
+            by = killer(mutant, quick_tests(mutant.family, kept / f"{mutant.family}.json"))
         found[f"{mutant.path}:{mutant.place}"] = asdict(mutant) | {"killed_by": by}
         out.write_text(json.dumps(list(found.values()), indent=1))
         told = by or "SURVIVES"
@@ -653,6 +713,7 @@ def main() -> None:
     parser.add_argument("--mutants", type=int, default=60, help="a family")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--again", type=Path, help="try these survivors once more")
+    parser.add_argument("--compiled", action="store_true", help="with --again: by machine code")
     parser.add_argument("--table", type=Path)
     parser.add_argument("--kept", type=Path, default=Path(tempfile.gettempdir()))
     parser.add_argument("-o", "--output", type=Path, default=Path("mutations.json"))
@@ -674,7 +735,7 @@ def main() -> None:
             places = mutants_of(family)
             chosen += random.Random(given.seed).sample(places, min(given.mutants, len(places)))
             print(f"{family}: {len(places)} places")
-    run(chosen, given.kept, given.output, found)
+    run(chosen, None if given.compiled else given.kept, given.output, found)
 
 
 if __name__ == "__main__":
