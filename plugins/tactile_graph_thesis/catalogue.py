@@ -10,6 +10,8 @@ from tactile_graph_thesis.item import Item
 
 CONTENTS = {
     "chapter_2": (
+        "figure_2_2_force_law",
+        "section_2_2_current",
         "section_2_2_2_converter",
         "section_2_2_3_samples",
         "section_2_3_2_coupling_directions",
@@ -18,8 +20,13 @@ CONTENTS = {
         "figures_2_15_to_2_17_groups_of_four",
         "figure_2_18_calibration_curve",
         "figure_2_19_weight_against_area",
+        "section_2_4_3_stack_order",
     ),
-    "chapter_3": ("section_3_1_3_morphology",),
+    "chapter_3": (
+        "section_3_1_2_operators",
+        "section_3_1_3_morphology",
+        "figures_3_2_to_3_6_techniques",
+    ),
     "chapter_4": (
         "figures_4_1_to_4_3_threshold",
         "figures_4_4_and_4_5_variance",
@@ -30,6 +37,10 @@ CONTENTS = {
         "figures_4_37_to_4_43_identification",
         "section_4_3_4_broken_image",
         "tables_4_3_to_4_8_errors",
+        "section_4_3_9_one_pad",
+        "section_4_1_thresholds",
+        "section_4_2_2_to_4_5_erosion",
+        "section_4_3_5_order_of_rotation",
         "table_4_9_identification",
     ),
     "chapter_5": (
@@ -37,12 +48,16 @@ CONTENTS = {
         "section_5_4_1_schedule",
         "figures_5_8_to_5_14_restoration",
         "table_5_2_radii",
+        "section_5_5_2_heavier_side",
     ),
     "chapter_6": (
         "section_6_1_2_finer_pad",
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",
         "section_6_1_3_noise_before_blocks",
+        "section_6_1_1_site_isolation",
+        "section_6_1_3_direct_ellipse",
+        "section_6_1_4_restoration",
     ),
 }
 """Room of ``items/`` -> its modules, each with a tuple ``ITEMS``."""

@@ -93,12 +93,14 @@ def table_lines(found: Sequence[Outcome]) -> list[TableLine]:
 
 
 def all_told(lines: Sequence[TableLine]) -> tuple[Nearness, Nearness]:
-    """Return the averages and the maxima of all tables together.
+    """Return the averages and the maxima of all tables and figures together.
 
     Parameters
     ----------
     lines : sequence of TableLine
+        Those of studies are left out: what they make again stands in a table already.
     """
+    lines = [x for x in lines if x.id.startswith(("table-", "figure-"))]
 
     def told(parts: list[Nearness]) -> Nearness:
         near = (sum(p.near[k] for p in parts) for k in range(len(NEAR_PERCENT)))

@@ -93,7 +93,8 @@ def test_the_summary_counts_numbers_and_conclusions() -> None:
     (line,) = table_lines(made())
     assert (line.name, line.within, line.with_range) == ("table 9.1", 1, 2)
     assert (line.averages, line.maxima) == (Nearness(2, (0, 0, 1)), Nearness(1, (0, 1, 1)))
-    assert [str(n) for n in all_told([line, line])] == ["0, 0, 2 of 4", "0, 2, 2 of 2"]
+    study = line._replace(id="one-pad")
+    assert [str(n) for n in all_told([line, line, study])] == ["0, 0, 2 of 4", "0, 2, 2 of 2"]
     assert [f.thesis for _, f in conclusions(made())] == ["up", "down"]
 
 

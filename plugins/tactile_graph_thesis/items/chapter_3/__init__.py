@@ -1,1 +1,1 @@
-"""Chapter 3: what the techniques do by themselves."""
+"""Chapter 3: the techniques, each shown on its own."""

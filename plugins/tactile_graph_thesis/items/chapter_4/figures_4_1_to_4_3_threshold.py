@@ -33,8 +33,8 @@ def _figure_4_1(work: Work) -> Made:
     frame = work.frames(SCENE, 6 * work.readings)[0]
     levels = numbers("threshold")["footprints_v"]
     base = load("circle-3")
-    pipelines = [base.with_settings({"footprint.level_v": v}) for v in levels]
-    masks = [p.run(frame, ["footprint"])["footprint"] for p in pipelines]
+    runners = [base.with_settings({"footprint.level_v": v}).runner(["footprint"]) for v in levels]
+    masks = [run(frame)["footprint"] for run in runners]
     true = true_shape(frame)
     figure, axes = panels(2)
     for one, mask in zip(axes, masks, strict=True):
@@ -48,10 +48,7 @@ def _figure_4_1(work: Work) -> Made:
     of_disc = work.frames(SCENE, 6 * work.readings)[::6]
     counts = np.array(
         [
-            [
-                (m.count, voids(m, true_shape(f)))
-                for m in (p.run(f, ["footprint"])["footprint"] for p in pipelines)
-            ]
+            [(m.count, voids(m, true_shape(f))) for m in (run(f)["footprint"] for run in runners)]
             for f in of_disc[:TRIED]
         ],
         np.float64,

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph import Mask, Points
+from tactile_graph import Frame, Mask, Points
 from tactile_graph.wires import Image
+from tactile_graph_thesis.item import Finding
 from tactile_graph_thesis.items.chapter_4.figures_4_1_to_4_3_threshold import by_threshold
 from tactile_graph_thesis.items.chapter_4.figures_4_4_and_4_5_variance import (
     hardly_changes,
@@ -28,6 +29,23 @@ from tactile_graph_thesis.items.chapter_4.figures_4_29_to_4_36_rounding import (
     leaves_voids,
     lone_voids,
     not_as_drastic,
+)
+from tactile_graph_thesis.items.chapter_4.section_4_1_thresholds import (
+    moves_the_best,
+    no_compelling_need,
+    with_residuals,
+)
+from tactile_graph_thesis.items.chapter_4.section_4_2_2_to_4_5_erosion import (
+    disappears,
+    dramatic_on_noisy,
+    erases_some,
+)
+from tactile_graph_thesis.items.chapter_4.section_4_3_5_order_of_rotation import interchangeable
+from tactile_graph_thesis.items.chapter_4.tables_4_3_to_4_8_errors import (
+    alike,
+    only_large_error,
+    smaller,
+    within_an_element,
 )
 
 
@@ -162,3 +180,90 @@ def test_voids_that_stay_are_not_filled() -> None:
     assert fills_voids(holes, whole).holds
     assert not fills_voids(holes, with_cells(whole, (5, 5), on=False)).holds
     assert not fills_voids(whole, square(12)).holds
+
+
+# -- tables 4.3 to 4.8 -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("finding", "holds"),
+    [
+        (smaller("", 1.1, 1.2), True),
+        (smaller("", 1.2, 1.1), False),
+        (smaller("", 0.5, 1.2, 0.5), True),
+        (smaller("", 0.7, 1.2, 0.5), False),
+        (alike("", 0.42, 0.45), True),
+        (alike("", 0.40, 0.45), False),
+        (alike("", 0.50, 0.45), False),
+        (within_an_element(0.99), True),
+        (within_an_element(1.01), False),
+        (only_large_error(3.9, 1.9), True),
+        (only_large_error(0.8, 1.5), False),
+    ],
+)
+def test_an_error_that_grows_or_changes_refutes_what_the_tables_say(
+    finding: Finding, holds: bool
+) -> None:
+    assert finding.holds == holds
+
+
+# -- sections 4.1 to 4.5 ---------------------------------------------------------------------
+
+
+def test_a_variable_threshold_that_takes_a_quarter_of_the_error_away_is_compelling() -> None:
+    one = np.array([0.4, 0.6])
+    assert no_compelling_need(one, np.array([0.4, 0.5])).holds
+    assert not no_compelling_need(one, 0.7 * one).holds
+
+
+@pytest.mark.parametrize(
+    ("without", "with_them", "holds"),
+    [(0.005, 0.01, True), (0.01, 0.01, False), (0.005, 0.0075, False), (0.005, 0.02, False)],
+)
+def test_residuals_that_leave_the_best_threshold_elsewhere_are_no_reason(
+    without: float, with_them: float, holds: bool
+) -> None:
+    assert moves_the_best({0.0: without, 0.0125: with_them}).holds == holds
+
+
+def test_residuals_are_the_same_in_every_reading_and_below_the_most() -> None:
+    frames = [Frame.of(value * np.ones((4, 4)), 1.0, (0.0, 0.0), "volt") for value in (0.0, 1.0)]
+    one, other = with_residuals(frames, 0.01, 3)
+    np.testing.assert_allclose(other.image.values - one.image.values, 1.0)
+    assert 0.0 <= one.image.values.min() < one.image.values.max() < 0.01
+
+
+def test_without_a_blank_picture_nothing_is_erased() -> None:
+    assert erases_some({"a": 0.0, "b": 0.02}).holds
+    assert not erases_some({"a": 0.0, "b": 0.0}).holds
+    assert disappears({"3 × 3": 0.1, "21 × 21": 0.9}).holds
+    assert not disappears({"3 × 3": 0.0, "21 × 21": 0.9}).holds
+
+
+def test_a_length_that_changes_by_more_than_a_millimetre_is_affected() -> None:
+    same, moved = np.full((5, 2), 0.05), np.full((5, 2), 0.2)
+    assert interchangeable({"a": same, "b": -same}).holds
+    assert not interchangeable({"a": same, "b": moved}).holds
+    assert not interchangeable({"a": same, "b": moved * (0.0, 1.0)}).holds
+
+
+@pytest.mark.parametrize(
+    ("after", "holds"),
+    [
+        ([1.0, 1.0, 1.0, 1.0], True),
+        ([1.0, 1.0, 3.0, 3.0], False),
+        ([1.6, 1.6, 1.0, 1.0], False),
+        ([0.2, 0.2, 1.0, 1.0], False),
+    ],
+    ids=["as told", "still bad", "others worse", "others better"],
+)
+def test_morphology_must_halve_what_is_bad_and_leave_the_rest(
+    after: list[float], holds: bool
+) -> None:
+    before = np.array([1.0, 1.0, 4.0, 4.0])
+    assert dramatic_on_noisy(before, np.array(after)).holds == holds
+
+
+def test_without_a_severe_case_there_is_no_improvement_of_one() -> None:
+    few = np.array([1.0, np.nan, 2.0])
+    assert not dramatic_on_noisy(few, few).holds
