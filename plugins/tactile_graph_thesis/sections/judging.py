@@ -70,13 +70,16 @@ def judged(claim: Claim, found: Mapping[str, Outcome]) -> Judged:
 def finding_of(claim: Claim, outcome: Outcome) -> Finding | None:
     """Return the one finding of an item that a statement is judged by, None if there is not one.
 
+    It is the one that begins with the statement's words, or else holds them.
+
     Parameters
     ----------
     claim : Claim
     outcome : Outcome
     """
     findings = outcome.made.findings if outcome.made else ()
-    told = [one for one in findings if claim.finding in one.thesis]
+    told = [one for one in findings if one.thesis.startswith(claim.finding)]
+    told = told or [one for one in findings if claim.finding in one.thesis]
     return told[0] if len(told) == 1 else None
 
 

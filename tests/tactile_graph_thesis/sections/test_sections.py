@@ -124,6 +124,12 @@ def test_a_verdict_is_the_findings_and_all_items_must_agree(claim: Claim, verdic
     assert judged(claim, found).verdict == verdict
 
 
+def test_a_finding_that_begins_with_the_words_goes_before_one_that_holds_them() -> None:
+    also = Finding("with drivers too it goes up", "by 1", "a fall", False)
+    assert finding_of(Claim("a", ("x",), "it goes up"), item(also, UP)) is UP
+    assert finding_of(Claim("a", ("x",), "drivers"), item(also, UP)) is also
+
+
 def test_an_item_that_could_not_be_made_is_told_as_such() -> None:
     outcome = Outcome(Item("x", "X", "Shown.", lambda _: Made()), None, "oh")
     found = judged(Claim("a", ("x",), "goes up"), {"x": outcome})
