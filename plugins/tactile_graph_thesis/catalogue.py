@@ -14,6 +14,7 @@ CONTENTS = {
         "section_2_2_current",
         "section_2_2_2_converter",
         "section_2_2_3_samples",
+        "section_2_3_2_coupling_directions",
         "figures_2_8_to_2_11_bias",
         "figures_2_12_to_2_14_footprints",
         "figures_2_15_to_2_17_groups_of_four",
@@ -21,7 +22,11 @@ CONTENTS = {
         "figure_2_19_weight_against_area",
         "section_2_4_3_stack_order",
     ),
-    "chapter_3": ("section_3_1_2_operators", "figures_3_2_to_3_6_techniques"),
+    "chapter_3": (
+        "section_3_1_2_operators",
+        "section_3_1_3_morphology",
+        "figures_3_2_to_3_6_techniques",
+    ),
     "chapter_4": (
         "figures_4_1_to_4_3_threshold",
         "figures_4_4_and_4_5_variance",
@@ -30,6 +35,7 @@ CONTENTS = {
         "figures_4_22_to_4_28_rectangles",
         "figures_4_29_to_4_36_rounding",
         "figures_4_37_to_4_43_identification",
+        "section_4_3_4_broken_image",
         "tables_4_3_to_4_8_errors",
         "section_4_3_9_one_pad",
         "section_4_1_thresholds",
@@ -38,12 +44,14 @@ CONTENTS = {
         "table_4_9_identification",
     ),
     "chapter_5": (
+        "section_5_3_2_line_patterns",
         "section_5_4_1_schedule",
         "figures_5_8_to_5_14_restoration",
         "table_5_2_radii",
         "section_5_5_2_heavier_side",
     ),
     "chapter_6": (
+        "section_6_1_2_finer_pad",
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",
         "section_6_1_3_noise_before_blocks",

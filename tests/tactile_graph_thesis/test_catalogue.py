@@ -23,13 +23,14 @@ WISHES = (
     "direct-ellipse",
 )
 SCHEDULE = ("annealing", "state-space")
+TEXT = ("coupling-directions", "morphology", "broken-image", "line-patterns", "finer-pad")
 CLAIMS = (
     *("current-limit", "stack-order", "boundary-operators", "variable-threshold"),
     *("residual-voltages", "erased-discs", "rotation-order", "one-pad", "erased-rectangles"),
     *("noisy-rectangles", "heavier-side", "site-isolation"),
 )
 RESTORED = ("restoration-filters", "noise-models", "load-prior")
-STUDIES = ("converter", "samples", *SCHEDULE, *CLAIMS, *WISHES, *RESTORED)
+STUDIES = ("converter", "samples", *TEXT, *SCHEDULE, *CLAIMS, *WISHES, *RESTORED)
 
 
 def test_every_table_and_figure_is_there_once() -> None:

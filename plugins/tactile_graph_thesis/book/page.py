@@ -8,19 +8,32 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
+from tactile_graph_thesis.book.chapters import chapter_pages, contents, verdict_table
 from tactile_graph_thesis.book.summary import NEAR_PERCENT, all_told, conclusions, table_lines
 from tactile_graph_thesis.book.text import number
 from tactile_graph_thesis.item import Compared, Finding
 from tactile_graph_thesis.making import Outcome
 
 STYLE = Path(__file__).parent / "book.css"
+LOST = "The picture itself is not at hand."
 BROAD, TALL = 1.8, 1.3
 """Width by height from which a picture is broad, and up to which it is tall."""
 NEAR = f"within {', '.join(map(str, NEAR_PERCENT))} %"
-TITLE = "The thesis' tables and figures, made again"
+TITLE = "The thesis, made again"
+OPENING = (
+    "Chapters 2 to 6, section by section: what the text states, in our words, what came out of it "
+    "and the command that shows it; then its tables and figures, ours beside the thesis' numbers. "
+    "Its pictures are lost, its text and captions are not. Everything here is computed on a "
+    "simulated pad whose truth is known."
+)
 
 
-def page(found: Sequence[Outcome], pictures: Mapping[str, bytes], how: Mapping[str, str]) -> str:
+def page(
+    found: Sequence[Outcome],
+    pictures: Mapping[str, bytes],
+    how: Mapping[str, str],
+    pipelines: Mapping[str, str],
+) -> str:
     """Return the book.
 
     Parameters
@@ -30,17 +43,20 @@ def page(found: Sequence[Outcome], pictures: Mapping[str, bytes], how: Mapping[s
         Item's id -> its figure as SVG.
     how : mapping
         How the book was made: name -> value.
+    pipelines : mapping
+        Name -> text of the pipelines that sections are made with.
     """
-    sections = "\n".join(_section(o, pictures.get(o.item.id)) for o in found)
+
+    def item_page(outcome: Outcome, caption: str) -> str:
+        return _section(outcome, pictures.get(outcome.item.id), caption)
+
     style = STYLE.read_text(encoding="utf-8")
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{TITLE}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<header>\n"
-        f"<h1>{TITLE}</h1>\n<p>Ours beside the thesis', the ratio of the two, and where they "
-        "differ, why. Everything here is computed on a simulated pad whose truth is known.</p>\n"
-        f"{_how(how)}</header>\n<main>\n{_summary(found)}{_contents(found)}{sections}\n"
-        "</main>\n</body>\n</html>\n"
+        f"<h1>{TITLE}</h1>\n<p>{OPENING}</p>\n{_how(how)}</header>\n<main>\n{_summary(found)}"
+        f"{contents(found)}{chapter_pages(found, item_page, pipelines)}</main>\n</body>\n</html>\n"
     )
 
 
@@ -69,6 +85,7 @@ def _summary(found: Sequence[Outcome]) -> str:
         rows.append(["", "together", *map(str, all_told(lines)), ""])
         heads = ("", "", f"averages {NEAR}", f"maxima {NEAR}", "thesis' within our range")
         parts.append(_grid(heads, rows, text=2))
+    parts.append(verdict_table(found))
     parts += _counted(conclusions(found))
     failed = [o for o in found if o.made is None]
     if failed:
@@ -93,28 +110,22 @@ def _counted(told: Sequence[tuple[Outcome, Finding]]) -> list[str]:
     return [holding, " These do not:</p>\n<ul>", *failing, "</ul>\n"]
 
 
-def _contents(found: Sequence[Outcome]) -> str:
-    entries = "".join(
-        f"<li>{_link(o.item.id, o.item.name)} {escape(o.item.title)}</li>\n" for o in found
-    )
-    return f"<nav><h2>Contents</h2>\n<ul class=contents>\n{entries}</ul></nav>\n"
-
-
 # -- an item ---------------------------------------------------------------------------------
 
 
-def _section(outcome: Outcome, svg: bytes | None) -> str:
+def _section(outcome: Outcome, svg: bytes | None, caption: str) -> str:
     item, made = outcome.item, outcome.made
     parts = [
         f'<section class=item id="{escape(item.id)}">\n'
-        f"<h2><span>{escape(item.name)}</span> {escape(item.title)}</h2>\n"
-        f"<p>{escape(item.shows)}</p>\n"
+        f"<h4><span>{escape(item.name)}</span> {escape(item.title)}</h4>\n"
     ]
+    if svg is None or not caption:
+        parts.append(f"<p>{escape(item.shows)}</p>\n")
     if made is None:
         parts.append(f"<p class=failed>Could not be made: {escape(outcome.error)}</p>\n")
     else:
         if svg is not None:
-            parts.append(_picture(svg, f"{item.name}: {item.title}"))
+            parts.append(_picture(svg, outcome, caption))
         if made.compared:
             parts.append(_compared(made.compared))
         if made.findings:
@@ -122,14 +133,25 @@ def _section(outcome: Outcome, svg: bytes | None) -> str:
         parts += [f"<p class=note>{escape(note)}</p>\n" for note in made.notes]
     if item.why:
         parts.append(f"<p class=why><b>Where we differ, and why.</b> {escape(item.why)}</p>\n")
-    return "".join(parts) + "<p class=up><a href=#summary>top</a></p></section>\n"
+    parts.append(f"<p class=command><code>tactile-graph reproduce {escape(item.id)}</code></p>\n")
+    return "".join((*parts, "</section>\n"))
 
 
-def _picture(svg: bytes, words: str) -> str:
+def _picture(svg: bytes, outcome: Outcome, caption: str) -> str:
+    """Return our picture, with what the thesis' caption says of its own beside it."""
+    item = outcome.item
     data = base64.b64encode(svg).decode()
     kind = f" class={name}" if (name := _kind(svg)) else ""
     source = f"data:image/svg+xml;base64,{data}"
-    return f'<figure{kind}><img alt="{escape(words)}" src="{source}"></figure>\n'
+    words = escape(f"{item.name}: {item.title}")
+    image = f'<div class=picture><img alt="{words}" src="{source}"></div>'
+    if not caption:
+        return f"<figure{kind}>{image}</figure>\n"
+    beside = (
+        f"<b>Theirs.</b> “{escape(caption)}” {LOST if item.number else ''}<br>"
+        f"<b>Ours.</b> {escape(item.shows)}"
+    )
+    return f"<figure{kind}><figcaption>{beside}</figcaption>{image}</figure>\n"
 
 
 def _kind(svg: bytes) -> str:

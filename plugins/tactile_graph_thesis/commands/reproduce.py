@@ -128,9 +128,10 @@ def _write_book(found: list[Outcome], pictures: dict[str, bytes], folder: Path, 
     """Write what is about all items together."""
     from tactile_graph_thesis.book.files import compared_csv, write_all
     from tactile_graph_thesis.book.page import page
+    from tactile_graph_thesis.sections.reading import pipeline_texts
 
     files = {
-        BOOK: page(found, pictures, made_how(work)).encode(),
+        BOOK: page(found, pictures, made_how(work), pipeline_texts()).encode(),
         "compared.csv": compared_csv(found).encode(),
     }
     write_all(folder, files)

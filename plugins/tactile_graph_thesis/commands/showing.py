@@ -8,6 +8,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.cli.terminal import console
+from tactile_graph_thesis.book.chapters import verdicts
 from tactile_graph_thesis.book.summary import NEAR_PERCENT, all_told, conclusions, table_lines
 from tactile_graph_thesis.book.text import number
 
@@ -230,6 +231,9 @@ def _show_summary(say: Any, found: Sequence[Outcome]) -> None:
     told = conclusions(found)
     holding = sum(f.holds for _, f in told)
     say.print(f"{holding} of {len(told)} conclusions of the thesis come out")
+    counts = verdicts(found)
+    words = ", ".join(f"{n} {kind}" for kind, n in counts.items())
+    say.print(f"{sum(counts.values())} statements of the text: {words}", soft_wrap=True)
     failed = [o.item.name for o in found if o.made is None]
     if failed:
         say.print(f"could not be made: {', '.join(failed)}", style="red")

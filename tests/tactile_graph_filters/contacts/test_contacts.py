@@ -137,3 +137,9 @@ def test_the_contacts_cover_the_mask_exactly_once(mask, eight):
         covered[top:bottom, left:right] += one.mask.values
     assert np.array_equal(covered, mask.values.astype(int))
     assert sum(c.load for c in found) == mask.count
+
+
+def test_the_centre_of_load_lies_right_of_the_images_origin():
+    (one,) = contacts(image_of(np.eye(1, 4, 2), "gram"), drawn("..#.")).contacts
+    assert one.x_cm == pytest.approx(ORIGIN[0] + 2.5 * PITCH[0])
+    assert one.y_cm == pytest.approx(ORIGIN[1] + 0.5 * PITCH[1])

@@ -107,3 +107,13 @@ def test_an_image_too_small_for_the_contacts_is_refused():
     _, found = contacts_in(finger(17.0, 14.0, 0.0))
     with pytest.raises(RuleError, match=r"reaches over the image of \(3, 4\)"):
         lean_contacts(image_of(np.zeros((3, 4))), found)
+
+
+def test_both_centres_move_the_same_way_down_the_pad():
+    values = np.zeros((8, 5))
+    values[2, 2], values[5, 2] = 3.0, 1.0
+    image = Image(values, (CELL_CM, CELL_CM), (0.0, 0.0), "raw")
+    (one,) = contacts(image, image.mask(values > 2.0)).contacts
+    (moved,) = lean_contacts(image, [one], lean=0.4).contacts
+    assert moved.y_cm < one.y_cm
+    assert moved.centroid_y_cm - one.centroid_y_cm == pytest.approx(moved.y_cm - one.y_cm)

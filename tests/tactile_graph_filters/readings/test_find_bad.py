@@ -83,3 +83,12 @@ def test_another_shape_is_refused():
 def test_nan_is_refused():
     with pytest.raises(DataError, match="row 0, column 0: must be a number, got nan"):
         FindBad()(image_of([[math.nan]]))
+
+
+def test_an_element_only_a_few_times_as_noisy_as_the_others_is_found():
+    def noisy(values, rng):
+        values[2, 5] += rng.normal(0.0, 8.0)
+
+    found = run(FindBad(), change=noisy)
+    assert found.valid is not None
+    assert np.argwhere(~found.valid).tolist() == [[2, 5]]

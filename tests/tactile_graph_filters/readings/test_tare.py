@@ -1,3 +1,4 @@
+import inspect
 import math
 
 import numpy as np
@@ -87,3 +88,8 @@ def test_another_shape_is_refused():
 def test_nan_is_refused():
     with pytest.raises(DataError, match="row 0, column 0: must be a number, got nan"):
         Tare()(image_of([[math.nan]]))
+
+
+def test_a_reading_of_25_or_less_lets_the_zero_drift_on():
+    """The default that tells a touch; what is above it stops the drift."""
+    assert inspect.signature(Tare).parameters["touched"].default == 25.0

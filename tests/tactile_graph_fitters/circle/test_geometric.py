@@ -70,3 +70,8 @@ def test_saddle_between_two_equal_rows_is_left():
     assert abs(slopes(uv, 0.0, 0.0)[3]) < 1e-15
     assert not step_of(slopes(uv, 0.0, 0.0), 0.0)[3]
     assert refined(uv, 0.0, 0.0)[0] == ONE_LINE
+
+
+def test_where_the_cost_is_flat_all_round_no_step_is_taken():
+    """Nothing to divide by: no number may come of it."""
+    assert step_of.loops((1.0, 0.5, 0.1, 0.1, *[0.0] * 6), 0.0) == (0.0, 0.0, 0.0, False)

@@ -12,7 +12,13 @@ from tactile_graph_fitters.ellipse.direct_ellipse import direct_shape, ellipse_f
 from tactile_graph_fitters.ellipse.ellipse_equations import reduced
 from tactile_graph_fitters.ellipse.fit_ellipse import _lengthened, refined
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
-from tactile_graph_fitters.ellipse.newton_ellipse import _as_axes, as_matrix, newton, solved
+from tactile_graph_fitters.ellipse.newton_ellipse import (
+    _as_axes,
+    as_matrix,
+    newton,
+    solved,
+    turned_feet,
+)
 
 
 def axes_of(m_uu, m_uv, m_vv):
@@ -196,3 +202,13 @@ def test_where_a_parabola_fits_as_well_it_gives_up_soon():
         found.append(refined(uv, p, fit_ellipse.STEP)[1])
     assert max(found) < 0
     assert np.median(found) > -60
+
+
+def test_a_foot_turns_by_its_own_slope_and_what_the_steps_take_off():
+    rng = np.random.default_rng(4)
+    angle, rows, step = rng.uniform(0, 6, 9), rng.normal(0, 0.2, (7, 9)), rng.normal(0, 0.2, 5)
+    cs = np.array([np.cos(angle), np.sin(angle)])
+    turned_feet.loops(cs, rows, step)
+    half = -0.5 * (rows[5] * (step @ rows[:5]) + rows[6])
+    wanted = angle + 2.0 * np.arctan(half)
+    np.testing.assert_allclose(cs, [np.cos(wanted), np.sin(wanted)], atol=1e-12)

@@ -131,3 +131,9 @@ def test_scatters_are_those_of_the_references(seed):
         assert which(values) == pytest.approx(references.mask_scatter(values))
     for which in (points_scatter.loops, points_scatter.compiled):
         assert which(xy) == pytest.approx(references.points_scatter(xy))
+
+
+def test_points_whose_spread_overflows_have_no_direction():
+    far = Points(np.array([[0.0, 0.0], [1e160, 2e160], [2e160, 1e160]]))
+    with pytest.raises(Degenerate, match="not finite or too large"):
+        orientation(far)

@@ -52,3 +52,8 @@ def test_the_nearer_a_shape_the_likelier_it_is(row):
 def test_the_weights_are_those_of_every_kind():
     assert WEIGHTS.shape == (4 + MOST_CORNERS - 1, len(KINDS))
     assert WEIGHTS.sum(axis=1) == pytest.approx(0.0, abs=0.005)
+
+
+def test_confidences_are_those_of_temperature_1_unless_told():
+    found = features(52.0, np.array([0.3, 0.2, 0.1, 0.5, 0.4, 0.2, 0.1]), 1.3)
+    assert confidences(found) == confidences(found, 1.0)

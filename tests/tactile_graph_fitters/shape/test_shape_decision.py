@@ -9,7 +9,13 @@ from helpers_rectangles import covered, points, rectangle_xy
 from tactile_graph import load
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Points, Polygon, Rectangle
-from tactile_graph_fitters.shape.shape_decision import shape_decision
+from tactile_graph_fitters.shape.shape_decision import (
+    EVIDENCE,
+    FLOOR_CELLS,
+    Fits,
+    _best_polygon,
+    shape_decision,
+)
 from tactile_graph_hull.boundary_scan import boundary_scan
 
 
@@ -118,3 +124,12 @@ def test_points_of_no_pad_are_refused_in_words(size: float) -> None:
     t = np.linspace(0.0, 6.0, 40)
     with pytest.raises(Degenerate, match=r"100,000 cells of 1\.3 cm apart; is cell_cm right"):
         shape_decision(Points(size * np.column_stack([np.cos(t), np.sin(t)])), cell_cm=1.3)
+
+
+def test_corners_are_paid_for_by_so_many_measurements_a_cell():
+    """40 cells of outline are 24 measurements: two logarithms of 24 for a corner more."""
+    floor = (FLOOR_CELLS * 1.0) ** 2
+    price = 2.0 * math.log(40.0 * EVIDENCE) / (40.0 * EVIDENCE)
+    for share, corners in ((1.02, 4), (0.98, 3)):
+        squares = np.array([9.0, 9.0, 9.0, floor * (2.0 * math.exp(share * price) - 1.0), floor])
+        assert _best_polygon(Fits(5, 40.0, squares, squares, squares), 4, 1.0) == corners

@@ -47,7 +47,7 @@ def breaks(_: Work) -> Made:
 
 GOOD = Item("table-9.1", "Good", "Shown.", lambda _: Made(ROWS, FINDINGS, notes=("Note.",)), "Why.")
 BAD = Item("figure-9.2", "Bad", "Shown.", fails)
-BROKEN = Item("study", "Broken", "Shown.", breaks)
+BROKEN = Item("study", "Broken", "Shown.", breaks, after="9.3")
 
 
 class Seen(HTMLParser):
@@ -119,7 +119,12 @@ def test_a_finding_that_nothing_refutes_is_none(nothing: str) -> None:
 
 
 def test_the_page_holds_everything_and_asks_for_nothing() -> None:
-    text = page(made(), {"table-9.1": b'<svg viewBox="0 0 400 100"></svg>'}, {"command": "x & y"})
+    text = page(
+        made(),
+        {"table-9.1": b'<svg viewBox="0 0 400 100"></svg>'},
+        {"command": "x & y"},
+        {"circle-1": "a: <b>"},
+    )
     seen = Seen()
     seen.feed(text)
     assert seen.open == []
