@@ -82,7 +82,14 @@ class Plan:
         """Whether the same image gives the same result, whatever its time and number."""
         return not self.stateful and all(
             r.path[:1] == ("image",) for r in self.reads_frame
-        ) and not any(i.node.is_sink or _varies(i.node) for i in self.items if i.node)  # fmt: skip
+        ) and not any(
+            i.node.is_sink or _varies(i.node) or i.node.kind is NodeKind.GIVEN
+            for i in self.items if i.node
+        )  # fmt: skip
+
+
+OF_ITEM = (("image",), ("mask",))
+"""What an inner frame has of its own item; all else it has of the frame that is under way."""
 
 
 def _varies(node: Node) -> bool:
@@ -90,7 +97,7 @@ def _varies(node: Node) -> bool:
     if node.inner is not None:
         inner = node.inner.nodes.values()
         refs = [r for n in inner for r in n.wires()] + list(node.inner.outputs.values())
-        whole = any(r.node == FRAME and r.path[:1] != ("image",) for r in refs)
+        whole = any(r.node == FRAME and r.path[:1] not in OF_ITEM for r in refs)
         return whole or any(_varies(n) for n in inner)
     return node.signature is not None and bool(node.signature.rng)
 
@@ -205,6 +212,8 @@ class _Planner:
                     for b in node.inputs
                 )  # fmt: skip
             item.reads = item.guard + tuple(s for i in item.inputs for s in i.slots)
+            if node.kind is NodeKind.GIVEN:
+                item.reads = (0,)
 
     def _classify(self, item: Item) -> None:
         """Find out whether the item depends on no frame, and whether it can come out skipped."""
@@ -221,7 +230,8 @@ class _Planner:
         through = all(inputs) if node.kind is NodeKind.FIRST_OF else any(inputs)
         item.skippable = node.guard is not None or (bool(inputs) and through)
         item.skippable |= any(self.items[s].skippable for s in item.guard)
-        item.skippable |= node.each  # an empty list leaves nothing to run for
+        # An empty list leaves nothing to run for; an item that is given may have no value.
+        item.skippable |= node.each or node.kind is NodeKind.GIVEN
 
     def _may_be_unknown(self, item: Item) -> bool:
         """Return whether a field may hold None, which skips whoever needs it."""
