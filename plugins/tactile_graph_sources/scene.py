@@ -21,7 +21,7 @@ from tactile_graph_pads.records import inline, read_record
 
 Place = Literal["random"] | tuple[float, float]
 Angle = Literal["random"] | float
-Length = Annotated[float, Gt(0)]
+Length = Annotated[float, Gt(0), Le(1e6)]
 Grams = Annotated[float, Ge(0)]
 
 

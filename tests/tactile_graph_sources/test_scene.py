@@ -1,10 +1,11 @@
 """Scenes by name, from a file or from a mapping."""
 
 import math
+from pathlib import Path
 
 import pytest
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import TactileGraphError, UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph.wires import Circle, Polygon, Rectangle
 from tactile_graph_pads.records import RecordError
@@ -132,3 +133,14 @@ def test_given_corners_come_to_lie_with_their_centroid_at_the_place():
 def test_stacked_weights_add_to_the_object():
     assert Disc(weight_g=100.0, radius_cm=1.0, stacked_g=(50.0, 25.0)).total_g == 175.0
     assert Scene().group(0) == ()
+
+
+def test_a_polygon_of_absurd_size_is_refused(tmp_path: Path) -> None:
+    """Its area would be no number that is finite."""
+    path = tmp_path / "a.yaml"
+    path.write_text(
+        "scene: a\nobjects:\n"
+        "  - [{shape: polygon, name: p, weight_g: 475, sides: 5, radius_cm: 1e308}]\n"
+    )
+    with pytest.raises(TactileGraphError, match="radius_cm"):
+        load_scene(str(path))

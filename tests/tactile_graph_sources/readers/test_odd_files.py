@@ -64,7 +64,7 @@ def test_an_archive_of_nearly_nothing_is_refused_before_it_is_unpacked(tmp_path:
         np.lib.format.write_array_header_1_0(member, shape)
         for _ in range(300):
             member.write(bytes(8 * 400 * 400))
-    with pytest.raises(DataError, match=r"unpacks to 384 MB, \d+ times what it is packed"):
+    with pytest.raises(DataError, match=r"unpacks to 384 MB, \d+ times what is packed"):
         next(recording(path=path, report=Report()))
 
 
@@ -81,3 +81,13 @@ def test_a_pitch_that_no_pad_has_is_refused(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", values=np.ones((2, 3, 3)), pitch_cm=np.array([1e300, 1e300]))
     with pytest.raises(DataError, match=r"a pitch of 1e\+300 x 1e\+300 cm; allowed are 1e-06 to"):
         next(recording(path=tmp_path / "a.npz", report=Report()))
+
+
+@pytest.mark.parametrize("between", ["\n", "\n\n"])
+def test_lines_that_are_all_alike_and_count_up_are_readings(tmp_path: Path, between: str) -> None:
+    """Not one of them is left if they are taken for a header that comes again."""
+    path = tmp_path / "a.csv"
+    path.write_text(between.join(["1,2,3,4"] * 6) + "\n")
+    frames = list(recording(path=path, report=Report(), rows=2, columns=2))
+    assert len(frames) == 6
+    assert {tuple(f.image.values.ravel()) for f in frames} == {(1.0, 2.0, 3.0, 4.0)}

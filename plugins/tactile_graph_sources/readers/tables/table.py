@@ -223,9 +223,10 @@ def table_of(
     if len(names) == width:
         header = tuple(names)
     if not header and len(full) > 1 and _is_numbered(full[0][1]):
-        header, header_line = tuple(full[0][1]), lines[start]
-        full = [(k, f) for k, f in full if lines[k] != header_line]
-        start = full[0][0]
+        others = [(k, f) for k, f in full if lines[k] != lines[start]]
+        if others:  # numbers that never change are readings
+            header, header_line = tuple(full[0][1]), lines[start]
+            full, start = others, others[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     numbers = as_numbers([[_number(t) for t in f] for f in sample])
     words = [line for line in lines[:start] if not is_blank(line)]
