@@ -1,0 +1,230 @@
+"""One frame before and after each step: the pipeline that shows it, its picture, its cost.
+
+A step is shown as `examples.yaml` beside this file has it, else in the shortest shipped pipeline
+that has it at its top. Pictures and costs are kept in a folder under a digest of all they hang on,
+so that a site is built anew in a fraction of the time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import statistics
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from functools import cache
+from itertools import islice
+from pathlib import Path
+
+import yaml
+
+from tactile_graph import Pipeline, Result, TactileGraphError, load, loads
+from tactile_graph.draw.display import is_picture
+from tactile_graph.draw.strip import figure_bytes, strip_figure
+from tactile_graph.inspect import FRAME, NO_VALUE, Node
+from tactile_graph.plugins.registry import Registry
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+MOST_FRAMES = 9
+MOST_INPUTS = 3
+LONGEST_S = 0.25
+"""How long the cost of a step is measured, beyond one round of its frames."""
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """Where a step is shown.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    node : str
+        The node of the step.
+    shipped : bool
+        Whether the pipeline comes with the project, or was written for this page.
+    """
+
+    pipeline: Pipeline
+    node: str
+    shipped: bool
+
+    @property
+    def inputs(self) -> list[str]:
+        """The names of what the step reads, the frame's image for the frame."""
+        node = self.pipeline.nodes[self.node]
+        read = [ref for b in node.inputs for ref in b.refs] + list(node.choices)
+        names = [FRAME if ref.node == FRAME else str(ref) for ref in read]
+        return list(dict.fromkeys(names))[:MOST_INPUTS]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a demonstration came to.
+
+    Parameters
+    ----------
+    svg : str
+        The picture; empty where nothing has a place on the pad.
+    cost_us : float
+        Median time of the node over the frames, in µs.
+    rows, columns : int
+        The frame's.
+    frame : int
+        Number of the frame drawn.
+    note : str
+        Why there is no picture, in words.
+    """
+
+    svg: str
+    cost_us: float
+    rows: int
+    columns: int
+    frame: int
+    note: str = ""
+
+
+@cache
+def examples() -> dict[str, dict[str, object]]:
+    """Return what is written by hand, by the step's name."""
+    found: dict[str, dict[str, object]] = yaml.safe_load((HERE / "examples.yaml").read_text("utf-8"))
+    return found
+
+
+@cache
+def shipped(registry: Registry) -> dict[str, Pipeline]:
+    """Return every pipeline on offer, by name."""
+    return {name: load(name) for name in registry.names("pipelines")}
+
+
+def demonstration(registry: Registry, step: str) -> Demonstration | str:
+    """Return where a step is shown, or why it is not, in a line."""
+    told = examples().get(step)
+    if told is not None:
+        return str(told["why_not"]) if "why_not" in told else _by_hand(step, told)
+    uses = [
+        (len(p.nodes), name, node.name)
+        for name, p in shipped(registry).items()
+        for node in p.nodes.values()
+        if _is(node, step)
+    ]
+    if not uses:
+        raise LookupError(f"step {step!r} stands in no pipeline: show it in {HERE}/examples.yaml")
+    _, name, node = min(uses)
+    return Demonstration(shipped(registry)[name], node, True)
+
+
+def _is(node: Node, step: str) -> bool:
+    return node.signature is not None and node.signature.name == step and "/" not in node.name
+
+
+def _by_hand(step: str, told: dict[str, object]) -> Demonstration:
+    nodes = told["nodes"]
+    assert isinstance(nodes, dict)
+    last = list(nodes)[-1]
+    source = told.get("source", {"step": "sample", "with": {"name": "discs"}})
+    text = f"pipeline: {step.replace('_', '-')}-shown\nsource: {_flow(source)}\nnodes:\n"
+    text += "".join(f"  {name}: {_flow(body)}\n" for name, body in nodes.items())
+    return Demonstration(loads(f"{text}outputs: [{last}]\n", f"example of {step}"), last, False)
+
+
+def _flow(body: object) -> str:
+    return yaml.safe_dump(body, default_flow_style=True, width=10_000, sort_keys=False).strip()
+
+
+def shown(found: Demonstration, kept: Path) -> Shown:
+    """Return picture and cost of a demonstration, from the folder where they are kept if there."""
+    signature = found.pipeline.nodes[found.node].signature
+    module = "" if signature is None else signature.target.__module__
+    parts = (found.pipeline.text, found.node, module.partition(".")[0])
+    path = kept / f"{_digest(parts)}.json"
+    if path.is_file():
+        return Shown(**json.loads(path.read_text("utf-8")))
+    made = _show(found)
+    kept.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(asdict(made)), "utf-8")
+    return made
+
+
+def strip_of(pipeline: Pipeline, kept: Path) -> Shown:
+    """Return the first frame of a pipeline with all its outputs, node by node, and what it costs."""
+    path = kept / f"{_digest((pipeline.text, 'strip', ''))}.json"
+    if path.is_file():
+        return Shown(**json.loads(path.read_text("utf-8")))
+    results = list(islice(pipeline.stream(), MOST_FRAMES))
+    drawn = next((r for r in results if r.ok and len(r) == len(pipeline.outputs)), results[-1])
+    costs = [sum(r.times_us.values()) for r in _rounds(pipeline, list(pipeline.outputs))]
+    svg = figure_bytes(strip_figure([drawn]), "svg").decode()
+    image = drawn.frame.image
+    made = Shown(svg, statistics.median(costs), image.rows, image.columns, drawn.frame.index)
+    kept.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(asdict(made)), "utf-8")
+    return made
+
+
+def _show(found: Demonstration) -> Shown:
+    results = list(islice(found.pipeline.stream(only=[found.node]), MOST_FRAMES))
+    drawn = _best(results, found)
+    image = drawn.frame.image
+    if image.rows * image.columns == 0:
+        raise LookupError(f"{found.pipeline.name}: no cells to show")
+    times = [
+        r.times_us[found.node]
+        for r in _rounds(found.pipeline, [found.node])
+        if found.node in r.times_us
+    ]
+    value = drawn.outcome(found.node)
+    seen = value.__class__ not in NO_VALUE and is_picture(value)
+    names = list(dict.fromkeys([*found.inputs, found.node]))
+    svg = figure_bytes(strip_figure([drawn], names), "svg").decode()
+    note = "" if seen else "What comes out has no place on the pad: it stands in words."
+    return Shown(svg, statistics.median(times), image.rows, image.columns, drawn.frame.index, note)
+
+
+def _best(results: list[Result], found: Demonstration) -> Result:
+    """Return the first frame in which the node has a value; of a stateful one the last."""
+    valued = [r for r in results if r.outcome(found.node).__class__ not in NO_VALUE]
+    if not valued:
+        raise LookupError(
+            f"{found.pipeline.name}: node {found.node!r} has no value: {results[-1].explain()}"
+        )
+    return valued[-1 if found.pipeline.nodes[found.node].stateful else 0]
+
+
+def _rounds(pipeline: Pipeline, only: list[str]) -> Iterator[Result]:
+    """Yield results of the pipeline's frames, again and again for a while, the first round not."""
+    frames = list(islice(pipeline.frames(), MOST_FRAMES))
+    runner = pipeline.runner(only)
+    for frame in frames:
+        runner(frame)
+    start = time.perf_counter()
+    yield from _timed(runner(frame) for frame in frames)
+    while time.perf_counter() - start < LONGEST_S:
+        yield from _timed(runner(frame) for frame in frames)
+
+
+def _timed(results: Iterable[Result]) -> Iterator[Result]:
+    return (r for r in results if r.times_us)
+
+
+@cache
+def _code(package: str) -> str:
+    """Return a digest of what draws, and of a family's own code (the wires are the core's)."""
+    digest = hashlib.sha256()
+    places = [ROOT / "tactile_graph" / "draw", ROOT / "tactile_graph" / "wires", HERE]
+    places += [ROOT / "plugins" / package] if package else [ROOT / "plugins"]
+    for place in places:
+        for path in sorted(place.rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _digest(parts: tuple[str, str, str]) -> str:
+    text = "\0".join((*parts, _code(parts[2])))
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def trouble(step: str, error: TactileGraphError | LookupError) -> str:
+    """Return what a builder is told of a step that cannot be shown."""
+    return f"catalogue: step {step!r} cannot be shown: {error}"
