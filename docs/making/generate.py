@@ -19,9 +19,8 @@ def generate(into: Path = INTO, kept: Path = KEPT) -> str:
     from making.step_pages import write_steps
     from making.tutorial_pictures import write_pictures
 
-    from tactile_graph.plugins.registry import Selection, installed
+    from tactile_graph.plugins.registry import installed
 
-    del Selection
     registry = installed()
     n_steps = write_steps(registry, into / "steps", kept)
     n_pipelines = write_pipelines(registry, into, kept)

@@ -51,7 +51,7 @@ class Entry:
     @property
     def cost(self) -> str:
         """In words."""
-        return "" if self.seen is None else f"{_short(self.seen.cost_us)} µs"
+        return f"{_short(self.seen.cost_us)} µs" if self.seen and self.seen.cost_us else ""
 
 
 def _short(value: float) -> str:
@@ -133,11 +133,13 @@ def _picture(entry: Entry) -> str:
     alt = f"One frame before and after {entry.name}"
     grid = f"{seen.rows} × {seen.columns} cells"
     note = f" {seen.note}" if seen.note else ""
+    head = f"```{{figure}} {entry.name}.svg\n:alt: {alt}\n\n"
+    if not entry.cost:
+        return f"{head}What it gives: frame {seen.frame} of {where}.\n```\n"
     return (
-        f"```{{figure}} {entry.name}.svg\n:alt: {alt}\n\n"
-        f"What it reads, left, and what it gives, right: frame {seen.frame} of {where}.{note}\n```\n\n"
-        f"**Cost**: {entry.cost} for a frame of {grid}, "
-        "measured [where this page was built](../index.md).\n"
+        f"{head}What it reads, left, and what it gives, right: frame {seen.frame} of {where}.{note}"
+        f"\n```\n\n**Cost**: {entry.cost} for a frame of {grid}, "
+        "measured [where this page was built](../index.md#what-each-costs).\n"
     )
 
 
@@ -218,7 +220,7 @@ def _index(made: list[Entry], families: list[str]) -> str:
     costs = [
         (f"[{e.name}]({e.family}/{e.name}.md)", e.cost, f"{e.seen.rows} × {e.seen.columns}")
         for e in dear
-        if e.seen is not None
+        if e.seen is not None and e.cost
     ]
     parts = [f"# All {len(made)} steps\n", table(("family", "steps"), rows)]
     parts.append(f"## What each costs\n\n{MEASURED} Dearest first.\n")
