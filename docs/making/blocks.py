@@ -73,12 +73,12 @@ def run_blocks(blocks: Iterable[Block], folder: Path) -> list[str]:
             continue
         try:
             printed = _run(block, folder, space)
-        except Failure as error:
+        except BlockError as error:
             troubles.append(f"{block.place}: {error}")
     return troubles
 
 
-class Failure(Exception):
+class BlockError(Exception):
     """A block does not do what a reader expects; told in words."""
 
 
@@ -103,7 +103,7 @@ def _shell(text: str, folder: Path) -> str:
         cwd=folder, env=environment, capture_output=True, text=True, timeout=LONGEST_S, check=False,
     )  # fmt: skip
     if done.returncode:
-        raise Failure(f"ends with {done.returncode}:\n{text}{done.stdout}{done.stderr}")
+        raise BlockError(f"ends with {done.returncode}:\n{text}{done.stdout}{done.stderr}")
     return done.stdout + done.stderr
 
 
@@ -112,7 +112,7 @@ def _python(block: Block, folder: Path, space: dict[str, object]) -> str:
         try:
             exec(compile(block.text, block.place, "exec"), space)
         except Exception:
-            raise Failure(f"fails:\n{traceback.format_exc(limit=-1)}") from None
+            raise BlockError(f"fails:\n{traceback.format_exc(limit=-1)}") from None
     return out.getvalue()
 
 
@@ -120,7 +120,7 @@ def _yaml(block: Block, folder: Path) -> str:
     named = FILE.match(block.first)
     if named is None:
         if not block.first.startswith(PART):
-            raise Failure("says neither '# name.yaml' nor '# part of …' nor '# not run: …'")
+            raise BlockError("says neither '# name.yaml' nor '# part of …' nor '# not run: …'")
         yaml.safe_load(block.text)
         return ""
     (folder / named[1]).write_text(block.text, "utf-8")

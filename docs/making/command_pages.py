@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import click
-from making.markdown import code, fence, prose, table, toctree, write
 
+from making.markdown import code, fence, prose, table, toctree, write
 from tactile_graph.cli import cli
 
 

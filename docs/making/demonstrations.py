@@ -87,7 +87,8 @@ class Shown:
 @cache
 def examples() -> dict[str, dict[str, object]]:
     """Return what is written by hand, by the step's name."""
-    found: dict[str, dict[str, object]] = yaml.safe_load((HERE / "examples.yaml").read_text("utf-8"))
+    text = (HERE / "examples.yaml").read_text("utf-8")
+    found: dict[str, dict[str, object]] = yaml.safe_load(text)
     return found
 
 
@@ -147,7 +148,7 @@ def shown(found: Demonstration, kept: Path) -> Shown:
 
 
 def strip_of(pipeline: Pipeline, kept: Path) -> Shown:
-    """Return the first frame of a pipeline with all its outputs, node by node, and what it costs."""
+    """Return the first frame with all outputs, node by node, and what a pipeline costs."""
     path = kept / f"{_digest((pipeline.text, 'strip', ''))}.json"
     if path.is_file():
         return Shown(**json.loads(path.read_text("utf-8")))

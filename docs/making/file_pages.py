@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from making.markdown import fence, toctree, write
-
 from tactile_graph.cli.file_kinds import file_kind
 from tactile_graph.cli.pages.key_tables import Key, KeyTable, key_tables
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.record_schema import record_schema
 
 KINDS = {
-    "pad": "A pad's physics, for `simulate`, calibration and the likelihood ([what for](../../pad.md)).",
+    "pad": "A pad's physics, for `simulate`, the likelihood ([what for](../../pad.md)).",
     "preset": "How a kit on a serial port is read ([what for](../../devices.md)).",
     "scene": "What lies on a simulated pad: `--source simulate --with scene=my-scene.yaml`.",
 }
@@ -22,9 +21,10 @@ def write_files(registry: Registry, into: Path) -> int:
     """Write a page a kind of file into a folder, and return how many kinds there are."""
     for name in KINDS:
         write(into / "files" / f"{name}.md", page(registry, name))
-    about = "[What such files are for](../../files.md).\n"
-    pages = toctree(KINDS)
-    write(into / "files" / "index.md", f"# Every key of pad, preset and scene files\n\n{about}\n{pages}")
+    head = "# Every key of pad, preset and scene files"
+    about = "[What such files are for](../../files.md)."
+    text = "\n\n".join([head, about, toctree(KINDS)])
+    write(into / "files" / "index.md", text)
     return len(KINDS)
 
 

@@ -18,7 +18,6 @@ def generate(into: Path = INTO, kept: Path = KEPT) -> str:
     from making.pipeline_pages import write_pipelines
     from making.step_pages import write_steps
     from making.tutorial_pictures import write_pictures
-
     from tactile_graph.plugins.registry import installed
 
     registry = installed()

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 _CODE = re.compile(r"``(.+?)``|`([^`]+)`", re.S)
-_RST = re.compile(r"^\.\. (?:math|code-block)::(.*)$", re.M)
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -19,6 +18,17 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     lines = ["| " + " | ".join(heads[i] for i in kept) + " |", "|" + "---|" * len(kept)]
     lines += ["| " + " | ".join(_cell(row[i]) for i in kept) + " |" for row in given]
     return "\n".join(lines) + "\n"
+
+
+def facts(rows: Iterable[tuple[str, str]]) -> str:
+    """Return a table without heads: what it is about, and what there is to say."""
+    lines = "\n".join(f"* - {name}\n  - {' '.join(text.split())}" for name, text in rows)
+    return f"```{{list-table}}\n:stub-columns: 1\n\n{lines}\n```\n"
+
+
+def wide(picture: str, alt: str) -> str:
+    """Return a picture that on a narrow screen is moved along, not made too small to read."""
+    return f"```{{figure}} {picture}\n:alt: {alt}\n:figclass: wide\n```\n"
 
 
 def _cell(text: str) -> str:
@@ -60,11 +70,9 @@ def fence(language: str, text: str) -> str:
     return f"```{language}\n{text.rstrip()}\n```\n"
 
 
-def toctree(pages: Iterable[str], *, hidden: bool = False, caption: str = "", depth: int = 1) -> str:
+def toctree(pages: Iterable[str], *, hidden: bool = False) -> str:
     """Return a table of contents of pages."""
-    options = [f":maxdepth: {depth}"]
-    options += [":hidden:"] if hidden else []
-    options += [f":caption: {caption}"] if caption else []
+    options = [":maxdepth: 1", *([":hidden:"] if hidden else [])]
     return "\n".join(["```{toctree}", *options, "", *pages, "```"]) + "\n"
 
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from making.demonstrations import Shown, shipped, strip_of
-from making.markdown import code, fence, prose, table, toctree, write
-
+from making.markdown import code, facts, fence, prose, table, toctree, wide, write
 from tactile_graph import Pipeline
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.inspect import public_fields
@@ -33,7 +32,7 @@ def write_pipelines(registry: Registry, into: Path, kept: Path) -> int:
         folder = into / "pipelines"
         write(folder / f"{name}-graph.svg", pipeline.svg())
         if isinstance(seen, Shown):
-            write(folder / f"{name}.svg", seen.svg)
+            write(folder / f"{name}-frame.svg", seen.svg)
             costs[name] = f"{seen.cost_us:,.0f} µs"
         page = _page(registry, pipeline, grown.get(name, []), seen)
         write(folder / f"{name}.md", "\n".join(page))
@@ -53,14 +52,14 @@ def _page(
 ) -> Iterator[str]:
     name = pipeline.name
     yield f"# {name}\n\n{prose(pipeline.about)}.\n"
-    yield table(("", ""), _facts(registry, pipeline, grown, seen))
+    yield facts(_facts(registry, pipeline, grown, seen))
     yield "## Graph\n"
-    yield f"```{{image}} {name}-graph.svg\n:alt: The graph of {name}\n```\n"
+    yield wide(f"{name}-graph.svg", f"The graph of {name}")
     yield "## One frame, node by node\n"
     if isinstance(seen, str):
         yield f"**No picture.** {seen}\n"
     else:
-        yield f"```{{image}} {name}.svg\n:alt: A frame through {name}, node by node\n```\n"
+        yield wide(f"{name}-frame.svg", f"A frame through {name}, node by node")
     yield "## Run it\n"
     yield fence("sh", f"tactile-graph run {name}\ntactile-graph run {name} recording.csv")
     yield f"## Its file\n\n{fence('yaml', pipeline.text)}"
@@ -85,8 +84,8 @@ def _facts(
         yield "frames, unless told otherwise", f"[{step}](../steps/sources/{step}.md)"
     yield "steps", ", ".join(_steps(registry, pipeline))
     if isinstance(seen, Shown):
-        yield "cost", f"{seen.cost_us:,.0f} µs for a frame of {seen.rows} × {seen.columns} cells, " \
-                      "measured where this page was built"  # fmt: skip
+        where = f"for a frame of {seen.rows} × {seen.columns} cells"
+        yield "cost", f"{seen.cost_us:,.0f} µs {where}, measured where this page was built"
 
 
 def _steps(registry: Registry, pipeline: Pipeline) -> list[str]:
@@ -116,7 +115,9 @@ def _index(
         "the median time of all its nodes for a frame of its own source, on the machine that built "
         "these pages.\n"
     )
-    return "\n".join([head, table(("pipeline", "cost", "about"), rows), toctree(found, hidden=True)])
+    return "\n".join(
+        [head, table(("pipeline", "cost", "about"), rows), toctree(found, hidden=True)]
+    )
 
 
 def node_text(pipeline: Pipeline, node: str) -> str:

@@ -1,4 +1,4 @@
-"""The catalogue of steps: a page a step, a page a family, of docstrings, signatures and pictures."""
+"""The catalogue of steps: pages of docstrings, signatures and pictures, a page a family."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from making.demonstrations import Demonstration, Shown, demonstration, shown, shipped
+from making.demonstrations import Demonstration, Shown, demonstration, shipped, shown
 from making.markdown import code, fence, prose, table, toctree, write
-
 from tactile_graph.cli.pages.step_page import in_yaml, made_up_use, ranges
 from tactile_graph.docstring import parameters, sections
 from tactile_graph.inspect import public_fields
@@ -29,8 +28,8 @@ WORDS = {
     "tracking": "Tracking: objects from frame to frame",
 }
 MEASURED = (
-    "Costs are medians measured on the machine that built these pages, compiled kernels, one thread,"
-    " on frames of 16 × 16 cells unless a page says otherwise."
+    "Costs are medians measured on the machine that built these pages, compiled kernels, one "
+    "thread, on frames of 16 × 16 cells unless a page says otherwise."
 )
 
 
@@ -77,7 +76,7 @@ def write_steps(registry: Registry, into: Path, kept: Path) -> int:
     for entry in made:
         folder = into / entry.family
         if entry.seen is not None:
-            write(folder / f"{entry.name}.svg", entry.seen.svg)
+            write(folder / f"{entry.name}-shown.svg", entry.seen.svg)
         write(folder / f"{entry.name}.md", "\n".join(_page(entry, uses.get(entry.name, []))))
     for family in families:
         write(into / family / "index.md", _family(family, [e for e in made if e.family == family]))
@@ -116,7 +115,8 @@ def _page(entry: Entry, uses: list[str]) -> Iterator[str]:
         yield table(("setting", "type", "default", "allowed", "meaning"), _settings(signature))
     for title in ("Notes", "Raises"):
         if title in doc:
-            yield f"## {title}\n\n{_listed(doc[title]) if title == 'Raises' else prose(doc[title])}\n"
+            told = _listed(doc[title]) if title == "Raises" else prose(doc[title])
+            yield f"## {title}\n\n{told}\n"
     yield f"## In a pipeline\n\n{_use(entry)}"
     if uses:
         links = ", ".join(f"[{name}](../../pipelines/{name}.md)" for name in uses)
@@ -133,11 +133,11 @@ def _picture(entry: Entry) -> str:
     alt = f"One frame before and after {entry.name}"
     grid = f"{seen.rows} × {seen.columns} cells"
     note = f" {seen.note}" if seen.note else ""
-    head = f"```{{figure}} {entry.name}.svg\n:alt: {alt}\n\n"
+    head = f"```{{figure}} {entry.name}-shown.svg\n:alt: {alt}\n\n"
     if not entry.cost:
-        return f"{head}What it gives: frame {seen.frame} of {where}.\n```\n"
+        return f"{head}What it gives: frame {seen.frame}, {where}.\n```\n"
     return (
-        f"{head}What it reads, left, and what it gives, right: frame {seen.frame} of {where}.{note}"
+        f"{head}What it reads, left, and what it gives, right: frame {seen.frame}, {where}.{note}"
         f"\n```\n\n**Cost**: {entry.cost} for a frame of {grid}, "
         "measured [where this page was built](../index.md#what-each-costs).\n"
     )

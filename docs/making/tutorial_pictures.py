@@ -13,7 +13,7 @@ from making.demonstrations import code_of
 
 DOCS = Path(__file__).parents[1]
 PAGE = DOCS / "tutorial" / "index.md"
-SHOWN = re.compile(r"\]\(\.\./catalogue/tutorial/([\w.-]+)\)")
+SHOWN = re.compile(r"\.\./catalogue/tutorial/([\w.-]+)")
 
 
 def write_pictures(into: Path, kept: Path) -> int:
