@@ -6,6 +6,7 @@ import re
 import shlex
 import sys
 from inspect import signature
+from itertools import takewhile
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -58,7 +59,7 @@ def commands(page: Path) -> list[list[str]]:
         for part in line.split("&&"):
             words = shlex.split(part.removeprefix("$ "), comments=True)
             if words and words[0].endswith("tactile-graph"):
-                found.append(words[1:])
+                found.append(list(takewhile(lambda w: w not in (">", "|", "||", "&"), words[1:])))
     return found
 
 

@@ -55,7 +55,9 @@ def test_an_exception_is_told_with_its_line(run: Run) -> None:
 
 
 def test_a_named_file_is_written_and_checked(run: Run, tmp_path: Path) -> None:
-    text = "pipeline: p\nnodes:\n  m: {step: thershold, in: frame, with: {level: 1}}\noutputs: [m]\n"
+    text = (
+        "pipeline: p\nnodes:\n  m: {step: thershold, in: frame, with: {level: 1}}\noutputs: [m]\n"
+    )
     (told,) = run(f"```yaml\n# mine.yaml\n{text}```\n")
     assert "did you mean 'threshold'" in told
     assert run(f"```yaml\n# mine.yaml\n{text.replace('thershold', 'threshold')}```\n") == []
