@@ -122,7 +122,7 @@ class FootprintByOrder:
         touch = readings._replace(logs=np.zeros(readings.logs.shape))
         for model in self._touch:
             try:
-                rough = model.posterior_of(touch, start)
+                rough = model.normal_of(touch, start)
             except Degenerate as why:
                 reason = why
                 continue

@@ -151,6 +151,19 @@ class Model:
         large = readings.states.size > LARGE_PAD
         return self._likeliest(readings, point, (0, 1) if large else (NEAR, 0), None)
 
+    def normal_of(self, readings: Readings, start: Start = None) -> Posterior:
+        """Return the posterior as if it were normal around its mode.
+
+        Raises
+        ------
+        Degenerate
+            If nothing is touched, or no outline of this kind is possible.
+        """
+        top = self._likeliest(readings, start, (0, ATTEMPTS), None)
+        if top.evidence == -math.inf:
+            raise self.impossible(readings)
+        return self.normal_around(top, len(top.mode.p))
+
     def _likeliest(
         self, readings: Readings, start: Start, attempts: tuple[int, int], known: Mode | None
     ) -> Likeliest:
