@@ -43,6 +43,7 @@ html_theme_options = {
     "navbar_end": ["theme-switcher"],
     "secondary_sidebar_items": ["page-toc"],
 }
+html_sidebars = {page: [] for page in ("tutorial/index", "glossary")}  # nothing is below them
 html_show_sourcelink = False
 html_copy_source = False
 # Addresses beyond this site are not asked for: the build needs no network.
