@@ -48,6 +48,7 @@ def row(name: str, arguments: list[str], rounds: int) -> None:
     """Time a command on an empty cache and on a full one, and print it as a row."""
     with tempfile.TemporaryDirectory() as cache:
         empty = cost(arguments, cache)
+        cost(["prepare", arguments[1]], cache)  # waits for what is still being compiled
         warm = [cost(arguments, cache) for _ in range(rounds)]
     wall_s, processor_s = (statistics.median(column) for column in zip(*warm, strict=True))
     print(

@@ -28,19 +28,23 @@ at most; loops that take much longer have a reference beside them, see `compiled
 
 P = ParamSpec("P")
 R = TypeVar("R")
+Answer: TypeAlias = "Callable[[Kernel[Any, Any], tuple[Any, ...]], Any]"
 Note: TypeAlias = "Callable[[Kernel[Any, Any], tuple[Any, ...]], None]"
 
 
 class _Running(threading.local):
-    """Whether this thread is within a kernel's plain loops."""
+    """Whether this thread is within a kernel's plain loops, and if in place of machine code."""
 
     plain_loops = False
+    as_machine_code = False
 
 
 _running = _Running()
 _kernels: list[Kernel[Any, Any]] = []
 _warm = False
 _notes: list[Note] = []
+answering: list[Answer] = []
+"""Who answers kernels whose machine code may not be on disk yet; see `meanwhile`."""
 
 
 def mode() -> str:
@@ -105,19 +109,19 @@ class Kernel(Generic[P, R]):
         if _notes:
             self.call: Callable[..., R] = self._noted
         elif wanted == "plain":
-            self.call = self._plain
+            self.call = self.plain
         elif wanted == "compiled" or _warm or not self.plain_first:
             self.call = self._first_compiled
         else:
             self.call = self._counted
 
     def _counted(self, *args: Any) -> R:
-        return self._first_compiled(*args) if self._enough_to_do(args) else self._plain(*args)
+        return self._first_compiled(*args) if self._enough_to_do(args) else self.plain(*args)
 
     def _enough_to_do(self, args: tuple[Any, ...]) -> bool:
         """Count a call; return whether it is time for machine code."""
         self._calls_left -= 1
-        self._elements_left -= _n_elements(args)
+        self._elements_left -= n_elements(args)
         return self._calls_left < 0 or self._elements_left < 0
 
     def _noted(self, *args: Any) -> R:
@@ -125,23 +129,30 @@ class Kernel(Generic[P, R]):
         asked = not _running.plain_loops
         if asked and (_warm or not self.plain_first or self._enough_to_do(args)):
             _notes[-1](self, args)
-        return self._plain(*args)
+        return self.plain(*args)
 
-    def _plain(self, *args: Any) -> R:
+    def plain(self, *args: Any) -> R:
+        """Answer by plain code: the reference, or the loops as machine code would run them."""
+        if _running.as_machine_code:
+            return self.loops(*args)
         if self.reference is not self.loops:
             return self.reference(*args)  # type: ignore[call-arg]
         if _running.plain_loops:  # within others': a number's kind decides what dividing by 0 does
             return self.loops(*args)
         import numpy as np  # only now: a command's help must not pay for it
 
-        _running.plain_loops = True
+        _running.plain_loops, _running.as_machine_code = True, not self.plain_first
         try:
             with np.errstate(all="ignore"):
                 return cast(R, _unboxed(self.loops(*args)))
         finally:
-            _running.plain_loops = False
+            _running.plain_loops = _running.as_machine_code = False
 
     def _first_compiled(self, *args: Any) -> R:
+        if answering and not self.plain_first:
+            if _running.plain_loops:
+                return self.plain(*args)
+            return cast(R, answering[-1](self, args))
         self.call = self.compiled
         return self.call(*args)
 
@@ -164,21 +175,22 @@ class Kernel(Generic[P, R]):
         return self._callee.numba_type()
 
 
-def _n_elements(value: object) -> int:
+def n_elements(value: object) -> int:
     """Return how many numbers an argument holds: of an array, of records of them, or one."""
     if isinstance(value, tuple):
-        return sum(map(_n_elements, value))
+        return sum(map(n_elements, value))
     return int(getattr(value, "size", 1))
 
 
-def _unboxed(answer: object) -> object:
+def _unboxed(answer: Any) -> Any:
     """Return an answer of plain loops with Python's own numbers, as machine code gives them."""
     import numpy as np
 
     if isinstance(answer, np.generic):
         return answer.item()
-    if type(answer) is tuple:
-        return tuple(map(_unboxed, answer))
+    if isinstance(answer, tuple):
+        items = map(_unboxed, answer)
+        return tuple(items) if type(answer) is tuple else type(answer)(*items)
     return answer
 
 

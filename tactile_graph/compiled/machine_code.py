@@ -46,6 +46,14 @@ def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> 
         numba.njit(cache=True, error_model="numpy")(loops).compile(arguments)
 
 
+def on_disk(entry: Any, arguments: tuple[types.Type, ...]) -> bool:
+    """Return whether an entry's machine code for types of arguments is there to be loaded.
+
+    Under a version of numba that this was not tried with nobody knows, and it is as if it were.
+    """
+    return entry.on_disk(arguments) if whole() else True
+
+
 class Callee:
     """``loops`` as other compiled code calls them.
 

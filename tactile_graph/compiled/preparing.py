@@ -122,6 +122,19 @@ class Preparing:
             if _tellers:
                 _tellers[-1](None)
 
+    def meanwhile(self, name: str, since_s: float) -> None:
+        """Note that plain code has answered while another process compiles the kernel ``name``."""
+        if _tellers and since_s > WORTH_A_LINE_S:
+            _tellers[-1](
+                f"plain code answers while another process compiles {name}, "
+                f"once on this machine, {since_s:.0f} s"
+            )
+
+    def all_told(self) -> None:
+        """Take the line away."""
+        if _tellers:
+            _tellers[-1](None)
+
     def all_together(self) -> None:
         """Note that the code of all is optimised and made into machine code."""
         self._say(f"{self._total} kernels into one")

@@ -15,7 +15,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import CodeLibrary, JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher
+from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import rtsys
 
 from tactile_graph.compiled.numbas_own import made_parts
@@ -233,6 +233,13 @@ class EntryCache(FunctionCache):
             return self._on_disk(sig, target_context)  # another may have made it just now
         return found
 
+    def holds(self, args: tuple[Any, ...]) -> bool:
+        """Return whether the code for types of arguments is there, without loading it."""
+        key = self._index_key(args, cpu_target.target_context.codegen())
+        with self._guard_against_spurious_io_errors():
+            return key in self._cache_file._load_index()
+        return False
+
     def _on_disk(self, sig: Any, target_context: Any) -> CompileResult | None:
         with self._guard_against_spurious_io_errors():
             found: CompileResult | None = self._load_overload(sig, target_context)
@@ -277,6 +284,10 @@ class EntryDispatcher(CPUDispatcher):
             return super().compile(sig)
         finally:
             self._cache.let_go()
+
+    def on_disk(self, args: tuple[Any, ...]) -> bool:
+        """Return whether the machine code for types of arguments is there to be loaded."""
+        return self._cache.holds(args)
 
     def compile_unless_claimed(self, sig: Any) -> None:
         """Make the machine code for a signature, unless another process is at these loops."""

@@ -48,7 +48,7 @@ def _add(chance: float, happened: bool, sums: Values) -> None:
     yes, no = math.log(chance), math.log(1.0 - chance)
     sums[0] += yes if happened else no
     sums[1] += chance * yes + (1.0 - chance) * no
-    sums[2] += chance * (1.0 - chance) * (yes - no) ** 2
+    sums[2] += chance * (1.0 - chance) * (yes - no) * (yes - no)
 
 
 @compiled_as_is

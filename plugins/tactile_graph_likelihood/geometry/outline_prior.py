@@ -86,8 +86,10 @@ def _log_prior_free(corners: int, p: Values, prior: Values) -> float:
         x, y = p[a] - prior[LEFT], p[a + 1] - prior[TOP]
         if not (0.0 <= x <= prior[WIDTH] and 0.0 <= y <= prior[HEIGHT]):
             return -math.inf
-    log_factorial = math.lgamma(corners + 1.0)
-    log_choices = math.lgamma(2.0 * corners - 1.0) - 2.0 * math.lgamma(float(corners))
+    log_factorial, log_choices = math.log(corners), 0.0
+    for k in range(1, corners):
+        log_factorial += math.log(k)
+        log_choices += math.log((corners - 1 + k) / k)
     area = math.log(prior[WIDTH] * prior[HEIGHT])
     density: float = prior[EXTRA] + 3.0 * log_factorial - 2.0 * log_choices - corners * area
     return density

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
+from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.oval import as_ellipse
 
 Values: TypeAlias = NDArray[np.float64]
@@ -89,7 +90,7 @@ def bounds(kind: int, corners: int, p: Values) -> tuple[float, float, float, flo
         wide = high = p[2]
         if kind != DISC:
             cos, sin = math.cos(p[4]), math.sin(p[4])
-            wide, high = math.hypot(p[2] * cos, p[3] * sin), math.hypot(p[2] * sin, p[3] * cos)
+            wide, high = length(p[2] * cos, p[3] * sin), length(p[2] * sin, p[3] * cos)
         return p[0] - wide, p[1] - high, p[0] + wide, p[1] + high
     if kind == RECTANGLE:
         cos, sin = abs(math.cos(p[4])), abs(math.sin(p[4]))

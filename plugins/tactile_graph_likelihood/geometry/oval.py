@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.lengths import length
 
 ROUND = 1e-3  # d over m: rounder outlines count as this round where d divides
 
@@ -25,7 +26,7 @@ def as_ellipse(p: NDArray[np.float64]) -> NDArray[np.float64]:
     The first half axis is the longer one, its angle in (-pi / 2, pi / 2].
     """
     found = p.copy()
-    d = math.hypot(p[3], p[4])
+    d = length(p[3], p[4])
     found[2], found[3], found[4] = p[2] + d, p[2] - d, 0.5 * math.atan2(p[4], p[3])
     return found
 
@@ -40,7 +41,7 @@ def to_oval(p: NDArray[np.float64]) -> None:
 @compiled_as_is
 def log_stretch(p: NDArray[np.float64]) -> float:
     """Return ln of an ellipse's volume of half axes and angle over that of an oval's numbers."""
-    stretch: float = -math.log(max(math.hypot(p[3], p[4]), ROUND * p[2]))
+    stretch: float = -math.log(max(length(p[3], p[4]), ROUND * p[2]))
     return stretch
 
 

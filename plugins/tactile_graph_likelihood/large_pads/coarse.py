@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import solid, typical_load
 from tactile_graph_likelihood.single.element_terms import (
@@ -33,7 +34,7 @@ UNEVEN, VOID, STRAY = 0.3, 0.03, 0.01  # of blocks: sigma, share of voids, and o
 @compiled_as_is
 def block_of(grid: Values, found: Values) -> int:
     """Return how many elements wide blocks may be that still show what has such moments."""
-    middle, off = 0.5 * (found[3] + found[5]), math.hypot(0.5 * (found[3] - found[5]), found[4])
+    middle, off = 0.5 * (found[3] + found[5]), length(0.5 * (found[3] - found[5]), found[4])
     long = WIDE * math.sqrt(middle + off) / grid[2]
     broad = WIDE * math.sqrt(max(middle - off, 0.0)) / grid[2]
     return max(1, int(min(long / ACROSS, broad / NARROW)))

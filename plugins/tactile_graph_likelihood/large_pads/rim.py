@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import SLIVER, Box
+from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, OVAL, Values, corners_of
 from tactile_graph_likelihood.geometry.oval import as_ellipse
 
@@ -48,7 +49,7 @@ def drawn_as(kind: int, corners: int, p: Values) -> tuple[Values, Values]:
         out[4], out[5], out[6] = 0.0, 1.0, 1.0
     else:
         cos, sin = math.cos(p[4]), -math.sin(p[4])
-        wide, high = math.hypot(p[2] * cos, p[3] * sin), math.hypot(p[2] * sin, p[3] * cos)
+        wide, high = length(p[2] * cos, p[3] * sin), length(p[2] * sin, p[3] * cos)
         out[2], out[3] = wide, high
         out[4] = (p[2] - p[3]) * (p[2] + p[3]) * cos * sin / (wide * wide)
         out[5] = p[2] * p[3] / (wide * wide)

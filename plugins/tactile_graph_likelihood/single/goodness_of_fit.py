@@ -70,7 +70,7 @@ def moments_of_strays(strays: float) -> tuple[float, float]:
     """Return mean and variance of the term of an element on which nothing is expected."""
     stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
     mean = strays * stray + (1.0 - strays) * bare
-    return mean, strays * stray**2 + (1.0 - strays) * bare**2 - mean**2
+    return mean, strays * stray * stray + (1.0 - strays) * bare * bare - mean * mean
 
 
 @compiled_as_is

@@ -13,6 +13,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 
 FREEDOM = 8.0  # of Student's t
 WIDER = 1.3  # a proposal's variance over that of the posterior so far
+HALF_STEP = math.gamma(0.5 * (FREEDOM + 1.0)) / math.gamma(0.5 * FREEDOM)
 KEPT = 0.02  # of the first covariance, added to each later one: it stays invertible
 FEWEST = 3.0  # equal weights per unknown: fewer are tempered before a covariance is taken
 
@@ -22,15 +23,20 @@ def t_density(length: float, unknowns: int) -> float:
     """Return Student's t density at a squared length, over that in its middle."""
     power = round(FREEDOM) + unknowns
     base = 1.0 / (1.0 + length / FREEDOM)
-    found = base ** (power // 2)
-    return found * math.sqrt(base) if power % 2 == 1 else found
+    found = math.sqrt(base) if power % 2 == 1 else 1.0
+    for _ in range(power // 2):
+        found *= base
+    return found
 
 
 @compiled_as_is
 def t_constant(unknowns: int) -> float:
     """Return the logarithm of Student's t density in the middle, of unit scale."""
-    constant = math.lgamma(0.5 * (FREEDOM + unknowns)) - math.lgamma(0.5 * FREEDOM)
-    found: float = constant - 0.5 * unknowns * math.log(FREEDOM * math.pi)
+    odd = unknowns % 2
+    ratio = HALF_STEP if odd == 1 else 1.0
+    for k in range(unknowns // 2):
+        ratio *= 0.5 * (FREEDOM + odd) + k
+    found: float = math.log(ratio) - 0.5 * unknowns * math.log(FREEDOM * math.pi)
     return found
 
 

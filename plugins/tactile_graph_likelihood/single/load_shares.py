@@ -19,6 +19,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, covered
+from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
     ELLIPSE,
@@ -165,13 +166,13 @@ def _distance(kind: int, lines: Values, x: float, y: float) -> tuple[float, floa
             return r, math.sqrt(lines[0, 0] * lines[0, 0] + lines[0, 1] * lines[0, 1])
         slope_x = (a * lines[0, 0] + b * lines[1, 0]) / r
         slope_y = (a * lines[0, 1] + b * lines[1, 1]) / r
-        return r, math.hypot(slope_x, slope_y)
+        return r, length(slope_x, slope_y)
     best, at = -math.inf, 0
     for k in range(lines.shape[0]):
         along = lines[k, 0] * x + lines[k, 1] * y
         if along > best:
             best, at = along, k
-    return max(best, 0.0), math.hypot(lines[at, 0], lines[at, 1])
+    return max(best, 0.0), length(lines[at, 0], lines[at, 1])
 
 
 @compiled_as_is

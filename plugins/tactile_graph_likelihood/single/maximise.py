@@ -126,7 +126,7 @@ def _rooted(matrix: Values, widths: Values, tied: float, damping: float, root: V
         Whether there is any.
     """
     for k in range(matrix.shape[0]):
-        scale = 1.0 if k >= widths.shape[0] else tied / (widths[k] / STEP) ** 2
+        scale = 1.0 if k >= widths.shape[0] else tied * STEP * STEP / (widths[k] * widths[k])
         root[k, k] = matrix[k, k] * (1.0 + damping) + scale
         for m in range(k):
             root[k, m] = matrix[k, m]

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
@@ -115,7 +116,7 @@ def outline_of_moments(
     """
     xx, xy, yy = found[3], found[4], found[5]
     p[0], p[1] = found[1], found[2]
-    middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+    middle, off = 0.5 * (xx + yy), length(0.5 * (xx - yy), xy)
     major, minor = middle + off, max(middle - off, thinnest * middle)
     angle = 0.5 * math.atan2(-2.0 * xy, xx - yy) + turn
     last = 3
@@ -123,7 +124,8 @@ def outline_of_moments(
         p[2] = math.sqrt(4.0 * middle)
     elif kind in (ELLIPSE, OVAL, RECTANGLE):
         spread = 3.0 if kind == RECTANGLE else 4.0
-        along, across = math.cos(turn) ** 2, math.sin(turn) ** 2
+        cos, sin = math.cos(turn), math.sin(turn)
+        along, across = cos * cos, sin * sin
         p[2] = math.sqrt(spread * (major * along + minor * across))
         p[3] = math.sqrt(spread * (major * across + minor * along))
         p[4] = angle

@@ -167,11 +167,12 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
     if a <= 0.0 or b <= 0.0:
         return areas
     cos, sin = math.cos(angle_rad), -math.sin(angle_rad)
-    A = math.hypot(a * cos, b * sin)
-    B = math.hypot(a * sin, b * cos)
-    m = (a - b) * (a + b) * cos * sin / A**2
-    k = a * b / A**2
-    conic, full = _Conic(A, B, m, k, (A / B) ** 2), element_cm**2
+    A = math.sqrt(a * cos * (a * cos) + b * sin * (b * sin))
+    B = math.sqrt(a * sin * (a * sin) + b * cos * (b * cos))
+    m = (a - b) * (a + b) * cos * sin / (A * A)
+    k = a * b / (A * A)
+    stretch = A * A / (B * B)
+    conic, full = _Conic(A, B, m, k, stretch), element_cm * element_cm
     first = max(math.floor(max((x_cm - A - element_cm) / pitch_cm, -1.0)) + 1, 0)
     last = min(math.ceil(min((x_cm + A) / pitch_cm, float(columns))), columns)
     strips = np.empty((4, columns))  # left, right, and the primitive there

@@ -36,12 +36,14 @@ def explain(
     """
     from tactile_graph.cli.arguments import Span
     from tactile_graph.cli.terminal import console
+    from tactile_graph.compiled import answered_meanwhile
     from tactile_graph.draw.tables import result_table
     from tactile_graph.engine.outcome import Failed
 
     span = Span(0, number + 1)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    result = _result(opened, only, seed, number)
+    with answered_meanwhile():
+        result = _result(opened, only, seed, number)
     out = console()
     out.print(_heading(result))
     out.print(result_table(result))

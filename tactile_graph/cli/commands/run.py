@@ -136,6 +136,8 @@ class _Run:
     quantity: str = "raw"
     last_frame_s: float = field(default_factory=time.monotonic)
     error: Exception | None = None
+    compiling: int | None = None
+    """The process that still compiles when the frames are done."""
 
     def go(self) -> None:
         from tactile_graph.cli.interrupt import Interrupts
@@ -189,10 +191,13 @@ class _Run:
             self.bar.now(expected)
 
     def _frames(self, held: Any) -> None:
+        from tactile_graph.compiled import answered_meanwhile
+
         try:
-            for result in self._results():
-                with held:
-                    self._one(result)
+            with answered_meanwhile(self._still_compiling):
+                for result in self._results():
+                    with held:
+                        self._one(result)
         except KeyboardInterrupt as error:
             self.interrupted = error
         except BrokenPipeError:
@@ -203,6 +208,9 @@ class _Run:
             self.error = exited(error)
         finally:
             self.bar.stop()
+
+    def _still_compiling(self, process: int) -> None:
+        self.compiling = process
 
     def _trouble(self, where: str, what: str) -> None:
         """Tell a trouble at once when no frame comes: closing lines would be too late."""
@@ -306,3 +314,8 @@ class _Run:
         most = self.span.most if self.error is None else None
         if most is not None and self.tally.n < most and self.span.stop and not self.interrupted:
             say.print(f"the source ended after {self.tally.n} of {most} frames", style="dim")
+        if self.compiling is not None:
+            say.print(
+                f"process {self.compiling} still compiles kernels, so that the next run is faster",
+                style="dim", soft_wrap=True,
+            )  # fmt: skip
