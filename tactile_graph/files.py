@@ -118,7 +118,8 @@ def said(name: Name) -> Iterator[None]:
 
 def is_plain(name: Name) -> bool:
     """Return whether a name is, or would be, a plain file: no device, no pipe, no /dev/stdout."""
-    if os.path.abspath(name).startswith(("/dev/", "/proc/")):
+    place = os.path.abspath(name)
+    if place.startswith(("/dev/", "/proc/")) and not place.startswith("/dev/shm/"):  # plain memory
         return False
     try:
         return stat.S_ISREG(os.stat(name).st_mode)

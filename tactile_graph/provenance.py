@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
@@ -14,7 +15,8 @@ from tactile_graph.files import write_whole
 from tactile_graph.foreign_text import visible
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.plain import plain
-from tactile_graph.plugins.registry import Plugin, Registry, installed
+from tactile_graph.plugins.names import Plugin
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 
 
@@ -65,8 +67,9 @@ def _sha256(text: str) -> str:
 
 def used_plugins(pipeline: Graph, registry: Registry) -> Iterator[Plugin]:
     """Yield the plugins that the pipeline, its source and its steps come from."""
-    if registry.has("pipelines", pipeline.name):
-        yield registry.offer("pipelines", pipeline.name).plugin
+    offers = (registry.offer("pipelines", name) for name in registry.names("pipelines"))
+    own = os.path.abspath(pipeline.file)
+    yield from (o.plugin for o in offers if os.path.abspath(o.target) == own)
     if pipeline.source is not None:
         yield registry.offer("steps", pipeline.source.name).plugin
     for node in pipeline.nodes.values():

@@ -2,6 +2,8 @@
 
 A schema knows one file and no graph: names of steps, their settings and ports, and the shape of
 everything. Whether a wire leads anywhere, types and quantities are `tactile-graph check`'s work.
+One that is made for a file completes the names in it, and lets others pass: it may be older than
+the node that was just written.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from typing import Any
 
 from tactile_graph.docstring import parameters
 from tactile_graph.errors import TactileGraphError
+from tactile_graph.pipeline.completions import Nameable
 from tactile_graph.pipeline.declaration import RESERVED
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.registry import Registry
@@ -24,8 +27,15 @@ REF = f"^{NAME}(\\.{NAME})*$"
 Schema = dict[str, Any]
 
 
-def pipeline_schema(registry: Registry) -> tuple[Schema, list[str]]:
-    """Return the schema, and the steps that had to be left open because they cannot be imported."""
+def pipeline_schema(registry: Registry, names: Nameable | None = None) -> tuple[Schema, list[str]]:
+    """Return the schema, and the steps that had to be left open because they cannot be imported.
+
+    Parameters
+    ----------
+    registry : Registry
+    names : Nameable, optional
+        What the file may name that the schema is for; that of no file in particular otherwise.
+    """
     signatures: dict[str, Signature | None] = {}
     troubles: list[str] = []
     for name in registry.names("steps"):
@@ -34,18 +44,30 @@ def pipeline_schema(registry: Registry) -> tuple[Schema, list[str]]:
         except TactileGraphError as error:
             signatures[name] = None
             troubles.append(str(error))
-    return _Maker(registry, signatures).schema(), troubles
+    return _Maker(registry, signatures, names).schema(), troubles
 
 
 class _Maker:
-    def __init__(self, registry: Registry, signatures: dict[str, Signature | None]) -> None:
+    def __init__(
+        self,
+        registry: Registry,
+        signatures: dict[str, Signature | None],
+        names: Nameable | None,
+    ) -> None:
         self.registry = registry
+        self.names = names or Nameable((), ())
         self.steps = {n: s for n, s in signatures.items() if s is None or s.kind is not Kind.SOURCE}
         self.sources = {n: s for n, s in signatures.items() if s is None or s.kind is Kind.SOURCE}
         self.defs: Schema = {
             "ref": {
-                "type": "string", "pattern": REF,
-                "description": "A node, node.field, or frame (what the source gives).",
+                **_completed({"type": "string", "pattern": REF}, self.names.wires),
+                "title": "A node, node.field, or frame (what the source gives)",
+            },
+            "condition": {
+                **_completed({"type": ["string", "number", "boolean", "null"]},
+                             self.names.conditions),
+                "description": "The condition under which it runs, like contacts.count > 0 and "
+                "not saturated.",
             },
             "refs": {"type": "array", "items": {"$ref": "#/$defs/ref"}, "minItems": 1},
             "wire": {"anyOf": [{"$ref": "#/$defs/ref"}, {"$ref": "#/$defs/refs"}]},
@@ -98,7 +120,7 @@ class _Maker:
             "type": "object",
             "additionalProperties": False,
             "properties": {
-                "step": _choice(self.steps, "The step it runs."),
+                "step": self._choice(self.steps, "The step it runs"),
                 "use": {"type": "string", "examples": pipelines,
                         "description": "A pipeline put in as a node, by name or file."},
                 "first_of": {"$ref": "#/$defs/refs",
@@ -108,12 +130,10 @@ class _Maker:
                     "anyOf": [{"$ref": "#/$defs/wire"}, {"type": "null"},
                               {"type": "object",
                                "additionalProperties": {"$ref": "#/$defs/wire"}}],
-                    "description": "What it reads: a node, a list, or a map of ports.",
+                    "title": "What it reads: a node, a list, or a map of ports",
                 },
-                "with": {"type": ["object", "null"], "description": "Its settings."},
-                "when": {"type": ["string", "number", "boolean", "null"],
-                         "description": "The condition under which it runs, like "
-                         "contacts.count > 0 and not saturated."},
+                "with": {"type": ["object", "null"], "title": "Settings"},
+                "when": {"$ref": "#/$defs/condition"},
                 "each": {"type": "boolean",
                          "description": "Run it once for each item of the list it reads."},
                 "about": {"type": ["string", "number", "null"]},
@@ -123,7 +143,12 @@ class _Maker:
                 {"if": {"required": ["first_of"]},
                  "then": {"properties": {"in": False, "with": False, "each": False}}},
                 {"if": {"required": ["use"]},
-                 "then": {"properties": {"with": {"propertyNames": {"pattern": "\\."}}}}},
+                 "then": {"properties": {
+                     "with": {"propertyNames": {"pattern": "\\."},
+                              "description": "Settings of the pipeline's nodes, as node.setting."},
+                     "in": {"description": "The pipeline's frame, or a map of frame and of nodes "
+                            "of it whose place is taken."},
+                 }}},
                 *(self._rule(n, s) for n, s in self.steps.items() if s is not None),
             ],
         }  # fmt: skip
@@ -134,18 +159,34 @@ class _Maker:
             "additionalProperties": False,
             "required": ["step"],
             "properties": {
-                "step": _choice(self.sources, "The source step."),
-                "with": {"type": ["object", "null"], "description": "Its settings."},
+                "step": self._choice(self.sources, "The source step"),
+                "with": {"type": ["object", "null"], "title": "Settings"},
             },
             "allOf": [self._rule(n, s) for n, s in self.sources.items() if s is not None],
         }
 
     # -- one step ----------------------------------------------------------------------------
 
+    def _names(self, step: str) -> list[str]:
+        """Return what a step is called: its shortest name, and the one behind its plugin's."""
+        return list(dict.fromkeys((step, self.registry.offer("steps", step).qualified)))
+
+    def _choice(self, steps: dict[str, Signature | None], what: str) -> Schema:
+        """Return an enumeration, plain names first; editors show the lines beside the names."""
+        about = {n: "" if s is None else s.summary for n, s in steps.items()}
+        about |= {self.registry.offer("steps", n).qualified: line for n, line in about.items()}
+        return {
+            "enum": list(about),
+            "title": what,
+            "markdownEnumDescriptions": list(about.values()),
+        }
+
     def _rule(self, name: str, signature: Signature) -> Schema:
         """Return what a node of one step must be like."""
         self.defs[f"{name}.with"] = self._settings(name, signature)
-        then: Schema = {"properties": {"with": {"$ref": f"#/$defs/{name}.with"}}}
+        then: Schema = {"properties": {
+            "step": {"description": signature.summary}, "with": {"$ref": f"#/$defs/{name}.with"}
+        }}  # fmt: skip
         required = ["with"] if any(s.required for s in signature.settings) else []
         if signature.kind is not Kind.SOURCE:
             self.defs[f"{name}.in"] = _ports(signature)
@@ -154,7 +195,7 @@ class _Maker:
         if required:
             then["required"] = required
         return {
-            "if": {"properties": {"step": {"const": name}}, "required": ["step"]},
+            "if": {"properties": {"step": {"enum": self._names(name)}}, "required": ["step"]},
             "then": then,
         }
 
@@ -219,13 +260,9 @@ def _port(port: Port) -> Schema:
     return {"$ref": wire, "description": f"{type_name(port.type)}{optional}"}
 
 
-def _choice(steps: dict[str, Signature | None], what: str) -> Schema:
-    """Return an enumeration; editors show the lines beside the names."""
-    return {
-        "enum": list(steps),
-        "description": what,
-        "markdownEnumDescriptions": [s.summary if s is not None else "" for s in steps.values()],
-    }
+def _completed(schema: Schema, names: tuple[str, ...]) -> Schema:
+    """Return a schema of which editors offer the names, and that lets others pass."""
+    return {"anyOf": [{"enum": list(names)}, schema]} if names else schema
 
 
 def _names() -> Schema:

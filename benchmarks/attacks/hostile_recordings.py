@@ -10,7 +10,7 @@ import sys
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,23 +29,30 @@ def zeros_deflated(n: int) -> bytes:
     return block * n + pack.flush()
 
 
-def archive(name: str, head: bytes, n: int) -> bytes:
-    """Return a zip of one member: a head stored, and so many MB of zeros packed behind it."""
-    stored = struct.pack("<BHH", 0, len(head), len(head) ^ 0xFFFF) + head
-    data = stored + zeros_deflated(n)
-    size = len(head) + (n << 20)
-    crc = zlib.crc32(head)
-    for _ in range(n):
-        crc = zlib.crc32(ZEROS, crc)
-    sizes = struct.pack("<III", crc, len(data), min(size, 0xFFFFFFFF))
-    called = name.encode()
-    local = b"PK\3\4" + struct.pack("<HHHHH", 20, 0, 8, 0, 33) + sizes
-    local += struct.pack("<HH", len(called), 0) + called
-    central = b"PK\1\2" + struct.pack("<HHHHHH", 20, 20, 0, 8, 0, 33) + sizes
-    central += struct.pack("<HHHHHII", len(called), 0, 0, 0, 0, 0, 0) + called
-    at = len(local) + len(data)
-    end = b"PK\5\6" + struct.pack("<HHHHIIH", 0, 0, 1, 1, len(central), at, 0)
-    return local + data + central + end
+class Member(NamedTuple):
+    """A member of an archive: a head stored, and so many MB of zeros packed behind it."""
+
+    name: str
+    head: bytes
+    n_mb: int
+
+
+def archive(*members: Member) -> bytes:
+    """Return a zip of members that are far larger than it."""
+    parts, directory = b"", b""
+    for name, head, n in members:
+        data = struct.pack("<BHH", 0, len(head), len(head) ^ 0xFFFF) + head + zeros_deflated(n)
+        crc = zlib.crc32(head)
+        for _ in range(n):
+            crc = zlib.crc32(ZEROS, crc)
+        sizes = struct.pack("<III", crc, len(data), min(len(head) + (n << 20), 0xFFFFFFFF))
+        called = name.encode()
+        fields = struct.pack("<HHHHH", 20, 0, 8, 0, 33) + sizes + struct.pack("<HH", len(called), 0)
+        directory += b"PK\1\2" + struct.pack("<H", 20) + fields
+        directory += struct.pack("<HHHII", 0, 0, 0, 0, len(parts)) + called
+        parts += b"PK\3\4" + fields + called + data
+    n, size = len(members), len(directory)
+    return parts + directory + b"PK\5\6" + struct.pack("<HHHHIIH", 0, 0, n, n, size, len(parts), 0)
 
 
 ZEROS = bytes(1 << 20)
@@ -81,7 +88,8 @@ def arrays() -> Iterator[tuple[str, Make]]:
             yield (
                 f"npz of {n} MB of zeros, {shape}",
                 file_of(
-                    "a.npz", lambda n=n, shape=shape: archive("values.npy", npy_head(shape), n)
+                    "a.npz",
+                    lambda n=n, shape=shape: archive(Member("values.npy", npy_head(shape), n)),
                 ),
             )
     for shape in ("(1000000000, 16, 16)", "(-5, 16, 16)", "(2, 3037000500, 3037000500)",
@@ -109,6 +117,12 @@ def arrays() -> Iterator[tuple[str, Make]]:
         "npz of 900 members",
         file_of("a.npz", lambda: npz(**{f"a{i}": np.zeros((20, 20)) for i in range(900)})),
     )
+    for numbers in (range(2), range(12)):  # each small enough for an array alone
+        parts = [Member(f"frame{i}.npy", npy_head((1 << 13, 240 << 4)), 240) for i in numbers]
+        yield f"npz of {len(parts)} arrays of 250 MB", file_of("a.npz", lambda p=parts: archive(*p))
+    ours = [Member("values.npy", npy_head((240 << 9, 16, 16)), 240),
+            Member("label.npy", npy_head((1,), "'<U62390272'"), 238)]  # fmt: skip
+    yield "npz of our own, two arrays of 250 MB", file_of("a.npz", lambda: archive(*ours))
     yield "zip of 150,000 empty members", file_of("a.zip", lambda: zipped(
         {f"{i}": b"" for i in range(150_000)}))  # fmt: skip
     yield (
@@ -119,7 +133,7 @@ def arrays() -> Iterator[tuple[str, Make]]:
     )
     yield "npz of our own, labels of 100 million letters", file_of(
         "a.npz", lambda: npz(values=np.zeros((2, 4, 4)), label=np.array(["x" * 40_000_000, ""]))
-        [:0] + archive("label.npy", npy_head((1,), "'<U100000000'"), 382)
+        [:0] + archive(Member("label.npy", npy_head((1,), "'<U100000000'"), 382))
     )  # fmt: skip
     yield (
         "npz of our own, truth deep",
@@ -129,8 +143,8 @@ def arrays() -> Iterator[tuple[str, Make]]:
         "a.npz", lambda: npz(values=np.ones((2, 4, 4)), truth=np.array("[" + "[]," * 1_000_000 +
                                                                        "[]]"))
     )  # fmt: skip
-    yield "cut-off central directory", file_of("a.npz", lambda: archive("values.npy",
-                                               npy_head((2, 2)), 100)[:-30])  # fmt: skip
+    yield "cut-off central directory", file_of("a.npz", lambda: archive(Member("values.npy",
+                                               npy_head((2, 2)), 100))[:-30])  # fmt: skip
 
 
 # -- pictures ----------------------------------------------------------------------------------
@@ -182,7 +196,7 @@ def pictures() -> Iterator[tuple[str, Make]]:
     )
     yield (
         "zip of a PNG that is none, 1 GB of zeros",
-        file_of("a.zip", lambda: archive("a.png", small, 1000)),
+        file_of("a.zip", lambda: archive(Member("a.png", small, 1000))),
     )
     usual = {256: (4, 1, 8), 257: (4, 1, 8), 258: (3, 1, 8), 259: (3, 1, 1), 262: (3, 1, 1),
              273: (4, 1, 200), 277: (3, 1, 1), 278: (4, 1, 8), 279: (4, 1, 64)}  # fmt: skip
@@ -432,6 +446,22 @@ def hdf5() -> Iterator[tuple[str, Make]]:
         "HDF5 of 20,000 datasets",
         made(lambda f: [f.create_dataset(f"d{i}", (2, 2, 2)) for i in range(20_000)]),
     )
+    yield (
+        "HDF5 of 500 numbered matrices, never written",
+        made(lambda f: [f.create_dataset(f"frame{i}", (4_000, 2_000), "f8", chunks=(4, 4))
+                        for i in range(500)]),
+    )  # fmt: skip
+
+    def of_nodes(file: Any, n: int, side: int, piece: int) -> None:
+        file.attrs["format"] = "tactile-graph node images"
+        values = file.create_dataset("a/values", (n, side, side), "f8", chunks=(1, piece, piece))
+        values.attrs.update(kind="image", quantity="volt", pitch_cm=(1, 1), origin_cm=(0, 0))
+        file.create_dataset("a/outcome", (n,), "u1", chunks=(1,))
+        file.create_dataset("time_s", (n,), "f8", chunks=(1,))
+
+    for size in ((10**10, 2, 2), (2, 10**5, 2), (1_000, 1_900, 2), (1_000, 1_900, 1_900)):
+        what = "HDF5 of {} images of a node, {} wide, in pieces of {}".format(*size)
+        yield what, made(lambda f, s=size: of_nodes(f, *s))
     yield "HDF5 of 3,000 groups in each other", made(nested)
     yield "HDF5 of a dataset elsewhere", made(virtual)
     yield "HDF5 that goes round", made(looped)

@@ -3,16 +3,18 @@
     python benchmarks/attacks/stores.py                                # 300 damaged, 40 killed
     python benchmarks/attacks/stores.py --tries 20000 --killed 1000    # about an hour
 
-Each damaged store is a copy of one of two in which one to three things happened to its files: bits
-flipped, ends cut off, parts zeroed, files emptied, taken away, exchanged, overwritten by others,
-numbers in metadata changed, lines of the journal dropped, doubled and exchanged. It is read,
-mended by `check --repair`, and read again. A frame is wrong if it differs from what was written and
-is not marked as doubtful; a store is short if frames are missing and nothing is told. Killed are
-`record`, `record --append`, `convert` and `check --repair`, each at a moment drawn at random.
+Each damaged store is a copy of one of three in which one to three things happened to its files:
+bits flipped, ends cut off, parts zeroed, files emptied, taken away, exchanged, overwritten by
+others, numbers in metadata changed, lines of the journal dropped, doubled and exchanged, its first
+line and the grid in `zarr.json` both damaged. It is read, mended by `check --repair`, read, damaged
+once more, and read. A frame is wrong if it differs from what was written and is not marked as
+doubtful; a store is short if frames are missing and nothing is told. Killed are `record`, `record
+--append`, `convert` and `check --repair`, each at a moment drawn at random.
 """
 
 from __future__ import annotations
 
+import json
 import mmap
 import os
 import random
@@ -22,6 +24,7 @@ import struct
 import sys
 import tempfile
 import time
+import zlib
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -190,6 +193,29 @@ def line_of_journal(store: Path, rng: random.Random) -> None:
         file.write_bytes(lines(bytearray(file.read_bytes()), rng))
 
 
+def head_and_grid(store: Path, rng: random.Random) -> None:
+    """Damage the journal's first line, and say another pitch, origin or quantity for Zarr."""
+    file, group = store / "frames.journal", store / "zarr.json"
+    if not (file.is_file() and group.is_file()):
+        return
+    head, *rest = file.read_bytes().splitlines(keepends=True) or [b""]
+    file.write_bytes(b"".join([bytes(flip_byte(bytearray(head), rng)), *rest]))
+    was, now = rng.choice(((b"1.3", b"1.8"), (b"0.25", b"0.75"), (b"counts", b"gram"),
+                           (b'"version": 3', b'"version": 2')))  # fmt: skip
+    group.write_bytes(group.read_bytes().replace(was, now, 1))
+
+
+def without_copies(store: Path) -> None:
+    """Take the attributes out of the journal's blocks, as they were written at first."""
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    for i, line in enumerate(lines[1:], 1):
+        data = json.loads(line[9:])
+        data.pop("attributes")
+        text = json.dumps(data, separators=(",", ":")).encode()
+        lines[i] = b"%08x %s\n" % (zlib.crc32(text), text)
+    (store / "frames.journal").write_bytes(b"".join(lines))
+
+
 DAMAGES: dict[str, Damage] = {
     "bit flipped": on_bytes(flip_bit),
     "byte flipped": on_bytes(flip_byte),
@@ -205,6 +231,7 @@ DAMAGES: dict[str, Damage] = {
     "exchanged": exchange,
     "made a folder": make_folder,
     "journal's lines": line_of_journal,
+    "head and grid": head_and_grid,
 }
 
 
@@ -248,7 +275,8 @@ def damaged(base: Path, written: Sequence[Frame], work: Path, seed: int) -> list
     for name in names:
         DAMAGES[name](store, rng)
     verdict, why, n = judged(store, written)
-    found = [(verdict, f"seed {seed}, {', '.join(names)}: {why}")]
+    what = f"seed {seed}, {', '.join(names)}"
+    found = [(verdict, f"{what}: {why}")]
     if verdict == "refused":
         return found
     try:
@@ -259,11 +287,15 @@ def damaged(base: Path, written: Sequence[Frame], work: Path, seed: int) -> list
     except TactileGraphError as error:
         return [*found, ("not mended", str(error))]
     except Exception as error:
-        return [*found, ("FOREIGN", f"seed {seed}, {', '.join(names)}: mending: {error!r}")]
+        return [*found, ("FOREIGN", f"{what}: mending: {error!r}")]
     verdict, why, n_after = judged(store, written)
     if n_after < n and verdict != "FOREIGN":
         verdict, why = "WORSE", f"{n} frames, mended {n_after}"
-    return [*found, (f"mended: {verdict}", f"seed {seed}, {', '.join(names)}: mended: {why}")]
+    found.append((f"mended: {verdict}", f"{what}: mended: {why}"))
+    once_more = rng.choice(list(DAMAGES))
+    DAMAGES[once_more](store, rng)
+    verdict, why, _ = judged(store, written)
+    return [*found, (f"once more: {verdict}", f"{what}, mended, {once_more}: {why}")]
 
 
 # -- killed writers ----------------------------------------------------------------------------
@@ -410,10 +442,13 @@ def _attack(n_damaged: int, n_killed: int, seed: int) -> Iterator[tuple[str, str
                 with StoreWriter(path, CHUNK, append=True) as store:
                     for frame in written[low:high]:
                         store.write(frame)
+        older = work / "older.zarr"
+        shutil.copytree(long, older)
+        without_copies(older)
         # Frames that are gone on with follow a gap.
-        told = {path: list(read_store(path)) for path in (long, short)}
+        told = {path: list(read_store(path)) for path in (long, older, short)}
         for i in range(n_damaged):
-            base = short if i % 5 == 4 else long
+            base = (long, older, long, long, short)[i % 5]
             for verdict, why in damaged(base, told[base], work, seed * 1_000_003 + i):
                 yield "damaged", verdict, why
         killing, rng = Killing(work, 40), random.Random(seed)

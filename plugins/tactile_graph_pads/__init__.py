@@ -14,9 +14,9 @@ def tactile_graph_steps() -> Mapping[str, str]:
 
 @hookimpl
 def tactile_graph_pads() -> Mapping[str, Path]:
-    """Offer the thesis' pad, and the same without anything uneven or random."""
+    """Offer the thesis' pad, one fitted to more of its tables, and one without anything uneven."""
     folder = Path(__file__).parent / "pads"
-    return {"plain": folder / "plain.yaml", "thesis": folder / "thesis.yaml"}
+    return {name: folder / f"{name}.yaml" for name in ("plain", "thesis", "thesis-tables")}
 
 
 @hookimpl

@@ -47,11 +47,16 @@ class Contact:
         Width (standard deviation) over which a foam pad spreads the load (figure 2.14).
     sand : tuple of Grain
         Grains under single elements.
+    lean_cm : float
+        Standard deviation, along x and y, of how far the centre of pressure lies from an object's
+        own centre each time it is put down: neither object nor pad is flat (section 2.4), and what
+        is stacked differs by its order (section 2.4.3).
     """
 
     cardboard: bool = True
     foam_cm: Annotated[float, Ge(0)] = 0.0
     sand: tuple[Grain, ...] = ()
+    lean_cm: Annotated[float, Ge(0)] = 0.0
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     def load_g(

@@ -57,6 +57,11 @@ class Unevenness:
         the rest is drawn anew each time an object is put down.
     bumps : tuple of Bump
         Elements known to stand out.
+    strays : float
+        Share of the elements that no object covers and that bear something all the same, drawn
+        anew at each placement: the "random noise points" of thesis figure 4.24.
+    stray_g : float
+        What each of them bears.
     """
 
     sigma: Annotated[float, Ge(0)] = 0.0
@@ -64,6 +69,8 @@ class Unevenness:
     voids: Annotated[float, Ge(0), Le(1)] = 0.0
     fixed: Annotated[float, Ge(0), Le(1)] = 0.0
     bumps: tuple[Bump, ...] = ()
+    strays: Annotated[float, Ge(0), Le(1)] = 0.0
+    stray_g: Annotated[float, Ge(0)] = 15.0
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     @cached_property
@@ -97,6 +104,18 @@ class Unevenness:
         for bump in self.bumps:
             gains[bump.row, bump.column] *= bump.gain
         return np.asarray(gains)
+
+    def strays_g(self, covered_cm2: Array, rng: np.random.Generator) -> Array:
+        """Return what elements bear that no object covers, shape (rows, columns), in grams.
+
+        Parameters
+        ----------
+        covered_cm2 : ndarray of float64, shape (rows, columns)
+            How much of each element objects cover.
+        rng : numpy.random.Generator
+        """
+        hit = (rng.random(covered_cm2.shape) < self.strays) & (covered_cm2 <= 0.0)
+        return np.where(hit, self.stray_g, 0.0)
 
 
 def _root(at_cm: Array, correlation_cm: float) -> Array:

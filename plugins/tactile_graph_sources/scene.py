@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from annotated_types import Ge, Gt, Len
+from annotated_types import Ge, Gt, Le, Len
 from numpy.typing import NDArray
 from pydantic import Field
 
@@ -41,6 +41,9 @@ class Thing:
         Weights piled on top.
     stack_offset_cm : float
         Standard deviation, along x and y, of where each stacked weight stands.
+    touches : float
+        Share of its size that touches the pad, about its centre: of a rectangle's length, of any
+        other's size both ways. The truth keeps the whole.
     """
 
     weight_g: Grams
@@ -48,6 +51,7 @@ class Thing:
     name: str = ""
     stacked_g: tuple[Grams, ...] = ()
     stack_offset_cm: Annotated[float, Ge(0)] = 0.0
+    touches: Annotated[float, Gt(0), Le(1)] = 1.0
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     @property
@@ -58,6 +62,33 @@ class Thing:
     def footprint(self, x_cm: float, y_cm: float, angle_rad: float) -> Shape:
         """Return its outline at a place."""
         raise NotImplementedError
+
+    def touching(self, shape: Shape) -> Shape:
+        """Return the part of its outline that touches the pad.
+
+        Parameters
+        ----------
+        shape : Circle, Ellipse, Rectangle or Polygon
+            Where it lies, as `footprint` gives it.
+        """
+        return shape if self.touches == 1.0 else _about_centre(shape, self.touches)
+
+
+def _about_centre(shape: Shape, share: float) -> Shape:
+    """Return a shape of so much of the size, a rectangle of so much of the length."""
+    if isinstance(shape, Circle):
+        return replace(shape, radius_cm=share * shape.radius_cm)
+    if isinstance(shape, Rectangle):
+        along, across = share * shape.length_cm, shape.breadth_cm
+        if along >= across:
+            return replace(shape, length_cm=along)
+        turned = math.remainder(shape.angle_rad + 0.5 * math.pi, math.pi)
+        return replace(shape, length_cm=across, breadth_cm=along, angle_rad=turned)
+    if isinstance(shape, Ellipse):
+        major, minor = share * shape.semi_major_cm, share * shape.semi_minor_cm
+        return replace(shape, semi_major_cm=major, semi_minor_cm=minor)
+    centre = np.array([shape.x_cm, shape.y_cm])
+    return Polygon(centre + share * (shape.xy_cm - centre))
 
 
 @dataclass(frozen=True, kw_only=True)

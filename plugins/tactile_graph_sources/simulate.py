@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame, Shape, TrueObject
+from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import Pad, load_pad
 from tactile_graph_pads.unevenness import Fields
 from tactile_graph_sources.placement import place
@@ -99,10 +100,14 @@ class _Bench:
         pad, things = self.pad, self.scene.group(placement)
         shapes = place(things, pad.geometry, self.scene.apart_cm, self.rng)
         gains = pad.unevenness.gains(self.fields, pad.unevenness.draw(pad.geometry, self.rng))
+        touching = [thing.touching(shape) for thing, shape in zip(things, shapes, strict=True)]
         load = np.zeros(pad.geometry.shape)
-        for thing, shape in zip(things, shapes, strict=True):
-            offset = _stack_offset(thing, self.rng)
+        for thing, shape in zip(things, touching, strict=True):
+            offset = _pressure_offset(thing, pad.contact.lean_cm, self.rng)
             load += pad.contact.load_g(shape, thing.total_g, pad.geometry, gains, offset)
+        if pad.unevenness.strays > 0.0:
+            covered = sum((coverage_cm2(s, pad.geometry) for s in touching), np.zeros(load.shape))
+            load += pad.unevenness.strays_g(covered, self.rng)
         self.truth = tuple(_true(t, s) for t, s in zip(things, shapes, strict=True))
         self.siemens = pad.conductance_s(load, self.built)
 
@@ -120,10 +125,13 @@ def _true(thing: Thing, shape: Shape) -> TrueObject:
     return TrueObject(shape, thing.total_g, thing.name)
 
 
-def _stack_offset(thing: Thing, rng: np.random.Generator) -> tuple[float, float]:
+def _pressure_offset(thing: Thing, lean_cm: float, rng: np.random.Generator) -> tuple[float, float]:
     """Return where the centre of pressure lies from the object's own centre."""
-    if thing.stack_offset_cm == 0.0 or not thing.stacked_g:
-        return (0.0, 0.0)
-    stands = rng.normal(0.0, thing.stack_offset_cm, (len(thing.stacked_g), 2))
-    x, y = np.array(thing.stacked_g) @ stands / thing.total_g
+    x = y = 0.0
+    if thing.stack_offset_cm > 0.0 and thing.stacked_g:
+        stands = rng.normal(0.0, thing.stack_offset_cm, (len(thing.stacked_g), 2))
+        x, y = np.array(thing.stacked_g) @ stands / thing.total_g
+    if lean_cm > 0.0:
+        leans = rng.normal(0.0, lean_cm, 2)
+        x, y = x + leans[0], y + leans[1]
     return (float(x), float(y))

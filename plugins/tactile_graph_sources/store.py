@@ -10,7 +10,7 @@ from pathlib import Path
 from tactile_graph.errors import DataError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
-from tactile_graph_sources.stores.stored import Lost, Stored, open_stored
+from tactile_graph_sources.stores.stored import UNSURE, Lost, Stored, open_stored
 
 
 def read_store(path: str | Path, report: Report | None = None, start: int = 0) -> Iterator[Frame]:
@@ -64,3 +64,5 @@ def _tell_damage(stored: Stored, report: Report) -> None:
     if stored.troubles:
         command = f"tactile-graph check --repair {shlex.quote(str(stored.path))}"
         report.trouble(str(stored.path), f"'{command}' may mend it")
+    if not stored.sure:
+        report.trouble(str(stored.path), UNSURE)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Pipeline, Result, TactileGraphError, hookimpl, loads
 from tactile_graph.errors import PluginError
+from tactile_graph.inspect import Skipped
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.wires import Image, Mask, Points
 from tactile_graph_stress.finite import not_finite
@@ -23,6 +24,9 @@ Given = Points | Mask | Image
 
 FORGED = ("numpy", "scipy", "skimage", "numba")
 """Packages whose own errors no step may hand on: they are not written for its user."""
+
+MOST_WARMING = 100
+"""Frames after which a step that only skipped itself is taken to skip all."""
 
 
 @dataclass(frozen=True)
@@ -53,14 +57,14 @@ class Trial:
         names = [subject.name, *subject.suppliers]
         steps = {name: known.load("steps", name) for name in names}
         self._pipeline = loads(_text(subject), registry=_small(steps))
-        self._runners: dict[str, Callable[[Frame], Any]] = {}
+        self._runners: dict[str, Callable[[Frame], Result]] = {}
 
     def run(self, given: Given, settings: Mapping[str, Any] | None = None) -> Came:
         """Return what comes of a case; never raises."""
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             try:
-                value = self._runner(settings or {})(_frame(given))["subject"]
+                value = self._result(_frame(given), settings or {})["subject"]
             except PluginError as error:  # the step gave something else than it promises
                 came = Came(broke=str(error))
             except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
@@ -72,7 +76,18 @@ class Trial:
                 came = Came(broke=bad) if bad else Came(value=value)
         return Came(broke=f"warning escaped: {caught[0].message}") if caught else came
 
-    def _runner(self, settings: Mapping[str, Any]) -> Callable[[Frame], Any]:
+    def _result(self, frame: Frame, settings: Mapping[str, Any]) -> Result:
+        """Return what a new runner gives; a step that warms up sees the frame until it answers."""
+        run = self._runner(settings)
+        result = run(frame)
+        for _ in range(MOST_WARMING * self.subject.signature.stateful):
+            outcome = result.outcome("subject")
+            if not (isinstance(outcome, Skipped) and outcome.origin == "subject"):
+                break
+            result = run(frame)
+        return result
+
+    def _runner(self, settings: Mapping[str, Any]) -> Callable[[Frame], Result]:
         key = repr(sorted(settings.items()))
         if key not in self._runners or self.subject.signature.stateful:
             pipeline = self._pipeline

@@ -10,6 +10,8 @@ from tactile_graph_thesis.item import Item
 
 CONTENTS = {
     "chapter_2": (
+        "figure_2_2_force_law",
+        "section_2_2_current",
         "section_2_2_2_converter",
         "section_2_2_3_samples",
         "figures_2_8_to_2_11_bias",
@@ -17,7 +19,9 @@ CONTENTS = {
         "figures_2_15_to_2_17_groups_of_four",
         "figure_2_18_calibration_curve",
         "figure_2_19_weight_against_area",
+        "section_2_4_3_stack_order",
     ),
+    "chapter_3": ("section_3_1_2_operators", "figures_3_2_to_3_6_techniques"),
     "chapter_4": (
         "figures_4_1_to_4_3_threshold",
         "figures_4_4_and_4_5_variance",
@@ -27,17 +31,25 @@ CONTENTS = {
         "figures_4_29_to_4_36_rounding",
         "figures_4_37_to_4_43_identification",
         "tables_4_3_to_4_8_errors",
+        "section_4_3_9_one_pad",
+        "section_4_1_thresholds",
+        "section_4_2_2_to_4_5_erosion",
+        "section_4_3_5_order_of_rotation",
         "table_4_9_identification",
     ),
     "chapter_5": (
         "section_5_4_1_schedule",
         "figures_5_8_to_5_14_restoration",
         "table_5_2_radii",
+        "section_5_5_2_heavier_side",
     ),
     "chapter_6": (
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",
         "section_6_1_3_noise_before_blocks",
+        "section_6_1_1_site_isolation",
+        "section_6_1_3_direct_ellipse",
+        "section_6_1_4_restoration",
     ),
 }
 """Room of ``items/`` -> its modules, each with a tuple ``ITEMS``."""

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from tactile_graph_thesis.work import Work
 
 
-class Finding(NamedTuple):
+@dataclass(frozen=True)
+class Finding:
     """A conclusion of the thesis beside what comes out here.
 
     Parameters
@@ -22,12 +23,25 @@ class Finding(NamedTuple):
         What the thesis concludes.
     found : str
         What comes out here, in numbers.
+    refuted_by : str
+        What was settled beforehand to speak against it: what would have to come out.
     holds : bool
+        Whether that did not come out.
+
+    Raises
+    ------
+    ValueError
+        If nothing could refute it.
     """
 
     thesis: str
     found: str
+    refuted_by: str
     holds: bool
+
+    def __post_init__(self) -> None:
+        if not self.refuted_by.strip():
+            raise ValueError(f"finding {self.thesis!r}: refuted_by must say what would refute it")
 
 
 class Table(NamedTuple):
@@ -60,6 +74,9 @@ class Compared(NamedTuple):
         Between these lie nine in ten of what groups of readings, as many as the thesis', give.
     limit : bool
         Whether the thesis only says "less than" its number.
+    largest : bool
+        Whether it is the maximum of several readings: it grows with their number, which the thesis
+        does not give, and is counted apart from averages.
     """
 
     what: str
@@ -69,6 +86,7 @@ class Compared(NamedTuple):
     low: float | None = None
     high: float | None = None
     limit: bool = False
+    largest: bool = False
 
     @property
     def ratio(self) -> float | None:

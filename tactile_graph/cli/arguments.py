@@ -185,6 +185,9 @@ def source_named(
     from tactile_graph.pipeline.document import assignment
 
     own = pipeline.source
+    found = registry.installed()
+    if step is not None and found.has("steps", step):
+        step = found.spelled("steps", step)
     base: dict[str, Any] = {}
     if recordings:
         step, setting = _reader(step, recordings)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tactile_graph.errors import UsageError, did_you_mean, one_of
-from tactile_graph.plugins.registry import Plugin, Registry
+from tactile_graph.plugins.names import OWN, Plugin
+from tactile_graph.plugins.registry import Registry
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from tactile_graph.testing.plugin_check import PluginReport
-
-OWN = "tactile-graph"
 
 
 def show_checked(found: Registry, name: str) -> bool:
@@ -64,5 +63,7 @@ def _show(out: Console, report: PluginReport) -> None:
     out.print(words, soft_wrap=True)
     for line in report.broken:
         out.print(Text(f"  {line}"), soft_wrap=True)
+    for told in report.clashes:
+        out.print(Text(f"  {told}", style="yellow"), soft_wrap=True)
     for name, why in report.untried.items():
         out.print(Text(f"  step {name!r} was not tried: {why}", style="yellow"), soft_wrap=True)

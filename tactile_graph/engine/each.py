@@ -6,7 +6,8 @@ hands the outcome on in the same place; a step that takes the list whole is told
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from tactile_graph.engine.context import Context
@@ -22,7 +23,8 @@ from tactile_graph.engine.outcome import (
     with_value,
 )
 from tactile_graph.engine.outcomes import Outcomes
-from tactile_graph.pipeline.graph import Binding, Node
+from tactile_graph.pipeline.embed import MASK
+from tactile_graph.pipeline.graph import FRAME, Binding, Node, NodeKind
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.wires.frame import Frame
 
@@ -33,6 +35,7 @@ def for_each(node: Node, step: Call, context: Context) -> Call:
     """Return the step run over the items of whichever ports hold lists it does not want whole."""
     assert node.signature is not None
     over = [b.port for b in node.inputs if b.iterates]
+    names = [port.name for port in over]
     order = [p.name for p in node.signature.ports]
     sink = node.signature.output is type(None) or node.signature.output is None
 
@@ -54,14 +57,10 @@ def for_each(node: Node, step: Call, context: Context) -> Call:
 
     def call(*args: Any, **kwargs: Any) -> Any:
         values = {**dict(zip(order, args, strict=False)), **kwargs}
-        counts = {port.name: len(values[port.name]) for port in over}
-        if len(set(counts.values())) > 1:
-            raise ValueError(f"lists of different length at one node: {counts}")
-        n = next(iter(counts.values()))
         outcomes = []
         outer = context.item
         try:
-            for i in range(n):
+            for i in range(_length(values, names)):
                 context.item = (*outer, i)  # or every item would draw the same numbers
                 outcomes.append(outcome_of(values, i))
         finally:
@@ -82,26 +81,44 @@ def gathered(outcomes: Sequence[Any], name: str) -> Any:
     return Skipped(name, "no items to run for" if not outcomes else outcomes[0].reason)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class InnerFrame(Frame):
+    """The frame of an item, with what takes the place of nodes."""
+
+    given: Mapping[str, Any] = field(default_factory=dict)
+
+
 def mapped(node: Node, context: Context) -> Call:
-    """Return the embedded pipeline run over a list of images."""
+    """Return the embedded pipeline run over lists: of images, of what takes its nodes' places."""
     assert node.inner is not None
     run = context.embedded(node.inner)
     fields = getattr(node.output, "_fields", ())
     names = list(node.inner.outputs)
+    over = [b.port.name for b in node.inputs if b.iterates]
+    given = [n for n, inner in node.inner.nodes.items() if inner.kind is NodeKind.GIVEN]
 
-    def call(frame: Any) -> Any:
+    def call(**wired: Any) -> Any:
         results: list[Outcomes | None] = []
         outer = context.frame
-        for i, image in enumerate(frame):
+        lacking: list[Any] = []
+        for i in range(_length(wired, over)):
+            values = {**wired, **{name: wired[name][i] for name in over}}
+            image, mask = values[FRAME], values.get(MASK)
             if image.__class__ in NO_VALUE:
                 results.append(None)
+                lacking.append(image)
                 continue
-            inner = Frame(image, outer.index, outer.time_s, label=outer.label)
+            mask = None if mask.__class__ in NO_VALUE else mask
+            its = {name: values[name] for name in given}
+            inner = InnerFrame(
+                image, outer.index, outer.time_s, label=outer.label, mask=mask, given=its
+            )
             results.append(run(inner, (*context.item, i)))
+            lacking.append(None)
         context.inner_results[node.name] = results
 
         def column(name: str) -> Any:
-            items = [_of_item(r, name, frame[i], i) for i, r in enumerate(results)]
+            items = [_of_item(r, name, lacking[i], i) for i, r in enumerate(results)]
             return gathered(items, node.name)
 
         columns = [column(n) for n in names]
@@ -110,6 +127,14 @@ def mapped(node: Node, context: Context) -> Call:
         return node.output(*columns)
 
     return call
+
+
+def _length(wired: Mapping[str, Any], over: Sequence[str]) -> int:
+    """Return how many items lists have; raises ValueError where that is not the same for all."""
+    counts = {name: len(wired[name]) for name in over}
+    if len(set(counts.values())) > 1:
+        raise ValueError(f"lists of different length at one node: {counts}")
+    return next(iter(counts.values()))
 
 
 def _of_item(result: Outcomes | None, name: str, image: Any, i: int) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from tactile_graph.engine.freeze import IMMUTABLE
-from tactile_graph.engine.outcome import NO_VALUE, Skipped, failure
+from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item
 from tactile_graph.engine.step_operation import Operation, State
 from tactile_graph.pipeline.conditions import Guard
@@ -13,6 +13,8 @@ from tactile_graph.pipeline.conditions import Guard
 
 def guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:
     """Run the body where the guard holds; ``reads`` give what it is about."""
+    if guard.groups:
+        return _guarded_over_items(item, guard, reads, body)
     if len(reads) == 1:
         return _guarded_by_one(item, guard, reads[0], body)
     slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
@@ -32,6 +34,38 @@ def guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -
             body(state)
         else:
             state[slot] = Skipped(name, reason, values)
+
+    return operation
+
+
+def _guarded_over_items(
+    item: Item, guard: Guard, reads: list[Operation], body: Operation
+) -> Operation:
+    """Run the body where a guard over the items of lists holds, of those that have a value."""
+    slot, name, holds, reason = item.slot, item.name, guard.function, guard.reason
+
+    def operation(state: State) -> None:
+        values = [read(state) for read in reads]
+        lacking = next((v for v in values if v.__class__ in NO_VALUE), None)
+        for group in guard.groups if lacking is None else ():
+            rows = [*zip(*(values[i] for i in group), strict=True)]
+            failed = (v for row in rows for v in row if v.__class__ is Failed)
+            lacking = next(failed, lacking)
+            kept = [row for row in rows if not any(v.__class__ in NO_VALUE for v in row)]
+            for k, i in enumerate(group):
+                values[i] = tuple([row[k] for row in kept])
+        if lacking is not None:
+            state[slot] = lacking
+            return
+        try:
+            holds_now = holds(*values)
+        except Exception as error:
+            state[slot] = failure(name, error, tuple(values), f"when {guard.text}")
+            return
+        if holds_now:
+            body(state)
+        else:
+            state[slot] = Skipped(name, reason, tuple(values))
 
     return operation
 

@@ -11,6 +11,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from tactile_graph.pipeline.graph import FRAME, FrameRule, Graph, Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref, arms
 
@@ -80,7 +82,14 @@ class Plan:
         """Whether the same image gives the same result, whatever its time and number."""
         return not self.stateful and all(
             r.path[:1] == ("image",) for r in self.reads_frame
-        ) and not any(i.node.is_sink or _varies(i.node) for i in self.items if i.node)  # fmt: skip
+        ) and not any(
+            i.node.is_sink or _varies(i.node) or i.node.kind is NodeKind.GIVEN
+            for i in self.items if i.node
+        )  # fmt: skip
+
+
+OF_ITEM = (("image",), ("mask",))
+"""What an inner frame has of its own item; all else it has of the frame that is under way."""
 
 
 def _varies(node: Node) -> bool:
@@ -88,7 +97,7 @@ def _varies(node: Node) -> bool:
     if node.inner is not None:
         inner = node.inner.nodes.values()
         refs = [r for n in inner for r in n.wires()] + list(node.inner.outputs.values())
-        whole = any(r.node == FRAME and r.path[:1] != ("image",) for r in refs)
+        whole = any(r.node == FRAME and r.path[:1] not in OF_ITEM for r in refs)
         return whole or any(_varies(n) for n in inner)
     return node.signature is not None and bool(node.signature.rng)
 
@@ -104,24 +113,34 @@ def make_plan(pipeline: Graph, asked: Sequence[str]) -> Plan:
     return _Planner(pipeline, asked).plan()
 
 
+def _slots(bits: int) -> tuple[int, ...]:
+    """Return which bits of a number are set, in order."""
+    if bits < 1 << 64:
+        return tuple(k for k in range(bits.bit_length()) if bits >> k & 1)
+    raw = np.frombuffer(bits.to_bytes((bits.bit_length() + 7) // 8, "little"), np.uint8)
+    return tuple(np.flatnonzero(np.unpackbits(raw, bitorder="little")).tolist())
+
+
 class _Planner:
     def __init__(self, pipeline: Graph, asked: Sequence[str]) -> None:
         self.pipeline = pipeline
         self.asked = {name: pipeline.outputs.get(name) or pipeline.ref(name) for name in asked}
         self.items: list[Item] = []
         self.by_ref: dict[Ref, int] = {}
-        self.given: set[int] = set()
+        # Sets of slots are bits of integers: as sets, those of long chains would take minutes.
+        self.given = 0
+        self.eager: list[int] = []
 
     def plan(self) -> Plan:
         self._number()
         image = self.by_ref.get(Ref(FRAME, ("image",)), 0)
-        self.given = {0, image}
+        self.given = 1 | 1 << image
         for item in self.items:
             self._wire(item)
         for item in self.items:
             self._classify(item)
-        targets = [self.by_ref[r] for r in self.asked.values()]
-        main = self._eager(targets)
+            self.eager.append(self._eager_of(item))
+        main = self._eager(self.by_ref[r] for r in self.asked.values())
         for item in self.items:
             self._place_lazies(item, main)
         used = {r.node for r in self._refs()} | {r.node for r in self.asked.values()}
@@ -129,7 +148,7 @@ class _Planner:
             self.pipeline,
             {name: self.by_ref[r] for name, r in self.asked.items()},
             self.items,
-            tuple(sorted(main - self.given)),
+            _slots(main & ~self.given),
             {i.name: i.slot for i in self.items if not (i.view and i.view.item_path)},
             tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
             self._depth(),
@@ -193,6 +212,8 @@ class _Planner:
                     for b in node.inputs
                 )  # fmt: skip
             item.reads = item.guard + tuple(s for i in item.inputs for s in i.slots)
+            if node.kind is NodeKind.GIVEN:
+                item.reads = (0,)
 
     def _classify(self, item: Item) -> None:
         """Find out whether the item depends on no frame, and whether it can come out skipped."""
@@ -209,7 +230,8 @@ class _Planner:
         through = all(inputs) if node.kind is NodeKind.FIRST_OF else any(inputs)
         item.skippable = node.guard is not None or (bool(inputs) and through)
         item.skippable |= any(self.items[s].skippable for s in item.guard)
-        item.skippable |= node.each  # an empty list leaves nothing to run for
+        # An empty list leaves nothing to run for; an item that is given may have no value.
+        item.skippable |= node.each or node.kind is NodeKind.GIVEN
 
     def _may_be_unknown(self, item: Item) -> bool:
         """Return whether a field may hold None, which skips whoever needs it."""
@@ -234,20 +256,19 @@ class _Planner:
                 break
         return eager
 
-    def _eager(self, targets: Iterable[int]) -> set[int]:
+    def _eager_of(self, item: Item) -> int:
+        """Return the slots that are needed whenever an item is; all it reads come before it."""
+        found = 1 << item.slot
+        if item.view is not None:
+            found |= self.eager[item.source]
+        found |= self._eager(self._before_guard(s) for s in item.guard)
+        return found | self._eager(s for port in self._eager_inputs(item) for s in port.slots)
+
+    def _eager(self, targets: Iterable[int]) -> int:
         """Return the slots that are needed whenever the targets are."""
-        found: set[int] = set()
-        waiting = list(targets)
-        while waiting:
-            slot = waiting.pop()
-            if slot in found:
-                continue
-            found.add(slot)
-            item = self.items[slot]
-            if item.view is not None:
-                waiting.append(item.source)
-            waiting += [self._before_guard(s) for s in item.guard]
-            waiting += [s for port in self._eager_inputs(item) for s in port.slots]
+        found = 0
+        for slot in targets:
+            found |= self.eager[slot]
         return found
 
     def _before_guard(self, slot: int) -> int:
@@ -255,16 +276,16 @@ class _Planner:
         item = self.items[slot]
         return slot if item.view is None else item.source
 
-    def _place_lazies(self, item: Item, main: set[int]) -> None:
+    def _place_lazies(self, item: Item, main: int) -> None:
         eager = {id(port) for port in self._eager_inputs(item)}
         if len(eager) == len(item.inputs):
             return
         done = main | self._eager(item.guard)
         for port in item.inputs:
-            needed = self._eager(port.slots) - done - self.given
+            needed = self._eager(port.slots) & ~done & ~self.given
             if id(port) not in eager:
                 # Eager inputs stand beside the item in whatever block it runs in.
-                port.lazy = tuple(sorted(needed))
+                port.lazy = _slots(needed)
             done |= needed
 
     def _depth(self) -> int:

@@ -85,6 +85,8 @@ def _operation(
         body = _first_of(item, blocks)
     elif node.kind is NodeKind.PASS:
         body = _pass(item, blocks)
+    elif node.kind is NodeKind.GIVEN:
+        body = _given(item)
     else:
         body = step_operation(item, node, call_of(node), time, blocks)
     if node.guard is not None:
@@ -170,6 +172,15 @@ def _first_of(item: Item, blocks: list[Block]) -> Operation:
             if failed is None and value.__class__ is Failed:
                 failed = value
         state[slot] = value if failed is None else failed
+
+    return operation
+
+
+def _given(item: Item) -> Operation:
+    slot, name = item.slot, item.name
+
+    def operation(state: State) -> None:
+        state[slot] = state[0].given[name]
 
     return operation
 

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import shown
+from tactile_graph.errors import one_of, shown
 from tactile_graph.pipeline.comparable import fields_hint, is_scalar
 from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_truth, nonsense
+from tactile_graph.pipeline.over_items import OVER_ITEMS, resolve_of_items, spelled_out
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
 from tactile_graph.steps.signature import list_item, type_name
@@ -21,6 +22,8 @@ LONGEST = 2_000
 LONGEST_SPELLED, SHORTEST_SPELLED = 4_000, 50
 """Characters of all that a condition names, each counted as that many at least."""
 DEEPEST = 100
+MOST_TOLD = 4
+"""Items of a list whose numbers a reason shows."""
 
 SIGNS = {
     r"&&": "write 'and' for '&&'",
@@ -51,19 +54,20 @@ class Guard:
 
     ``text`` is what the file says, ``meaning`` the same with named conditions spelled out and the
     references numbered: two guards of equal meaning and references hold for the same frames.
+    ``groups`` are the references to items of the same list, one for each ``any``, ``all`` or
+    ``count``: the function takes them side by side, for items that have a value.
     """
 
     text: str
     refs: tuple[Ref, ...]
     function: Callable[..., Any]
     meaning: str
+    groups: tuple[tuple[int, ...], ...] = ()
 
     def reason(self, values: tuple[Any, ...]) -> str:
         """Return why a node was skipped: the condition and what it read."""
-        read = ", ".join(
-            f"{ref} = {v:.6g}" if isinstance(v, float) else f"{ref} = {_short(v)}"
-            for ref, v in zip(self.refs, values, strict=True)
-        )
+        told = (f"{r.spelled} = {_short(v)}" for r, v in zip(self.refs, values, strict=True))
+        read = ", ".join(dict.fromkeys(told))
         return f"when {self.text} is false" + (f" ({read})" if read else "")
 
 
@@ -73,8 +77,13 @@ def _one_line(text: str) -> str:
 
 
 def _short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
     if isinstance(value, bool | int | str | np.generic):
         return f"{value.item() if isinstance(value, np.generic) else value!r}"
+    if isinstance(value, tuple) and value and all(isinstance(v, int | float) for v in value):
+        more = f", … of {len(value)}" if len(value) > MOST_TOLD else ""
+        return f"[{', '.join(map(_short, value[:MOST_TOLD]))}{more}]"
     return f"{len(value)} items" if isinstance(value, Sized) else f"a {type(value).__name__}"
 
 
@@ -124,7 +133,8 @@ def compile_condition(
         _check_depth(tree)
         meaning = ast.unparse(tree)
         function = _function(compiler, tree)
-        return Guard(" ".join(text.split()), tuple(compiler.refs), function, meaning)
+        refs, groups = tuple(compiler.refs), tuple(compiler.groups)
+        return Guard(" ".join(text.split()), refs, function, meaning, groups)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
 
@@ -142,10 +152,11 @@ def _function(
 ) -> Callable[..., Any]:
     refs = compiler.refs if refs is None else refs
     arguments = [ast.arg(f"v{i}") for i in range(len(refs))]
-    body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), tree)
+    rows = spelled_out(tree, compiler.groups)
+    body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), rows)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
-    function: Callable[..., Any] = eval(code, {"__builtins__": {}, **FUNCTIONS})  # whitelisted
-    return function
+    function: Callable[..., Any] = eval(code, {"__builtins__": {}, "zip": zip, **FUNCTIONS})
+    return function  # of a whitelisted text
 
 
 class _Compiler:
@@ -157,6 +168,11 @@ class _Compiler:
         self.named = named
         self.refs: list[Ref] = []
         self.kinds: list[Any] = []
+        self.lists: list[Ref | None] = []
+        """Of each reference the list it reads the items of."""
+        self.groups: list[tuple[int, ...]] = []
+        self.over: list[int] | None = None
+        """What is read of items by the ``any``, ``all`` or ``count`` under way."""
         self.spelled = 0
 
     def parse(self, text: str, within: tuple[str, ...]) -> ast.expr:
@@ -206,6 +222,11 @@ class _Compiler:
             if not self.is_truth(part):
                 raise ConditionError(self.not_truth(part), getattr(node, "col_offset", 0))
         for part in _compared_parts(node):
+            if isinstance(part, ast.Call) and ast.unparse(part.func) in ("any", "all"):
+                name = ast.unparse(part.func)
+                raise ConditionError(
+                    f"{name}() is a yes or no; count() is a number", part.col_offset
+                )
             if not self.is_comparable(part):
                 raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
         words = ""
@@ -219,7 +240,7 @@ class _Compiler:
 
     def spell(self, node: ast.expr) -> str:
         if isinstance(node, ast.Name):
-            return str(self.refs[int(node.id[1:])])
+            return self.refs[int(node.id[1:])].spelled
         return ast.unparse(node)
 
     def call(self, node: ast.Call, within: tuple[str, ...]) -> ast.expr:
@@ -228,9 +249,38 @@ class _Compiler:
             raise ConditionError(
                 f"only {', '.join(FUNCTIONS)} can be called in a condition", node.col_offset
             )
+        if name in OVER_ITEMS:
+            return self.over_items(node, name, within)
         node.args = [self.rewrite(a, within) for a in node.args]
         if not node.args or (name in ("len", "abs") and len(node.args) != 1):
             raise ConditionError(f"{name}() takes one argument", node.col_offset)
+        return node
+
+    def over_items(self, node: ast.Call, name: str, within: tuple[str, ...]) -> ast.expr:
+        at = node.col_offset
+        if self.over is not None:
+            raise ConditionError(
+                f"{name}() cannot stand within another any(), all() or count()", at
+            )
+        if len(node.args) != 1:
+            like = f"{name}(fits.radius_cm > 1)"
+            raise ConditionError(f"{name}() takes one condition over items, like {like}", at)
+        over: list[int] = []
+        self.over = over
+        node.args = [self.rewrite(node.args[0], within)]
+        self.over = None
+        (inner,) = node.args
+        lists = sorted({str(self.lists[i]) for i in over})
+        if not lists:
+            raise ConditionError(
+                f"{name}() is over the items of a list, and none is read in it", at
+            )
+        if len(lists) > 1:
+            raise ConditionError(f"{name}() is over the items of one list, got {one_of(lists)}", at)
+        words = no_truth(inner) or ("" if self.is_truth(inner) else self.not_truth(inner))
+        if words:
+            raise ConditionError(words, at)
+        self.groups.append(tuple(over))
         return node
 
     def reference(self, chain: tuple[str, ...], offset: int, within: tuple[str, ...]) -> ast.expr:
@@ -245,11 +295,30 @@ class _Compiler:
                 raise ConditionError(error.message, offset, error.named or root) from None
         if root in ("true", "false") and root not in self.types:
             raise ConditionError(f"{root} is written {root.capitalize()} in a condition", offset)
+        item = resolve_of_items(chain, self.types, offset)
+        if item is not None and self.over is not None:
+            return self.value(item.ref, item.kind, item.of)
+        if item is not None and len(item.ref.item_path) > 0:
+            what = (
+                f"{item.of} is a list: fields of its items are read within any(), all() or count()"
+            )
+            raise ConditionError(what, offset)
         ref, kind = resolve_reference(chain, self.types, [*self.named, *self.also], offset)
-        if ref not in self.refs:
+        return self.value(ref, kind)
+
+    def value(self, ref: Ref, kind: Any, of: Ref | None = None) -> ast.expr:
+        """Return the name of a value that is read: of each item of a list, or as it is."""
+        known = [*zip(self.refs, self.lists, strict=True)]
+        index = known.index((ref, of)) if of is None and (ref, of) in known else len(known)
+        if of is not None and self.over is not None:
+            index = next((i for i in self.over if known[i] == (ref, of)), index)
+        if index == len(known):
             self.refs.append(ref)
             self.kinds.append(kind)
-        return ast.Name(f"v{self.refs.index(ref)}", ast.Load())
+            self.lists.append(of)
+        if of is not None and self.over is not None and index not in self.over:
+            self.over.append(index)
+        return ast.Name(f"v{index}", ast.Load())
 
     def kind(self, node: ast.expr) -> Any:
         if isinstance(node, ast.Name) and node.id[:1] == "v" and node.id[1:].isdigit():
@@ -267,15 +336,14 @@ class _Compiler:
     def not_truth(self, node: ast.expr) -> str:
         kind = self.kind(node)
         return (
-            f"{self.refs[int(node.id[1:])]} is a {type_name(kind)}, "  # type: ignore[attr-defined]
+            f"{self.spell(node)} is a {type_name(kind)}, "
             f"not a yes/no or a number{fields_hint(kind)}"
         )
 
     def not_comparable(self, node: ast.expr) -> str:
         kind = self.kind(node)
         return (
-            f"{self.refs[int(node.id[1:])]} is a {type_name(kind)} "  # type: ignore[attr-defined]
-            f"and cannot be compared{fields_hint(kind)}"
+            f"{self.spell(node)} is a {type_name(kind)} and cannot be compared{fields_hint(kind)}"
         )
 
 

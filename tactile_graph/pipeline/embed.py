@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
@@ -13,33 +13,77 @@ from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, Nod
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
 from tactile_graph.wires.frame import Frame
-from tactile_graph.wires.image import Image
+from tactile_graph.wires.image import Image, Mask
+
+MASK = "mask"
+"""The port by which the cells of each item come to a pipeline that reads ``frame.mask``."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """A value that is wired to an embedded pipeline: where it is, its type, what is known of it."""
+
+    ref: Ref
+    kind: Any
+    facts: Facts
 
 
 @dataclass(frozen=True)
 class Embedding:
-    """The node that stands for a pipeline in another: what it reads, of which type, and when.
+    """The node that stands for a pipeline in another: what it reads, and when.
 
-    ``facts`` are those of what it reads.
+    ``frame`` takes the place of the pipeline's frame, each of ``given`` that of one of its nodes.
     """
 
     name: str
     mark: Mark
-    ref: Ref
-    kind: Any
-    facts: Facts
+    frame: Given
     guard: Guard | None
+    given: Mapping[str, Given] = field(default_factory=dict)
+
+
+def replaced_nodes(inner: Graph, given: Collection[str]) -> set[str]:
+    """Return the nodes that values take the place of, and those that only these need."""
+    if not given:
+        return set()
+    return {*given, *(_reached(inner, ()) - _reached(inner, given))}
+
+
+def _reached(inner: Graph, closed: Collection[str]) -> set[str]:
+    """Return the nodes that a pipeline's outputs need, not looking behind closed ones."""
+    found = set[str]()
+    waiting = [ref.node for ref in inner.outputs.values()]
+    while waiting:
+        name = waiting.pop()
+        if name in inner.nodes and name not in found:
+            found.add(name)
+            waiting += [] if name in closed else [r.node for r in inner.nodes[name].wires()]
+    return found
+
+
+def given_troubles(inner: Graph, at: Embedding) -> Iterator[tuple[str, str]]:
+    """Yield each node that a value cannot stand for as it is, and why."""
+    for name, value in at.given.items():
+        node = inner.nodes[name]
+        own = embedded_facts(node.facts, at.frame.facts)
+        quantities = {value.facts.quantity, own.quantity}
+        if len(quantities) == 2 and not quantities & {"", FRAME}:
+            yield name, f"{value.ref} is in {value.facts.quantity}, {name} in {own.quantity}"
+        if None not in (value.facts.grid, own.grid) and value.facts.grid != own.grid:
+            yield name, f"{value.ref} has another grid than {name}"
 
 
 def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
     """Return the inner nodes under ``name/…`` and one passing node per output, and troubles."""
-    rename, troubles = _renamer(at.name, at.ref, at.kind)
+    rename, troubles = _renamer(inner, at)
+    gone = replaced_nodes(inner, at.given)
     nodes = [
         replace(
             node.rewired(f"{at.name}/{node.name}", rename),
-            facts=embedded_facts(node.facts, at.facts),
+            facts=embedded_facts(node.facts, at.frame.facts),
         )
         for node in inner.nodes.values()
+        if node.name not in gone
     ]
     single = len(inner.outputs) == 1
     for output, source in inner.outputs.items():
@@ -52,7 +96,7 @@ def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
                 choices=(rename(source),),
                 guard=at.guard,
                 key=inner.key + output,
-                facts=embedded_facts(_facts_at(source, inner), at.facts),
+                facts=embedded_facts(_facts_at(source, inner), at.frame.facts),
             )
         )
     return nodes, troubles
@@ -64,18 +108,24 @@ def _facts_at(ref: Ref, inner: Graph) -> Facts:
     return inner.nodes[ref.node].facts if ref.whole else Facts()
 
 
-def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list[str]]:
+def _renamer(inner: Graph, at: Embedding) -> tuple[Callable[[Ref], Ref], list[str]]:
     troubles: list[str] = []
-    image = fit(ref, kind, Image)
+    ref, kind = at.frame.ref, at.frame.kind
+    views = {"image": fit(ref, kind, Image), "mask": fit(ref, kind, Mask)}
+    stands = {name: _fitted(inner, name, value, troubles) for name, value in at.given.items()}
 
-    def rename(inner: Ref) -> Ref:
-        if inner.node != FRAME:
-            return replace(inner, node=f"{name}/{inner.node}")
+    def rename(read: Ref) -> Ref:
+        if read.node in stands:
+            new = stands[read.node]
+            return Ref(new.node, (*new.path, *read.path), read.item_path or new.item_path)
+        if read.node != FRAME:
+            return replace(read, node=f"{at.name}/{read.node}")
         if kind is Frame:
-            return Ref(ref.node, (*ref.path, *inner.path), inner.item_path)
-        if inner.path[:1] == ("image",) and image is not None:
-            return Ref(image.node, (*image.path, *inner.path[1:]), inner.item_path)
-        text = f"the pipeline reads {inner}, but {ref} is a {type_name(kind)}"
+            return Ref(ref.node, (*ref.path, *read.path), read.item_path)
+        view = views.get(read.path[0]) if read.path else None
+        if view is not None:
+            return Ref(view.node, (*view.path, *read.path[1:]), read.item_path)
+        text = f"the pipeline reads {read}, but {ref} is a {type_name(kind)}"
         if text not in troubles:
             troubles.append(text)
         return Ref(ref.node, ref.path)
@@ -83,23 +133,71 @@ def _renamer(name: str, ref: Ref, kind: Any) -> tuple[Callable[[Ref], Ref], list
     return rename, troubles
 
 
-def map_node(inner: Graph, at: Embedding) -> tuple[Node, str]:
-    """Return a node that runs the inner pipeline over each item, and what is wrong with it."""
-    trouble = ""
-    fitted = fit(at.ref, at.kind, list[Image])
+def _fitted(inner: Graph, name: str, value: Given, troubles: list[str]) -> Ref:
+    """Return how a value takes the place of a node; where it cannot, that is a trouble."""
+    wanted = inner.nodes[name].output
+    fitted = fit(value.ref, value.kind, wanted)
     if fitted is None:
-        hint = "" if list_item(at.kind) is not None else " ('each' needs a list)"
-        trouble = f"{at.ref} is a {type_name(at.kind)}, a list of images is needed{hint}"
-        fitted = at.ref
+        text = f"{value.ref} is a {type_name(value.kind)}, but stands for"
+        troubles.append(f"{text} {name!r}, a {type_name(wanted)}")
+    return value.ref if fitted is None else fitted
+
+
+def map_node(inner: Graph, at: Embedding) -> tuple[Node, list[str]]:
+    """Return a node that runs the inner pipeline over each item, and what is wrong with it."""
+    troubles: list[str] = []
+    bindings = [_frame_binding(at, troubles)]
+    reads_mask = any(ref.node == FRAME and ref.path[:1] == ("mask",) for ref in _all_reads(inner))
+    masks = fit(at.frame.ref, at.frame.kind, list[Mask])
+    if reads_mask and masks is not None:
+        bindings.append(Binding(Port(MASK, list[Mask]), (masks,), iterates=True))
+    for name, value in at.given.items():
+        wanted = inner.nodes[name].output
+        whole = fit(value.ref, value.kind, wanted)
+        each = None if whole else fit(value.ref, value.kind, list[wanted])  # type: ignore[valid-type]
+        found = each or whole or _fitted(inner, name, value, troubles)
+        bindings.append(Binding(Port(name, wanted), (found,), iterates=each is not None))
+    if not troubles and not any(b.iterates for b in bindings):
+        troubles.append(f"{at.frame.ref} is a {type_name(at.frame.kind)} ('each' needs a list)")
     stateful = [n.name for n in inner.nodes.values() if n.stateful]
     if stateful:
-        trouble = f"stateful node {stateful[0]!r} of {inner.name!r} cannot run for each item"
-    binding = Binding(Port(FRAME, list[Image]), (fitted,))
+        troubles = [f"stateful node {stateful[0]!r} of {inner.name!r} cannot run for each item"]
     node = Node(
-        at.name, NodeKind.MAP, _map_output(at.name, inner), at.mark, inputs=(binding,),
-        guard=at.guard, each=True, inner=inner,
+        at.name, NodeKind.MAP, _map_output(at.name, inner), at.mark, inputs=tuple(bindings),
+        guard=at.guard, each=True, inner=_with_given(inner, at),
     )  # fmt: skip
-    return node, trouble
+    return node, troubles
+
+
+def _frame_binding(at: Embedding, troubles: list[str]) -> Binding:
+    """Return what becomes the inner frames: the items of a list of images, or one for all."""
+    ref, kind = at.frame.ref, at.frame.kind
+    each = fit(ref, kind, list[Image])
+    one = fit(ref, kind, Image) if each is None and at.given else None
+    if each is None and one is None:
+        hint = "" if list_item(kind) is not None else " ('each' needs a list)"
+        troubles.append(f"{ref} is a {type_name(kind)}, a list of images is needed{hint}")
+    return Binding(Port(FRAME, list[Image]), (each or one or ref,), iterates=one is None)
+
+
+def _all_reads(inner: Graph) -> list[Ref]:
+    return [*inner.outputs.values(), *(r for node in inner.nodes.values() for r in node.wires())]
+
+
+def _with_given(inner: Graph, at: Embedding) -> Graph:
+    """Return the inner pipeline with the nodes that values take the place of left open."""
+    if not at.given:
+        return inner
+    gone = replaced_nodes(inner, at.given)
+    nodes = {
+        name: Node(name, NodeKind.GIVEN, node.output, node.mark, facts=node.facts, key=node.key)
+        if name in at.given
+        else node
+        for name, node in inner.nodes.items()
+        if name in at.given or name not in gone
+    }
+    rules = tuple(rule for rule in inner.frame_rules if rule.node not in gone)
+    return replace(inner, nodes=nodes, frame_rules=rules)
 
 
 def _map_output(name: str, inner: Graph) -> Any:

@@ -33,6 +33,8 @@ class NodeKind(Enum):
     """Hands an embedded pipeline's output on."""
     MAP = "map"
     """Runs an embedded pipeline over the items of a list."""
+    GIVEN = "given"
+    """Of a pipeline run over a list: what is wired to it in place of a node of its own."""
 
 
 @dataclass(frozen=True)

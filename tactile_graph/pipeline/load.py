@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean
 from tactile_graph.pipeline.declaration import MOST_NODES, declare
-from tactile_graph.pipeline.document import read_document, text_of_file
+from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
 from tactile_graph.pipeline.scope import Overrides, Scope
@@ -34,7 +35,8 @@ class Opened(NamedTuple):
 
 def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
     """Return the graph of the pipeline of that name or in that file; for the rest see `load`."""
-    return _load(name, registry or installed(), {}, None, Opened((), {}))
+    registry = registry or installed()
+    return _load(find(name, registry), registry, {}, None, Opened((), {}))
 
 
 def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
@@ -48,8 +50,8 @@ def resolve_again(graph: Graph, overrides: Overrides, source: SourceOverride) ->
     return _build(graph.text, graph.file, registry, overrides, source, Opened((), {}))
 
 
-def find(name: str | Path, registry: Registry) -> Path:
-    """Return the file of a pipeline.
+def find(name: str | Path, registry: Registry, file: str = "") -> Path:
+    """Return the file of a pipeline, as it is named in another file.
 
     Raises
     ------
@@ -70,7 +72,7 @@ def find(name: str | Path, registry: Registry) -> Path:
             raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
         if text and _is_folder(Path(text)):
             raise UsageError(f"{text!r} is a folder; name a file in it")
-    return registry.path("pipelines", text)
+    return registry.path("pipelines", text, file)
 
 
 def _is_file(path: Path) -> bool:
@@ -98,13 +100,12 @@ def _siblings(path: Path) -> list[str]:
 
 
 def _load(
-    name: str | Path,
+    path: Path,
     registry: Registry,
     overrides: Overrides,
     source: SourceOverride,
     opened: Opened,
 ) -> Graph:
-    path = find(name, registry)
     try:
         text = text_of_file(path)
     except OSError as error:
@@ -145,8 +146,8 @@ def _build(
         return _load_inner(name, file, registry, inner_overrides, inside)
 
     scope = Scope(declaration, registry, load_inner, overrides)
+    declaration.evolves = _parent(declaration.evolves, document, registry)
     graph = resolve(scope, source, embedded=bool(opened.within))
-    _check_parent(declaration.evolves, document, registry)
     if document.problems:
         raise PipelineError(_ordered(document.problems))
     return graph
@@ -160,25 +161,31 @@ def _load_inner(
         raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
     beside = Path(file).parent / name
     found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
-    names = [n for n, _ in opened.within]
-    target = None if name in names else find(found, registry).resolve()
-    for i, (known, path) in enumerate(opened.within):
-        if known == name or path == target:
-            loop = " -> ".join((*names[i:], known))
-            raise UsageError(f"pipelines use each other in a circle: {loop}")
+    names, files = [n for n, _ in opened.within], [p for _, p in opened.within]
+    _refuse_circle(names, names, name)
+    path = find(found, registry, file)
+    target = path.resolve()
+    _refuse_circle(names, files, target)
     if len(names) > MOST_LEVELS:
         raise UsageError(f"pipelines use each other more than {MOST_LEVELS} deep")
-    if overrides or target is None:
-        return _small_enough(_load(found, registry, overrides, None, opened))
+    if overrides:
+        return _small_enough(_load(path, registry, overrides, None, opened))
     if target not in opened.loaded:
         try:
-            opened.loaded[target] = _small_enough(_load(found, registry, {}, None, opened))
+            opened.loaded[target] = _small_enough(_load(path, registry, {}, None, opened))
         except TactileGraphError as error:
             opened.loaded[target] = error
     came = opened.loaded[target]
     if isinstance(came, Exception):
         raise came
     return came
+
+
+def _refuse_circle(names: list[str], opened: Sequence[object], again: object) -> None:
+    if again in opened:
+        i = opened.index(again)
+        loop = " -> ".join((*names[i:], names[i]))
+        raise UsageError(f"pipelines use each other in a circle: {loop}")
 
 
 def _small_enough(graph: Graph) -> Graph:
@@ -190,14 +197,17 @@ def _small_enough(graph: Graph) -> Graph:
     return graph
 
 
-def _check_parent(parent: str, document: Any, registry: Registry) -> None:
-    if not parent or registry.has("pipelines", parent):
-        return
-    if parent.endswith((".yaml", ".yml")) and _is_file(Path(document.file).parent / parent):
-        return
-    names = registry.names("pipelines")
-    hint = did_you_mean(parent, names) or f"; there are: {one_of(names)}"
-    document.problem(f"'evolves': no pipeline named {parent!r}{hint}", "evolves")
+def _parent(name: str, document: Document, registry: Registry) -> str:
+    """Return the name of what a file's pipeline evolves from, as it is understood elsewhere too."""
+    if not name:
+        return name
+    if name.endswith((".yaml", ".yml")) and _is_file(Path(document.file).parent / name):
+        return name
+    try:
+        return registry.spelled("pipelines", name, document.file)
+    except UsageError as error:
+        document.problem(f"'evolves': {error}", "evolves")
+        return name
 
 
 def _ordered(problems: list[Any]) -> list[Any]:

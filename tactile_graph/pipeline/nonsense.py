@@ -9,11 +9,14 @@ from typing import Any, Literal, Protocol, get_args, get_origin
 
 from tactile_graph.errors import did_you_mean
 from tactile_graph.pipeline.comparable import is_scalar, sort_of
+from tactile_graph.pipeline.over_items import OVER_ITEMS
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.steps.signature import list_item, strip
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "len": len, "max": max, "min": min}
-NEVER_NEGATIVE = ("len", "abs")
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "abs": abs, "len": len, "max": max, "min": min, **OVER_ITEMS
+}  # fmt: skip
+NEVER_NEGATIVE = ("len", "abs", "count")
 _HOLDS: dict[type, Callable[[float], bool]] = {
     ast.Lt: lambda limit: limit <= 0, ast.LtE: lambda limit: limit < 0,
     ast.Eq: lambda limit: limit < 0, ast.GtE: lambda limit: limit <= 0,

@@ -90,7 +90,7 @@ def _source(scope: Scope, replaced: SourceOverride) -> Source | None:
     if step is None:
         return None
     try:
-        signature = scope.registry.step(step)
+        signature = scope.registry.step(step, scope.document.file)
     except (UsageError, PluginError) as error:
         scope.document.problem(f"source: {error}", "source", "step")
         return None
@@ -163,7 +163,7 @@ def _report(scope: Scope, declared: NodeDeclaration, troubles: list[Trouble]) ->
 def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     assert declared.step is not None
     try:
-        signature = scope.registry.step(declared.step)
+        signature = scope.registry.step(declared.step, scope.document.file)
     except (UsageError, PluginError) as error:
         scope.problem(declared, f": {error}", "step")
         scope.add_unknown(declared.name)
@@ -183,7 +183,7 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
             text = f": a stateful step ({declared.step}) cannot run for each item"
             scope.problem(declared, text, "each")
     key = node_key(
-        declared.step, sorted(plain(settings).items()), declared.each,
+        signature.identity, sorted(plain(settings).items()), declared.each,
         [(b.port.name, [scope.ref_key(r) for r in b.refs]) for b in inputs],
         scope.guard_key(guard),
     )  # fmt: skip

@@ -12,7 +12,7 @@ from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 from tactile_graph.pipeline.document import Document
 from tactile_graph.pipeline.graph import FRAME, Facts, FrameRule, Graph, Node
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
-from tactile_graph.pipeline.wiring import UNKNOWN, Ref
+from tactile_graph.pipeline.wiring import UNKNOWN, Ref, when_known
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.wires import Frame
 
@@ -90,7 +90,8 @@ class Scope:
         """Return reference and type for ``node.field``, or report what is wrong with it."""
         try:
             known = list(self.declaration.nodes)
-            return resolve_reference(tuple(text.split(".")), self.types, known)
+            ref, kind = resolve_reference(tuple(text.split(".")), self.types, known)
+            return ref, when_known(kind) if ref.path else kind
         except ConditionError as error:
             self.problem(declared, f": {error.message}", *path)
             return None

@@ -5,27 +5,32 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.errors import PipelineError, TactileGraphError
+from tactile_graph.errors import PipelineError, TactileGraphError, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.embed import Embedding, inline_nodes, map_node
+from tactile_graph.pipeline.embed import (
+    Embedding,
+    Given,
+    given_troubles,
+    inline_nodes,
+    map_node,
+    replaced_nodes,
+)
 from tactile_graph.pipeline.facts import embedded_rules, ref_facts
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
 from tactile_graph.pipeline.scope import Scope
-from tactile_graph.pipeline.wiring import Ref
 
 
 def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     """Enter what a ``use`` stands for; what is wrong with it is reported in the scope."""
     inner = _inner(scope, declared)
-    found = None if inner is None else _input(scope, declared)
-    if inner is None or found is None:
+    wired = None if inner is None else _inputs(scope, declared, inner)
+    if inner is None or wired is None:
         scope.add_unknown(declared.name)
         return
-    ref, kind = found
-    at = Embedding(
-        declared.name, scope.mark(declared), ref, kind, ref_facts(ref, scope.facts), guard
-    )
+    frame = wired.pop(FRAME)
+    at = Embedding(declared.name, scope.mark(declared), frame, guard, wired)
+    _check_given(scope, declared, inner, at)
     if declared.each:
         _map(scope, declared, inner, at)
     else:
@@ -64,32 +69,71 @@ def _cannot_be_used(scope: Scope, declared: NodeDeclaration, text: str) -> None:
     scope.problem(declared, f": pipeline {declared.use!r} cannot be used: {text}", "use")
 
 
-def _input(scope: Scope, declared: NodeDeclaration) -> tuple[Ref, Any] | None:
+def _inputs(scope: Scope, declared: NodeDeclaration, inner: Graph) -> dict[str, Given] | None:
+    """Return what takes the place of the frame, and of which nodes; None where that is wrong."""
     wired = declared.inputs
-    if isinstance(wired, dict) and list(wired) == [FRAME]:
-        wired = wired[FRAME]
-    if wired is None:
-        wired = FRAME
-    if not isinstance(wired, str):
-        scope.problem(declared, ": an embedded pipeline has one port, 'frame'", "in")
+    if wired is None or isinstance(wired, str):
+        wired = {FRAME: wired or FRAME}
+    if not isinstance(wired, dict):
+        text = (
+            ": an embedded pipeline takes one input, its frame, or a map: its frame and any of "
+            "its nodes, {frame: …, node: …}"
+        )
+        scope.problem(declared, text, "in")
         return None
-    return scope.ref(declared, wired, "in")
+    found: dict[str, Given] = {}
+    for name, text in {FRAME: FRAME, **wired}.items():
+        path = ("in", name) if isinstance(declared.inputs, dict) else ("in",)
+        if name != FRAME and name not in inner.nodes:
+            known = [FRAME, *inner.nodes]
+            hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
+            what = f": pipeline {declared.use!r} has no node {name!r} to take the place of{hint}"
+            scope.problem(declared, what, *path, key=True)
+            return None
+        if not isinstance(text, str):
+            scope.problem(declared, f": {name!r} takes one input, not a list", *path)
+            return None
+        ref = scope.ref(declared, text, *path)
+        if ref is None:
+            return None
+        found[name] = Given(*ref, ref_facts(ref[0], scope.facts))
+    return found
+
+
+def _check_given(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
+    """Report values that cannot stand for nodes, and settings of nodes that do not run."""
+    for name, what in given_troubles(inner, at):
+        scope.problem(declared, f": {what}", "in", name)
+    gone = replaced_nodes(inner, at.given)
+    for setting in declared.settings:
+        node = setting.rpartition(".")[0]
+        if node in gone:
+            which = "'in' takes its place" if node in at.given else "nothing needs it here"
+            scope.problem(declared, f", {setting}: {node!r} does not run: {which}", "with", setting)
 
 
 def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
-    node, trouble = map_node(inner, at)
-    if trouble:
+    node, troubles = map_node(inner, at)
+    for trouble in troubles:
         scope.problem(declared, f": {trouble}", "in")
-    key = node_key("map", inner.key, scope.ref_key(at.ref), scope.guard_key(at.guard))
+    key = node_key("map", inner.key, *_read_keys(scope, at), scope.guard_key(at.guard))
     scope.add(replace(node, key=key))
 
 
 def _inline(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
     nodes, troubles = inline_nodes(inner, at)
-    broken, rules = embedded_rules(at.name, inner.frame_rules, at.facts)
+    gone = replaced_nodes(inner, at.given)
+    left = [rule for rule in inner.frame_rules if rule.node not in gone]
+    broken, rules = embedded_rules(at.name, left, at.frame.facts)
     scope.rules += rules
     for trouble in [*troubles, *broken]:
         scope.problem(declared, f": {trouble}", "in")
     for node in nodes:
-        key = node_key("in", node.key, scope.ref_key(at.ref), scope.guard_key(node.guard))
+        key = node_key("in", node.key, *_read_keys(scope, at), scope.guard_key(node.guard))
         scope.add(replace(node, key=key))
+
+
+def _read_keys(scope: Scope, at: Embedding) -> list[object]:
+    """Return what makes two embeddings read the same."""
+    given = [(name, scope.ref_key(value.ref)) for name, value in at.given.items()]
+    return [scope.ref_key(at.frame.ref), *sorted(given)]

@@ -32,6 +32,11 @@ class Ref:
         return ".".join((self.node, *self.path))
 
     @property
+    def spelled(self) -> str:
+        """The reference with the field of items, as conditions have it."""
+        return ".".join((self.node, *self.path, *self.item_path))
+
+    @property
     def whole(self) -> bool:
         """Whether it is the node's value itself."""
         return not self.path and not self.item_path
@@ -144,6 +149,12 @@ def field_type(kind: Any, name: str) -> Any:
         return None
     first = found[0]
     return first if all(f == first for f in found) else Union[tuple(found)]  # noqa: UP007
+
+
+def when_known(kind: Any) -> Any:
+    """Return the type of what comes over a wire: a field that is None reads as skipped."""
+    left = tuple(arm for arm in arms(kind) if arm is not type(None))
+    return kind if not left or len(left) == len(arms(kind)) else common_type(left)
 
 
 def common_type(kinds: Sequence[Any]) -> Any:

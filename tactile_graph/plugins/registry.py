@@ -6,8 +6,8 @@ import importlib
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
-from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of, shown
+from tactile_graph.errors import PluginError, UsageError, did_you_mean, shown
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
+from tactile_graph.plugins.names import OWN, Names, Offer, Plugin
 
 if TYPE_CHECKING:
     from tactile_graph.steps.signature import Signature
@@ -36,11 +37,6 @@ _WANTED = {
     **dict.fromkeys(_FILES, "a file's path is needed"),
     "readers": "the name of its setting is needed",
 }
-
-
-def singular(kind: str) -> str:
-    """Return the word for one offer of a kind: ``"file kind"`` for ``"file_kinds"``."""
-    return kind.removesuffix("s").replace("_", " ")
 
 
 @dataclass(frozen=True)
@@ -64,33 +60,6 @@ class Selection:
         return name not in self.blocked and (not self.only or name in self.only)
 
 
-@dataclass
-class Plugin:
-    """One installed plugin: what it offers, or why it does not."""
-
-    name: str
-    package: str
-    version: str = ""
-    error: str = ""
-    blocked: bool = False
-    import_ms: float = 0.0
-    offers: dict[str, dict[str, Any]] = field(default_factory=dict)
-
-    @property
-    def label(self) -> str:
-        """Plugin and package, as errors name it."""
-        return f"plugin {self.name!r} (package {self.package})"
-
-
-@dataclass
-class Offer:
-    """One named thing a plugin offers."""
-
-    name: str
-    plugin: Plugin
-    target: Any
-
-
 class Registry:
     """Everything the installed plugins offer.
 
@@ -107,8 +76,7 @@ class Registry:
         selection: Selection | None = None,
     ) -> None:
         self.plugins: list[Plugin] = []
-        self.clashes: list[str] = []
-        self._offers: dict[str, dict[str, Offer]] = {kind: {} for kind in OFFERS}
+        self._offers = {kind: Names(kind) for kind in OFFERS}
         self._signatures: dict[str, Signature] = {}
         self._manager = pluggy.PluginManager(hookspecs.PROJECT)
         self._manager.add_hookspecs(hookspecs)
@@ -141,7 +109,7 @@ class Registry:
         plugin.import_ms = 1e3 * (time.perf_counter() - start)
         for kind, offers in plugin.offers.items():
             for name, target in offers.items():
-                self._add(kind, Offer(name, plugin, target))
+                self._offers[kind].add(Offer(name, plugin, target))
 
     def _register(self, module: ModuleType, name: str) -> None:
         check_hooks(module, (f"{GROUP}_{kind}" for kind in OFFERS), hookspecs.PROJECT)
@@ -167,44 +135,56 @@ class Registry:
                 raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {_WANTED[kind]}")
         return dict(answers[0])
 
-    def _add(self, kind: str, offer: Offer) -> None:
-        taken = self._offers[kind].get(offer.name)
-        if taken is None:
-            self._offers[kind][offer.name] = offer
-            return
-        clash = (
-            f"{singular(kind)} {offer.name!r} of {offer.plugin.label} is refused: "
-            f"{taken.plugin.label} has it already"
-        )
-        self.clashes.append(clash)
-        offer.plugin.offers[kind] = {
-            n: t for n, t in offer.plugin.offers[kind].items() if n != offer.name
-        }
+    @property
+    def clashes(self) -> list[str]:
+        """What is to be told of names that several plugins offer, a line each."""
+        return [told for names in self._offers.values() for told in names.clashes]
 
     def names(self, kind: str) -> list[str]:
-        """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …)."""
+        """Return the sorted names of all offers of a kind (``steps``, ``pipelines``, …).
+
+        They are plain, but for those that several plugins offer, which are qualified.
+        """
         return sorted(self._offers[kind])
 
-    def offer(self, kind: str, name: str) -> Offer:
+    def spelled(self, kind: str, name: str, file: str = "") -> str:
+        """Return the shortest name of what a name means, which no other plugin's is called."""
+        return self._offers[kind].spelled(self.offer(kind, name, file))
+
+    def offer(self, kind: str, name: str, file: str = "") -> Offer:
         """Return one offer.
+
+        Parameters
+        ----------
+        kind, name : str
+            The name plain, or qualified by the plugin: ``filters.median``.
+        file : str, optional
+            The pipeline file it is named in: one that a plugin offers means its own package's.
 
         Raises
         ------
         UsageError
-            If nothing of that name is offered; says what is near, and which plugins are down.
+            If nothing of that name is offered, or by several; says what is near, and which plugins
+            are down.
         """
+        names = self._offers[kind]
         try:
-            return self._offers[kind][name]
-        except KeyError:
-            raise UsageError(self.unknown(kind, name)) from None
+            found = names.find(name)
+        except UsageError:
+            found = names.find(name, self._packages.get(os.path.abspath(file), "") if file else "")
+        if found is None:
+            raise UsageError(self.unknown(kind, name))
+        return found
+
+    @cached_property
+    def _packages(self) -> dict[str, str]:
+        """Package of each pipeline file on offer."""
+        offers = (self.offer("pipelines", name) for name in self.names("pipelines"))
+        return {os.path.abspath(o.target): o.plugin.package for o in offers}
 
     def unknown(self, kind: str, name: str) -> str:
         """Return the text that says a name is not on offer, with what is near."""
-        names = self.names(kind)
-        text = f"no {singular(kind)} named {name!r}{did_you_mean(name, names)}"
-        if not did_you_mean(name, names):
-            text += f"; there are: {one_of(names)}"
-        return text + self.missing_plugins()
+        return self._offers[kind].unknown(name) + self.missing_plugins()
 
     def missing_plugins(self) -> str:
         """Return the words that say which plugins offer nothing, and why; "" if all do."""
@@ -226,31 +206,34 @@ class Registry:
 
     def load(self, kind: str, name: str) -> Any:
         """Return the thing itself, imported if it was offered by import string."""
-        offer = self.offer(kind, name)
+        return self._loaded(self.offer(kind, name))
+
+    @staticmethod
+    def _loaded(offer: Offer) -> Any:
         if isinstance(offer.target, str):
             offer.target = _import(offer)
         return offer.target
 
-    def step(self, name: str) -> Signature:
-        """Return what the step of that name needs and gives; imports its module."""
-        if name not in self._signatures:
+    def step(self, name: str, file: str = "") -> Signature:
+        """Return what a step needs and gives; imports its module. Parameters as of `offer`."""
+        offer = self.offer("steps", name, file)
+        if offer.qualified not in self._signatures:
             from tactile_graph.steps.checks import check_signature
             from tactile_graph.steps.signature import read_signature
 
-            target = self.load("steps", name)
+            target = self._loaded(offer)
             try:
-                signature = read_signature(name, target)
+                signature = read_signature(self._offers["steps"].spelled(offer), target)
                 check_signature(signature)
             except PluginError as error:
-                plugin = self.offer("steps", name).plugin
-                of = f"(plugin {plugin.name!r}, package {plugin.package})"
+                of = f"(plugin {offer.plugin.name!r}, package {offer.plugin.package})"
                 raise PluginError(f"{error} {of}") from None
-            self._signatures[name] = signature
-        return self._signatures[name]
+            self._signatures[offer.qualified] = replace(signature, identity=offer.identity)
+        return self._signatures[offer.qualified]
 
-    def path(self, kind: str, name: str) -> Path:
-        """Return the file of a pipeline, pad, preset or scene."""
-        return Path(self.offer(kind, name).target)
+    def path(self, kind: str, name: str, file: str = "") -> Path:
+        """Return the file of a pipeline, pad, preset or scene; parameters as of `offer`."""
+        return Path(self.offer(kind, name, file).target)
 
 
 def _import(offer: Offer) -> Any:
@@ -287,7 +270,7 @@ def _installed() -> list[tuple[str, str, str, Callable[[], ModuleType]]]:
 
     def place(entry: EntryPoint) -> tuple[bool, str, str]:
         name = package(entry)[0]
-        return (name != "tactile-graph", entry.name, name)
+        return (name != OWN, entry.name, name)
 
     found = sorted(set(entry_points(group=GROUP)), key=place)
     return [(e.name, *package(e), e.load) for e in found]

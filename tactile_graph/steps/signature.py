@@ -76,7 +76,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class Signature:
-    """Ports, settings and output of a step."""
+    """Ports, settings and output of a step.
+
+    ``identity`` tells it from steps of the same name that other plugins offer.
+    """
 
     name: str
     target: Callable[..., Any]
@@ -91,6 +94,7 @@ class Signature:
     report: str = ""
     gap: str = ""
     stateful: bool = False
+    identity: str = ""
 
     @cached_property
     def doc(self) -> str:

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from tactile_graph.engine.watched import Kept
-from tactile_graph.errors import text_of
+from tactile_graph.errors import Skip, text_of
 from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
@@ -20,6 +20,8 @@ from tactile_graph.testing.subject import Bound, Subject
 from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
 
 QUANTITIES_TRIED = ("volt", "gram", "counts", "siemens", "raw", "level", "binary", "kilopascal")
+MOST_WARMING = 100
+"""Ordinary frames after which a step that only skipped is taken to skip them all."""
 WRITES_BEFORE = "writes into what it gave before; give a copy"
 _NUMBERS = re.compile(r"[-+]?\d[\d.]*(e[-+]?\d+)?")
 Inputs = dict[str, Any]
@@ -51,6 +53,8 @@ class Examination:
         Processor time that a call may take; set from the ordinary case.
     n_cases, n_values : int
         Cases tried, and those that were answered with a value.
+    n_warming : int
+        Ordinary frames a step that keeps a state skips before it first answers one.
     """
 
     subject: Subject
@@ -58,6 +62,7 @@ class Examination:
     limit_s: float = FIRST_S
     n_cases: int = 0
     n_values: int = 0
+    n_warming: int = 0
     _found: dict[str, Broken] = field(default_factory=dict, init=False)
 
     @property
@@ -66,8 +71,14 @@ class Examination:
         return [*self._found.values()]
 
     def answers(self) -> bool:
-        """Return whether the step gives a value for the ordinary case."""
-        return self._try(self.subject.call(), self._inputs(ordinary())).answered
+        """Return whether the step gives a value for the ordinary case, at once or warmed up."""
+        call, most = self.subject.call(), MOST_WARMING if self.subject.signature.stateful else 0
+        for n in range(most + 1):
+            trial = self._try(call, self._inputs(ordinary()))
+            if not isinstance(trial.error, Skip):
+                self.n_warming = n if trial.answered else 0
+                return trial.answered
+        return False
 
     def run(self) -> None:
         """Try every case that this step can tell from the others."""
@@ -97,8 +108,10 @@ class Examination:
         self.n_cases += 1
         trial = self._watched(case, self._call(), inputs)
         self.n_values += trial.answered
+        if self.n_warming:
+            self._watched(case, self.subject.call(), inputs)
         if self.subject.signature.stateful and case.name != ORDINARY:
-            used = self.subject.call()
+            used = self._call()
             before = Kept({"answer": self._try(used, self._inputs(ordinary())).value})
             self._watched(case, used, self._inputs(case))
             if before.changed():
@@ -125,8 +138,13 @@ class Examination:
         return {name: maker(case) for name, maker in self.makers.items()}
 
     def _call(self) -> Bound:
-        """Return the step: the one and the same unless it keeps a state from frame to frame."""
-        return self.subject.call() if self.subject.signature.stateful else self._one
+        """Return the step: one that is warmed up, or where it keeps no state the very same."""
+        if not self.subject.signature.stateful:
+            return self._one
+        call = self.subject.call()
+        for _ in range(self.n_warming):
+            self._try(call, self._inputs(ordinary()))
+        return call
 
     @cached_property
     def _one(self) -> Bound:
@@ -144,7 +162,7 @@ class Examination:
 
     def _look_at_copies(self, usual: Case, first: Trial) -> bool:
         """Note what is wrong with copies of the step; return whether its answers can be copied."""
-        call = self.subject.call()
+        call = self._call()
         for what, made in _copies(call):
             if isinstance(made, Exception):
                 self._tell(ORDINARY, f"the step cannot be {what}: {_told(made)}")

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from tactile_graph.errors import PipelineError, TactileGraphError, text_of
-from tactile_graph.plugins.registry import OFFERS, Plugin, Registry, singular
+from tactile_graph.plugins.names import Plugin, singular
+from tactile_graph.plugins.registry import OFFERS, Registry
 from tactile_graph.testing.check import examine_step
 
 FILES = ("pads", "presets", "scenes")
@@ -23,6 +24,8 @@ class PluginReport:
         A line for each thing that is wrong.
     untried : dict of str to str
         Why a step was not tried, by name.
+    clashes : list of str
+        A line for each of its names that another plugin has too; that breaks nothing.
     n_offers : int
         How many things were looked at.
     """
@@ -30,6 +33,7 @@ class PluginReport:
     plugin: Plugin
     broken: list[str] = field(default_factory=list)
     untried: dict[str, str] = field(default_factory=dict)
+    clashes: list[str] = field(default_factory=list)
     n_offers: int = 0
 
 
@@ -50,7 +54,8 @@ def examine_plugin(
     if plugin.error:
         report.broken.append(plugin.error)
     for kind in OFFERS:
-        for name in plugin.offers.get(kind, ()):
+        for plain in plugin.offers.get(kind, ()):
+            name = registry.spelled(kind, f"{plugin.name}.{plain}")
             what = f"{singular(kind)} {name!r}"
             told(what)
             report.n_offers += 1
@@ -58,7 +63,7 @@ def examine_plugin(
                 _look_at_step(report, registry, name)
             else:
                 report.broken += [f"{what}: {w}" for w in _wrong(registry, kind, name)]
-    report.broken += [c for c in registry.clashes if f"of {plugin.label} is refused" in c]
+    report.clashes += [told for told in registry.clashes if plugin.label in told]
     return report
 
 

@@ -34,7 +34,7 @@ def scene(*objects: Any, seed: int = 0, **settings: Any) -> Frame:
     UsageError
         If a setting is not allowed, or an object is nothing that can lie there.
     """
-    step = installed().step("simulate")
+    step = installed().step("sources.simulate")
     laid = {"objects": [_object(thing) for thing in objects]}
     values, troubles = validate_settings(step, {"scene": laid, "frames": 1, **settings})
     if troubles:

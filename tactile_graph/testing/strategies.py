@@ -92,5 +92,5 @@ def points(max_count: int = 40, far_cm: float = LARGEST_CM) -> Strategy[Points]:
 def contacts(draw: Any, quantity: str = "volt", max_side: int = 12) -> Any:
     """Draw the contacts of images, found by ``contacts`` above a fifth of the peak."""
     image = draw(images(quantity, max_side))
-    found = installed().step("contacts").target
+    found = installed().step("filters.contacts").target
     return found(image, image.mask(image.values > 0.2 * image.peak))

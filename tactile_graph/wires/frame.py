@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import did_you_mean
-from tactile_graph.wires.image import QUANTITIES, Image
+from tactile_graph.wires.image import QUANTITIES, Image, Mask
 from tactile_graph.wires.shapes import Shape
 
 LARGEST = 1e100
@@ -52,6 +52,9 @@ class Frame:
         Which sensor or file the frame comes from, where a source has several.
     doubtful : bool
         True where the source cannot tell whether the values lie where they belong.
+    mask : Mask, optional
+        The cells of the contact whose image it is, where a pipeline runs for each contact; None for
+        a frame that is whole.
     """
 
     image: Image
@@ -62,6 +65,7 @@ class Frame:
     gap: bool = False
     label: str = ""
     doubtful: bool = False
+    mask: Mask | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
 
     @classmethod

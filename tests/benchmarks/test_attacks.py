@@ -34,6 +34,11 @@ def test_signals_leave_whole_files() -> None:
     attacked("signals.py", "--tries", "6")
 
 
+def test_killed_commands_leave_whole_files() -> None:
+    pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+    attacked("kills.py", "--tries", "8", "--only", "learn", "import", "calibrate", "images")
+
+
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
     attacked("plugins.py", "--tries", "8")
 

@@ -17,7 +17,7 @@ import pytest
 from click.testing import CliRunner
 
 from helpers_learning import MadeUpPad, untold
-from tactile_graph import Circle, loads
+from tactile_graph import Circle, load, loads
 from tactile_graph.cli import cli
 from tactile_graph.errors import DataError, PipelineError
 from tactile_graph.pipeline.conditions import FUNCTIONS
@@ -80,7 +80,8 @@ def test_every_command_shown_is_understood_and_what_it_names_exists(
     given: dict[str, Any] = context.params
     names = [given[k] for k in ("pipeline", "source") if isinstance(given.get(k), str)]
     names += [w.split()[0] for w in given.get("variants", ())]
-    known = {*installed().names("pipelines"), *installed().names("steps")}
+    found = installed()
+    known = [n for n in names if found.has("pipelines", n) or found.has("steps", n)]
     assert [n for n in names if n not in known and not n.endswith(FILES)] == []
     if words[0] == "reproduce":
         chosen(given["names"])  # raises at a name that is none
@@ -97,8 +98,19 @@ def test_keys_functions_and_quantities_of_a_pipeline_file_are_all_told() -> None
     assert [q for q in QUANTITIES if f"`{q}`" not in page] == []
 
 
+def test_the_pipelines_shown_within_others_run(tmp_path: Path) -> None:
+    inner = next(block for block in fenced("pipelines", "yaml") if "my-shape" in block[:40])
+    (tmp_path / "my-shape.yaml").write_text(inner)
+    nodes = next(block for block in fenced("pipelines", "yaml") if "use: circle-3" in block)
+    text = f"pipeline: p\n{nodes}outputs: [first, each]\n"
+    result = loads(text, str(tmp_path / "p.yaml")).run(next(load("circle-3").frames()))
+    assert isinstance(result["first"], Circle)
+    assert any(isinstance(circle, Circle) for circle in result["each"])
+    assert load(tmp_path / "my-shape.yaml").run(result.frame)["circle"].radius_cm > 1.0
+
+
 def test_the_choice_shown_hands_over_from_cheap_to_careful() -> None:
-    (nodes,) = fenced("pipelines", "yaml")
+    (nodes,) = (block for block in fenced("pipelines", "yaml") if "careful" in block)
     before = """pipeline: p
 source: {step: sample}
 nodes:

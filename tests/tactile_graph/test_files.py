@@ -92,10 +92,21 @@ def test_a_device_is_written_to_and_what_it_refuses_is_said(
     write_whole("/dev/null", "x")
 
 
+def test_whoever_reads_the_older_file_reads_all_of_it(tmp_path: Path) -> None:
+    """It is replaced, not written over: a kill at any moment leaves one of the two."""
+    path = tmp_path / "a.txt"
+    write_whole(path, "older")
+    with path.open() as older:
+        write_whole(path, "new")
+        assert older.read() == "older"
+    assert path.read_text() == "new"
+
+
 def test_what_is_plain(tmp_path: Path) -> None:
     (tmp_path / "dangling").symlink_to("nowhere")
     assert is_plain(tmp_path / "new")
     assert is_plain(tmp_path / "dangling")
+    assert is_plain("/dev/shm/new")
     assert not is_plain("/dev/stdout")
     assert not is_plain("/dev/null")
     assert not is_plain(tmp_path)

@@ -55,3 +55,13 @@ def test_a_known_bump_stands_out():
     assert got[3, 4] == 8.0
     assert got[5, 5] == 0.0
     assert got.sum() == 254.0 + 8.0
+
+
+def test_strays_lie_where_nothing_covers_and_are_as_many_as_asked():
+    covered = np.zeros(BIG.shape)
+    covered[:40] = 0.3
+    got = Unevenness(strays=0.05, stray_g=12.0).strays_g(covered, np.random.default_rng(0))
+    assert (got[:40] == 0.0).all()
+    assert set(np.unique(got)) == {0.0, 12.0}
+    assert (got[40:] > 0.0).mean() == pytest.approx(0.05, abs=0.01)
+    assert not Unevenness().strays_g(covered, np.random.default_rng(0)).any()

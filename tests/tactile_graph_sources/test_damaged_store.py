@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,8 @@ from tactile_graph import Frame
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps import Report
 from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores.checking import check
+from tactile_graph_sources.stores.stored import UNSURE
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -173,3 +177,87 @@ def test_a_damaged_store_is_not_gone_on_with(store: Path) -> None:
         UsageError, match=r"values/zarr.json is damaged; 'tactile-graph check --rep"
     ):
         StoreWriter(store, append=True)
+
+
+# -- what a value means ----------------------------------------------------------------------------
+
+
+def damage_head_and_grid(store: Path) -> None:
+    """Leave neither of the two places whole that tell the pitch of all frames."""
+    file = store / "frames.journal"
+    file.write_bytes(file.read_bytes().replace(b"volt", b"gram", 1))
+    file = store / "zarr.json"
+    file.write_text(file.read_text().replace("volt", "gram", 1))
+
+
+def without_copies(store: Path) -> None:
+    """Take the attributes out of the journal's blocks, as they were written at first."""
+    file = store / "frames.journal"
+    head, *lines = file.read_bytes().splitlines()
+    for i, line in enumerate(lines):
+        data = json.loads(line[9:])
+        del data["attributes"]
+        text = json.dumps(data).encode()
+        lines[i] = b"%08x %s" % (zlib.crc32(text), text)
+    file.write_bytes(b"\n".join([head, *lines, b""]))
+
+
+def test_each_line_of_the_journal_vouches_for_the_grid(store: Path) -> None:
+    damage_head_and_grid(store)
+    frames = list(read_store(store))
+    assert {(f.image.quantity, f.doubtful) for f in frames} == {("volt", False)}
+    checked = check(store, repair=True)
+    assert set(checked.mended) == {"line 1 of its journal is damaged", "zarr.json is damaged"}
+    assert checked.wrong == ()
+    assert '"volt"' in (store / "zarr.json").read_text()
+
+
+@pytest.mark.parametrize("repaired", [False, True])
+def test_frames_are_doubtful_where_nothing_vouches_for_the_grid(
+    store: Path, repaired: bool
+) -> None:
+    without_copies(store)
+    whole = [f.image.values.tolist() for f in read_store(store)]
+    damage_head_and_grid(store)
+    if repaired:
+        checked = check(store, repair=True)
+        assert checked.wrong == (UNSURE,)
+        assert check(store, repair=True) == checked._replace(mended=())
+    report = Report()
+    frames = list(read_store(store, report))
+    assert [f.image.values.tolist() for f in frames] == whole
+    assert all(f.doubtful for f in frames)
+    assert (str(store), UNSURE) in report.troubles
+    with pytest.raises(UsageError, match="nothing vouches" if repaired else "check --repair"):
+        StoreWriter(store, append=True)
+
+
+def test_a_store_whose_journal_has_no_copies_is_read_and_gone_on_with(store: Path) -> None:
+    without_copies(store)
+    assert check(store).wrong == ()
+    with StoreWriter(store, append=True) as writer:
+        writer.write(Frame.of(np.ones((3, 2)), quantity="volt"))
+    damage_head_and_grid(store)
+    frames = list(read_store(store))
+    assert {(f.image.quantity, f.doubtful) for f in frames} == {("volt", False)}
+
+
+def test_a_line_of_another_store_vouches_for_nothing(store: Path, tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "b.zarr", chunk=4) as writer:
+        for _ in range(4):
+            writer.write(Frame.of(np.ones((3, 2)), quantity="gram"))
+    other = (tmp_path / "b.zarr" / "frames.journal").read_bytes().splitlines(keepends=True)
+    lines = (store / "frames.journal").read_bytes().splitlines(keepends=True)
+    (store / "frames.journal").write_bytes(b"".join([*lines[:1], other[1], *lines[2:]]))
+    report = Report()
+    frames = list(read_store(store, report))
+    assert [f.index for f in frames if f.doubtful] == [0, 1, 2, 3]
+    assert report.troubles[0] == (str(store), "line 2 of its journal is damaged")
+
+
+def test_a_damaged_version_does_not_have_the_journal_overlooked(store: Path) -> None:
+    without_copies(store)
+    damage_head_and_grid(store)
+    file = store / "zarr.json"
+    file.write_text(file.read_text().replace('"version": 3', '"version": 2'))
+    assert all(f.doubtful for f in read_store(store))

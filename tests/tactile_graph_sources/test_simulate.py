@@ -1,12 +1,14 @@
 """The simulate source: physics, truth and repeatability."""
 
+import math
+
 import numpy as np
 import pytest
 
 from tactile_graph.errors import UsageError
 from tactile_graph.steps import Report
 from tactile_graph.steps.signature import Kind, read_signature
-from tactile_graph.wires import Circle, Frame, Rectangle
+from tactile_graph.wires import Circle, Ellipse, Frame, Rectangle
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.simulate import simulate
@@ -152,6 +154,65 @@ def test_stacked_weights_count_in_the_truth_and_move_the_pressure():
     (even,) = frames(1, scene={"objects": [{**DISC, "weight_g": 3360}]}, pad="plain")
     assert not np.allclose(frame.image.values, even.image.values, rtol=0.01)
     assert load_pad("plain").backward(frame.image.values).load_g.sum() == pytest.approx(3360.0)
+
+
+@pytest.mark.parametrize(
+    ("thing", "part"),
+    [
+        (DISC, Circle(10.0, 9.0, 5.1 * 0.8)),
+        (
+            {"shape": "rectangle", "weight_g": 900, "length_cm": 10, "breadth_cm": 4,
+             "place": [10.0, 9.0], "angle_deg": 0.0},
+            Rectangle(10.0, 9.0, 8.0, 4.0, 0.0),
+        ),
+        (
+            {"shape": "rectangle", "weight_g": 900, "length_cm": 4.5, "breadth_cm": 4,
+             "place": [10.0, 9.0], "angle_deg": 0.0},
+            Rectangle(10.0, 9.0, 3.6, 4.0, 0.0),
+        ),
+        (
+            {"shape": "ellipse", "weight_g": 900, "semi_major_cm": 5, "semi_minor_cm": 3,
+             "place": [10.0, 9.0], "angle_deg": 30.0},
+            Ellipse(10.0, 9.0, 4.0, 2.4, math.radians(30.0)),
+        ),
+        (
+            {"shape": "polygon", "weight_g": 900, "place": [10.0, 9.0], "angle_deg": 0.0,
+             "corners_cm": [[-3, -3], [3, -3], [3, 3], [-3, 3]]},
+            Rectangle(10.0, 9.0, 4.8, 4.8, 0.0),
+        ),
+    ],
+    ids=["disc", "rectangle", "rectangle, now broader than long", "ellipse", "polygon"],
+)  # fmt: skip
+def test_the_part_that_touches_bears_all_and_the_truth_keeps_the_whole(thing, part):
+    (frame,) = frames(1, scene={"objects": [{**thing, "touches": 0.8}]}, pad="plain")
+    pad = load_pad("plain")
+    covered = coverage_cm2(part, pad.geometry)
+    wanted = thing["weight_g"] * covered / covered.sum()
+    found = pad.backward(frame.image.values).load_g
+    assert found == pytest.approx(wanted, rel=0.05, abs=1.0)
+    (whole,) = frames(1, scene={"objects": [thing]}, pad="plain")
+    assert str(frame.truth[0]) == str(whole.truth[0])
+
+
+def test_a_pad_on_which_objects_lean_moves_the_pressure_anew_each_time():
+    pad = {"contact": {"lean_cm": 1.0}}
+    off = []
+    for frame in frames(60, scene={"objects": [DISC]}, pad=pad):
+        load = load_pad(pad).backward(frame.image.values).load_g
+        image = frame.image
+        off.append([(load.sum(0) @ image.x_cm) / load.sum() - 10.0,
+                    (load.sum(1) @ image.y_cm) / load.sum() - 9.0])  # fmt: skip
+    assert np.std(off, axis=0) == pytest.approx([0.9, 0.9], abs=0.25)
+    assert np.abs(np.mean(off, axis=0)).max() < 0.4
+
+
+def test_strays_are_read_off_the_object_only():
+    pad = {"unevenness": {"strays": 0.1}}
+    (frame,) = frames(1, scene={"objects": [DISC]}, pad=pad)
+    (clean,) = frames(1, scene={"objects": [DISC]}, pad={})
+    off = coverage_cm2(Circle(10.0, 9.0, 5.1), load_pad(pad).geometry) == 0.0
+    assert (clean.image.values[off] < 0.01).all()
+    assert 0.02 < (frame.image.values[off] > 0.01).mean() < 0.2
 
 
 def test_faults_of_the_pad_show_in_every_frame():

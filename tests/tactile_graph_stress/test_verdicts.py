@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers_stress import FAKES, subject_of
-from tactile_graph import Points
+from tactile_graph import Image, Points
 from tactile_graph_stress.case import Case
 from tactile_graph_stress.judge import Judge
 from tactile_graph_stress.scenes import arc, noisy
@@ -48,6 +48,12 @@ def test_an_error_raised_for_people_is_a_typed_outcome():
     found = verdict("refuses")
     assert found.outcome is Outcome.GAVE_UP
     assert found.note == "ValueError: radius_cm: must be > 0"
+
+
+def test_a_step_that_warms_up_is_judged_by_its_first_answer():
+    tare = Trial(subject_of("tare"))
+    came = tare.run(Image(np.full((3, 3), 2.0)), {"n_frames": 5})
+    assert came.value.values.tolist() == np.zeros((3, 3)).tolist()
 
 
 def test_an_answer_from_nan_is_broken():

@@ -13,13 +13,23 @@ from tactile_graph_thesis.catalogue import CONTENTS, chosen, items
 
 TABLES = ("4.3", "4.4", "4.5", "4.7", "4.8", "4.9", "5.2")
 FIGURES = (
-    *(f"2.{k}" for k in range(8, 20)),
+    *("2.2", *(f"2.{k}" for k in range(8, 20))),
+    *("3.2", "3.5", "3.6"),
     *(f"4.{k}" for k in range(1, 44)),
     *(f"5.{k}" for k in range(8, 15)),
 )
-WISHES = ("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles")
+WISHES = (
+    *("subpixel", "noise-algorithms", "noise-circles", "noise-rectangles"),
+    "direct-ellipse",
+)
 SCHEDULE = ("annealing", "state-space")
-STUDIES = ("converter", "samples", *SCHEDULE, *WISHES)
+CLAIMS = (
+    *("current-limit", "stack-order", "boundary-operators", "variable-threshold"),
+    *("residual-voltages", "erased-discs", "rotation-order", "one-pad", "erased-rectangles"),
+    *("noisy-rectangles", "heavier-side", "site-isolation"),
+)
+RESTORED = ("restoration-filters", "noise-models", "load-prior")
+STUDIES = ("converter", "samples", *SCHEDULE, *CLAIMS, *WISHES, *RESTORED)
 
 
 def test_every_table_and_figure_is_there_once() -> None:
@@ -38,8 +48,9 @@ def test_the_order_is_that_of_the_thesis() -> None:
         ("table-5.2", "figure-5.13", "figure-5.14"),
     ):
         assert ids.index(before) < ids.index(table) < ids.index(after)
-    assert tuple(ids[:3]) == ("converter", "samples", "figure-2.8")
-    assert tuple(ids[-len(WISHES) :]) == WISHES
+    assert tuple(ids[:4]) == ("figure-2.2", "current-limit", "converter", "samples")
+    last = (*WISHES, *RESTORED)
+    assert tuple(ids[-len(last) :]) == last
 
 
 def test_a_number_is_both_the_table_and_the_figure() -> None:

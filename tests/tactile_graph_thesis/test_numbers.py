@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+import yaml
 
 from tactile_graph_thesis.measure.rectangles import OBJECTS
-from tactile_graph_thesis.numbers import error_table, numbers
+from tactile_graph_thesis.numbers import FILE, error_table, numbers
 
 TABLES = ("table-4.3", "table-4.4", "table-4.5", "table-4.7", "table-4.8", "table-5.2", "table-2.2")
+
+KEYS = ("readings", "threshold", "variance", "table-4.9", "identification")
+
+
+def everything() -> dict[str, Any]:
+    """Return the whole file as data."""
+    return dict(yaml.safe_load(FILE.read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -51,6 +61,27 @@ def test_errors_of_circles_are_as_printed() -> None:
     assert {name: error_table(name).values.tolist() for name in printed} == printed
 
 
-def test_limits_are_the_thesis_ones() -> None:
-    assert numbers("readings")["each"] == 20
-    assert numbers("threshold")["chosen_v"] == 0.01
+def test_every_other_number_is_as_printed() -> None:
+    said = {key: {**numbers(key)} for key in KEYS}
+    for one in said.values():
+        assert one.pop("place")
+    assert said == {
+        "readings": {"each": 20},
+        "threshold": {
+            "low_v": 0.005,
+            "high_v": 0.03,
+            "best_v": [0.01, 0.015],
+            "chosen_v": 0.01,
+            "footprints_v": [0.002, 0.02],
+            "error_below_cm": 1.0,
+        },
+        "variance": {"flat_from": 14, "variance_cm2": 0.5},
+        "table-4.9": {"readings": 25, "right_percent": 100},
+        "identification": {"beyond_g": 1000, "error_below_percent": 5},
+    }
+    weights = [[1860, 6.9], [1090, 6.1], [675, 4.3], [1280, 3.8], [1000, 2.5]]
+    assert error_table("table-2.2").values.tolist() == weights
+
+
+def test_nothing_of_the_file_is_left_out() -> None:
+    assert set(everything()) == {*TABLES, *KEYS}

@@ -84,7 +84,7 @@ def nodes_between(
 
 def spelled_out(guard: Guard) -> str:
     """Return a guard with its named conditions spelled out."""
-    return re.sub(r"\bv(\d+)\b", lambda m: str(guard.refs[int(m[1])]), guard.meaning)
+    return re.sub(r"\bv(\d+)\b", lambda m: guard.refs[int(m[1])].spelled, guard.meaning)
 
 
 def _same_meaning(parent: Node, child: Node) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
 from tactile_graph.inspect import Graph, plain
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
 
@@ -97,11 +97,7 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
         line: list[_Loaded] = []
         child = one.pipeline
         while child.evolves:
-            beside = Path(child.file).parent / child.evolves
-            is_file = child.evolves.endswith((".yaml", ".yml"))
-            parent = _load(
-                VariantRequest(beside if is_file else child.evolves, swept=False), registry
-            )
+            parent = _load(VariantRequest(_parent_named(child), swept=False), registry)
             if parent.pipeline.name in names:
                 break
             names.add(parent.pipeline.name)
@@ -214,14 +210,17 @@ def _parent(one: _Loaded, everything: Sequence[_Loaded]) -> int | None:
 
     Where the parent itself is not compared, its own parent is taken, and so on.
     """
-    ancestor = _bare(one.pipeline.evolves)
+    child: Pipeline | None = one.pipeline
     met = {one.pipeline.name}
-    while ancestor and ancestor not in met:
+    while child is not None and child.evolves:
+        ancestor = _own_name(child.evolves, child.registry or installed())
+        if ancestor in met:
+            return None
         met.add(ancestor)
         candidates = [i for i, x in enumerate(everything) if x.pipeline.name == ancestor]
         if candidates:
             return max(candidates, key=lambda i: (_alike(everything[i], one), -i))
-        ancestor = _evolves_of(ancestor, one.pipeline)
+        child = _loaded_parent(child)
     return None
 
 
@@ -229,13 +228,22 @@ def _alike(a: _Loaded, b: _Loaded) -> int:
     return sum(k in b.settings and plain(b.settings[k]) == plain(v) for k, v in a.settings.items())
 
 
-def _bare(name: str) -> str:
-    return Path(name).stem if name.endswith((".yaml", ".yml")) else name
+def _parent_named(child: Pipeline) -> str | Path:
+    """Return what a pipeline evolved from, as `load` takes it."""
+    is_file = child.evolves.endswith((".yaml", ".yml"))
+    return Path(child.file).parent / child.evolves if is_file else child.evolves
 
 
-def _evolves_of(name: str, child: Pipeline) -> str:
-    """Return what a pipeline that is not compared evolved from."""
+def _own_name(name: str, registry: Registry) -> str:
+    """Return what a pipeline is called in its own file, without its plugin's name."""
+    if name.endswith((".yaml", ".yml")):
+        return Path(name).stem
+    return registry.offer("pipelines", name).name if registry.has("pipelines", name) else name
+
+
+def _loaded_parent(child: Pipeline) -> Pipeline | None:
+    """Return what a pipeline that is not compared evolved from; None if that cannot be had."""
     try:
-        return _bare(load(name, child.registry).evolves)
+        return load(_parent_named(child), child.registry)
     except (UsageError, PipelineError):
-        return ""
+        return None

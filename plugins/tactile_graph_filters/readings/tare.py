@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Skip
 from tactile_graph.steps.injected import TimeGap
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
@@ -25,7 +25,7 @@ class Tare:
     ----------
     n_frames : int
         From how many frames at the start, taken of the empty pad, the baseline is made: the
-        median of each cell. While they come in, it is that of the frames so far.
+        median of each cell. All of them but the last are skipped.
     drift_s : float, optional
         Time in which the baseline of an untouched cell comes to 63 % of the way to its reading;
         without it the baseline stays.
@@ -41,6 +41,7 @@ class Tare:
     Notes
     -----
     State: the baseline. A skipped step keeps it, and drifts by the true time when it next runs.
+    A step that wants the first frames itself, such as `find_bad`, stands before this one.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class Tare:
         self._touched, self._clip = touched, clip
         self._empty: list[NDArray[Any]] = []
         self._baseline: NDArray[np.float64] = np.zeros((0, 0))
+        self._made = False
         self._around = make_plan(parse_element("square3"), dilate=True)
 
     def __call__(
@@ -65,21 +67,22 @@ class Tare:
 
         Raises
         ------
+        Skip
+            While the first frames come in.
         DataError
             If a valid cell holds NaN or infinity, or the shape changed since the first frame.
         """
         if not finite(image.values):
             refuse_nan(image, infinite=True)
-        if self._baseline.size and self._baseline.shape != image.shape:
+        readings = image.filled(0.0)
+        known = self._empty[0] if self._empty else self._baseline
+        if known.size and known.shape != image.shape:
             raise DataError(
                 "image",
-                f"must keep its shape while it is tared, got {image.shape}"
-                f" after {self._baseline.shape}",
+                f"must keep its shape while it is tared, got {image.shape} after {known.shape}",
             )
-        readings = image.filled(0.0)
-        if len(self._empty) < self._n_frames:
-            self._empty.append(readings)
-            self._baseline = np.median(np.stack(self._empty), axis=0)
+        if not self._made:
+            self._learn(readings)
         elif self._drift_s is not None:
             self._drift(readings, gap)
         above = readings - self._baseline
@@ -88,6 +91,14 @@ class Tare:
         if image.valid is not None:
             above[~image.valid] = 0.0
         return image.with_values(above)
+
+    def _learn(self, readings: NDArray[Any]) -> None:
+        self._empty.append(readings)
+        n = len(self._empty)
+        if n < self._n_frames:
+            raise Skip(f"warming up: frame {n} of {self._n_frames} of the empty pad")
+        halves = 0.5 * np.stack(self._empty)  # the sum of two readings may overflow
+        self._baseline, self._made, self._empty = 2.0 * np.median(halves, axis=0), True, []
 
     def _drift(self, readings: NDArray[np.float64], gap: float | None) -> None:
         assert self._drift_s is not None

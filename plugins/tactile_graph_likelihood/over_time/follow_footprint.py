@@ -57,6 +57,7 @@ class FollowFootprint:
     Parameters
     ----------
     shape : "disc", "ellipse" or "rectangle"
+        What the outline is.
     settings : FootprintSettings
         Its sigma stays while the object lies still.
     frame_sigma : float, optional

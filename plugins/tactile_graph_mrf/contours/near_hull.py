@@ -22,6 +22,7 @@ def near_hull(points: Points, hull: Polygon, *, within_cm: Annotated[float, Ge(0
     hull : Polygon
         Convex hull of the points.
     within_cm : float
+        Farthest that a point may lie from the hull.
 
     Returns
     -------

@@ -51,6 +51,9 @@ def graph_cuts(
     model : Model
         What is minimised.
     moves : str
+        What a cut may change: any cell's label to one and the same (``expansion``), two labels for
+        one another (``swap``), or labels by a power of two up or down (``jump``); ``auto`` takes
+        jumps, else expansions, else swaps, as the model's smoothness allows.
     n_cycles : int
         Times that all moves are tried, at most; it ends once none helps.
 

@@ -78,6 +78,7 @@ def posterior(
     n_burn : int
         Sweeps before the first sample.
     n_samples : int
+        Samples that are drawn.
     n_between : int
         Sweeps from one sample to the next.
 

@@ -97,7 +97,7 @@ def _under_objects(found: LearnedPad) -> Picture:
     figure = new_figure(WIDTH_IN, 3.4)
     axes = figure.subplots()
     under = found.under[found.under > 0.0]
-    edges = np.geomspace(under.min(), under.max(), 80)
+    edges = np.geomspace(0.99 * under.min(), 1.01 * under.max(), 80)  # all may read the same
     axes.hist(under, edges.tolist(), color=AFTER, alpha=0.75, label="readings under objects")
     if found.loads == found.learned.reading:
         axes.axvline(found.learned.touched_from, color=BEFORE, ls="--", label="touched from")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import ModuleType
 from typing import Any
 
@@ -85,8 +85,8 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             shapes = {n: d.shape for n, d in numbers.items()}
             frames = [] if reading.told.sensor else numbered(shapes)
             name = frames[0] if frames else chosen(reading, shapes, "dataset")
-            for one in (*(frames or [name]), time_among(numbers)):
-                _check_size(where, one, numbers.get(one))
+            read = {*(frames or [name]), time_among(numbers)}
+            _check_size(where, {n: d for n, d in numbers.items() if n in read})
             values = np.stack([numbers[n][()] for n in frames]) if frames else numbers[name][()]
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
@@ -123,16 +123,20 @@ def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:
     return found
 
 
-def _check_size(where: str, name: str, dataset: Any) -> None:
-    """Refuse a dataset that lies elsewhere, or is far larger than what is written of it."""
-    if dataset is None:
-        return
-    if dataset.is_virtual or dataset.external:
-        raise DataError(where, f"dataset {name!r} lies in other files; save its values in this one")
-    bytes_, packed = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
+def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
+    """Refuse datasets that lie elsewhere, or are together far larger than what is written."""
+    for name, dataset in datasets.items():
+        if dataset.is_virtual or dataset.external:
+            told = f"dataset {name!r} lies in other files; save its values in this one"
+            raise DataError(where, told)
+    bytes_ = sum(d.size * d.dtype.itemsize for d in datasets.values())
+    packed = sum(d.id.get_storage_size() for d in datasets.values())
     if bytes_ > max(LARGE, MOST_TIMES * packed):
+        which = f"dataset{'s' if len(datasets) > 1 else ''} {', '.join(map(repr, [*datasets][:3]))}"
+        more = f" and {len(datasets) - 3} more" if len(datasets) > 3 else ""
         raise DataError(
             where,
-            f"dataset {name!r} unpacks to {bytes_ / 1e6:,.0f} MB, of which {packed / 1e6:,.1f} are "
-            f"written; allowed are {MOST_TIMES} times that beyond {LARGE / 1e6:g} MB",
+            f"{which}{more} unpack{'s' if len(datasets) == 1 else ''} to {bytes_ / 1e6:,.0f} MB, "
+            f"of which {packed / 1e6:,.1f} are written; allowed are {MOST_TIMES} times that "
+            f"beyond {LARGE / 1e6:g} MB",
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +21,9 @@ FORMAT = "tactile-graph node images"
 NAME = "images of nodes, as runs write them (.h5, .zarr)"
 _METADATA = "zarr.json"
 _BLOCK = 256
+MOST_CELLS, MOST_PIECES = 4_000_000, 1_000
+LARGE, MOST_TIMES = 64_000_000, 200
+"""Bytes that may be unpacked however few are written, and how many times these."""
 _PLACE = ("kind", "quantity", "pitch_cm", "origin_cm")
 
 
@@ -75,7 +79,9 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
     where = str(reading.path)
     node = _chosen(reading, group, names)
     try:
-        values, outcomes = group[node]["values"], np.asarray(group[node]["outcome"][:])
+        values = group[node]["values"]
+        _check_sizes(where, node, values, group[node]["outcome"], group["time_s"])
+        outcomes = np.asarray(group[node]["outcome"][:])
         times, about = np.asarray(group["time_s"][:], np.float64), dict(values.attrs)
         place = _place(where, node, about)
         if not (values.ndim == 3 and values.shape[0] == len(outcomes) == len(times)):
@@ -84,8 +90,9 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
         reading.recognised(f"it says so; node {node!r}, {about['kind']}s")
         reading.report.expect(int(np.count_nonzero(outcomes == 0)))
         missed = False
-        for start in range(0, values.shape[0], _BLOCK):
-            block = np.asarray(values[start : start + _BLOCK], np.float64)
+        n_block = max(1, min(_BLOCK, MOST_CELLS // max(1, values.shape[1] * values.shape[2])))
+        for start in range(0, values.shape[0], n_block):
+            block = np.asarray(values[start : start + n_block], np.float64)
             for k, matrix in enumerate(block, start):
                 if outcomes[k] != 0:
                     reading.report.count(f"frames in which {node!r} has no value")
@@ -102,6 +109,32 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
     except Exception as error:  # HDF5 and Zarr have a dozen kinds of errors over damaged files
         text = f"node {node!r} cannot be read: {str(error)[:120]}"
         raise DataError(where, text) from error
+
+
+def _check_sizes(where: str, node: str, values: Any, *columns: Any) -> None:
+    """Refuse what asks for far more memory than a run of so many frames writes."""
+    cells = math.prod(values.shape[1:])
+    if cells > MOST_CELLS:
+        told = f"node {node!r}: images of {cells:,} cells; allowed are {MOST_CELLS:,}"
+        raise DataError(where, told)
+    pieces = math.prod(-(-n // c) for n, c in zip(values.shape, values.chunks or (), strict=False))
+    if pieces > MOST_PIECES * values.shape[0]:
+        told = f"node {node!r}: each image is in more than {MOST_PIECES:,} pieces"
+        raise DataError(where, told)
+    unpacked = sum(c.size * c.dtype.itemsize for c in columns)
+    packed = sum(map(_written_bytes, columns))
+    if unpacked > max(LARGE, MOST_TIMES * packed):
+        raise DataError(
+            where,
+            f"node {node!r}: outcomes and times unpack to {unpacked / 1e6:,.0f} MB, of which "
+            f"{packed / 1e6:,.1f} are written; allowed are {MOST_TIMES} times that beyond "
+            f"{LARGE / 1e6:g} MB",
+        )
+
+
+def _written_bytes(array: Any) -> int:
+    """Return how many bytes of an array, of h5py or Zarr, are on the disc."""
+    return int(array.id.get_storage_size() if hasattr(array, "id") else array.nbytes_stored())
 
 
 def _chosen(reading: Reading, group: Any, names: list[str]) -> str:

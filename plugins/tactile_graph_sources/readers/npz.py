@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -33,6 +34,8 @@ MOST_MEMBERS = 1000
 MOST_TIMES = 200
 SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
+OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
+        "pitch_cm", "origin_cm", "truth")  # fmt: skip
 NAME = "NumPy .npz (ours, CapContact, or one stack of matrices)"
 
 
@@ -52,6 +55,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     with opened(reading.path) as file:
         arrays = Archive(str(reading.path), file)
         if {"cap", "ftir"} <= arrays.names.keys():
+            arrays.check_sizes(("cap", "ftir"))
             yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
         elif "values" in arrays.names:
             yield from _ours(reading, arrays)
@@ -65,6 +69,7 @@ class Archive:
     def __init__(self, where: str, file: zipfile.ZipFile) -> None:
         self.where = where
         self._file = file
+        self._size = os.path.getsize(where)
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise DataError(where, f"holds {len(members)} members; allowed are {MOST_MEMBERS}")
@@ -89,23 +94,39 @@ class Archive:
         except Exception as error:
             raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
 
+    def check_sizes(self, names: Sequence[str]) -> None:
+        """Refuse arrays that together are nearly nothing but zeros, packed away.
+
+        Raises
+        ------
+        DataError
+        """
+        members = [self.names[name] for name in names]
+        unpacked = sum(m.file_size for m in members)
+        packed = min(sum(m.compress_size for m in members), self._size)  # two may share their bytes
+        if unpacked > LARGE and unpacked > MOST_TIMES * packed:
+            which = f"array {names[0]!r} unpacks"
+            if len(names) > 1:
+                which = f"arrays {names[0]!r} to {names[-1]!r} unpack"
+            raise DataError(
+                self.where,
+                f"{which} to {unpacked / 1e6:,.0f} MB, {unpacked // max(packed, 1)} times what is "
+                f"packed; allowed are {MOST_TIMES} beyond {LARGE / 1e6:,.0f} MB",
+            )
+
     def load(self, name: str) -> NDArray[Any]:
         """Return an array.
 
         Raises
         ------
         DataError
-            If it is damaged, holds objects, or is nearly nothing but zeros, packed away.
+            If it is damaged, holds objects, or its size is refused by `check_sizes`.
         """
-        packed, unpacked = self.names[name].compress_size, self.names[name].file_size
-        if unpacked > LARGE and unpacked > MOST_TIMES * packed:
-            raise DataError(
-                self.where,
-                f"array {name!r} unpacks to {unpacked / 1e6:,.0f} MB, {unpacked // packed} times "
-                f"what it is packed; allowed are {MOST_TIMES} beyond {LARGE / 1e6:,.0f} MB",
-            )
+        self.check_sizes([name])
         try:
-            if unpacked > SMALL:  # what is damaged is refused before it fills the memory
+            if (
+                self.names[name].file_size > SMALL
+            ):  # what is damaged is refused before it fills the memory
                 with self._file.open(self.names[name]) as member:
                     while member.read(1 << 20):
                         pass
@@ -171,6 +192,7 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
     stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
     if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
+        arrays.check_sizes(frames)
         return np.stack([arrays.load(n) for n in frames]), f"arrays {frames[0]!r} to {frames[-1]!r}"
     if len(stacks) == 1:
         return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}"
@@ -195,6 +217,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
 
 def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
+    arrays.check_sizes([name for name in OURS if name in arrays.names])
     values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
     n = len(values)
     valid = arrays.optional("valid", values.shape, "b")

@@ -26,7 +26,7 @@ from tactile_graph_sources.stores.repairing import (
     rewrite_metadata,
 )
 from tactile_graph_sources.stores.sole_writer import SoleWriter
-from tactile_graph_sources.stores.stored import Lost, Stored, open_stored
+from tactile_graph_sources.stores.stored import UNSURE, Lost, Stored, open_stored
 
 MOST_ROUNDS = 4
 Mend = Callable[[Stored], object]
@@ -119,6 +119,8 @@ def _of_parts(stored: Stored) -> Iterator[Finding]:
         yield Finding(trouble, rewrite_metadata if of_metadata else rewrite_journal)
     if stored.journal.cut_at is not None:
         yield Finding("the last line of its journal was not finished", rewrite_journal)
+    if not stored.sure:
+        yield Finding(UNSURE)
 
 
 def _of_columns(stored: Stored) -> Iterator[Finding]:

@@ -3,7 +3,8 @@
 It vouches for what is in the arrays, which themselves cannot tell a chunk that is gone from an
 empty one, nor wrong metadata from right ones. Each line is a CRC-32 in hexadecimal, a space and
 JSON. The first holds the attributes and the arrays' metadata; each other the numbers of its first
-frame and of the one behind its last, the CRC-32 of their values, and all but the values itself.
+frame and of the one behind its last, the CRC-32 of their values, all but the values itself, and a
+copy of the attributes: without them nobody knows what a value means.
 """
 
 from __future__ import annotations
@@ -54,23 +55,30 @@ class Block(NamedTuple):
 
 
 class Head(NamedTuple):
-    """What holds for the whole store: its attributes, and its arrays' metadata by name."""
+    """What holds for the whole store: its attributes, and its arrays' metadata by name.
+
+    ``sure`` is false if the attributes were those of `METADATA` when the store was mended, with
+    nothing left to vouch for them.
+    """
 
     attributes: Mapping[str, Any]
     metadata: Mapping[str, Mapping[str, Any]]
+    sure: bool = True
 
 
 @dataclass(frozen=True)
 class Journal:
     """A journal as it was read.
 
-    ``blocks`` are in order and do not overlap; ``damaged`` are the numbers of lines, from 1, that
-    are not as they were written; ``cut_at`` is where a last line begins that was not finished.
+    ``attributes`` are those that a whole line vouches for, if any does; ``blocks`` are in order and
+    do not overlap; ``damaged`` are the numbers of lines, from 1, that are not as they were written;
+    ``cut_at`` is where a last line begins that was not finished.
     """
 
     path: Path
     there: bool
     head: Head | None
+    attributes: Mapping[str, Any] | None
     blocks: tuple[Block, ...]
     damaged: tuple[int, ...]
     cut_at: int | None
@@ -130,13 +138,19 @@ def unpacked(text: str, n: int) -> Columns:
 
 def head_line(head: Head) -> bytes:
     """Return the first line."""
-    return _line({"attributes": head.attributes, "arrays": head.metadata})
+    unsure = {} if head.sure else {"unsure": True}
+    return _line({"attributes": head.attributes, "arrays": head.metadata, **unsure})
 
 
-def block_line(low: int, values: NDArray[np.float64], columns: Columns) -> bytes:
-    """Return the line of a block of frames."""
-    rows = [low, low + len(values)]
-    return _line({"rows": rows, "values": crc_of(values), "columns": packed(columns)})
+def block_line(
+    low: int,
+    values: NDArray[np.float64],
+    columns: Columns,
+    attributes: Mapping[str, Any] | None,
+) -> bytes:
+    """Return the line of a block of frames; ``attributes`` are None where nothing vouches."""
+    data = {"rows": [low, low + len(values)], "values": crc_of(values), "columns": packed(columns)}
+    return _line(data if attributes is None else {**data, "attributes": attributes})
 
 
 def lost_line(low: int, high: int, why: str) -> bytes:
@@ -179,36 +193,43 @@ def read_journal(path: Path) -> Journal:
     """Return the journal of a store, whatever became of it; one that is gone is empty."""
     file = path / JOURNAL
     head: Head | None = None
+    attributes: Mapping[str, Any] | None = None
     found: dict[int, Block] = {}
     damaged: list[int] = []
     place, cut_at = 0, None
     if not file.is_file():
-        return Journal(file, False, None, (), (), None)
+        return Journal(file, False, None, None, (), (), None)
     with file.open("rb") as lines:
         for number, line in enumerate(lines, 1):
-            data = _parsed(line)
-            if data is not None and number == 1 and "arrays" in data:
-                head = Head(data["attributes"], data["arrays"])
-            elif data is not None and number > 1 and "rows" in data:
+            data: dict[str, Any] = _parsed(line) or {}
+            block = _block(data, place, attributes) if number > 1 else None
+            if number == 1 and "arrays" in data:
+                head = Head(data["attributes"], data["arrays"], not data.get("unsure"))
+                attributes = head.attributes if head.sure else None
+            elif block is not None:
                 # A block that an interrupt caught at its end was written twice: the last counts.
-                block = _block(data, place)
-                if block is not None:
-                    found[block.low] = block
-                elif len(damaged) < MOST_DAMAGED:
-                    damaged.append(number)
+                found[block.low] = block
+                attributes = attributes or data.get("attributes")
             elif number > 1 and not line.endswith(b"\n"):
                 cut_at = place
             elif len(damaged) < MOST_DAMAGED:
                 damaged.append(number)
             place += len(line)
-    return Journal(file, True, head, _in_order(found.values()), tuple(damaged), cut_at)
+    blocks = _in_order(found.values())
+    return Journal(file, True, head, attributes, blocks, tuple(damaged), cut_at)
 
 
-def _block(data: Mapping[str, Any], place: int) -> Block | None:
-    """Return the block that a line tells of; None if nobody could have written it."""
-    rows, lost = data["rows"], data.get("lost", "")
+def _block(
+    data: Mapping[str, Any], place: int, attributes: Mapping[str, Any] | None
+) -> Block | None:
+    """Return the block that a line tells of; None if nobody could have written it to this store."""
+    rows: Any = data.get("rows")
+    lost = data.get("lost", "")
     whole = isinstance(rows, list) and len(rows) == 2 and all(type(n) is int for n in rows)
     if not whole or not 0 <= rows[0] < rows[1] or type(data.get("values")) is not int:
+        return None
+    own = data.get("attributes", attributes)
+    if (own != attributes and attributes is not None) or not isinstance(own, dict | None):
         return None
     return Block(rows[0], rows[1], data["values"], place, lost) if isinstance(lost, str) else None
 

@@ -146,8 +146,8 @@ def chunk_file(path: Path, name: str, data: Metadata, row: int) -> str:
     return f"{name}/{array.metadata.encode_chunk_key(place)}"
 
 
-def zarrs_own(path: Path) -> tuple[dict[str, Any], dict[str, Metadata]]:
-    """Return the group's attributes and the arrays' metadata, where no journal tells them.
+def own_attributes(path: Path) -> dict[str, Any]:
+    """Return the group's attributes as Zarr has them, where no journal tells them.
 
     Raises
     ------
@@ -155,25 +155,28 @@ def zarrs_own(path: Path) -> tuple[dict[str, Any], dict[str, Metadata]]:
     """
     zarr = load_zarr()
     try:
-        group = zarr.open_group(str(path), mode="r")
-        attributes = dict(group.attrs)
-        names = names_of(attributes.get("version"))
-        missing = [n for n in names if n not in group]
+        return dict(zarr.open_group(str(path), mode="r").attrs)
     except Exception as error:  # a damaged store makes Zarr raise a dozen kinds
         raise DataError(str(path), f"is no Zarr store that opens: {error}") from error
-    if attributes.get("format") != FORMAT:
-        missing = []
-    if missing:
-        raise DataError(str(path), f"its array {missing[0]!r} is gone, or cannot be opened")
-    check_attributes(path, attributes)
+
+
+def own_metadata(path: Path, attributes: Mapping[str, Any]) -> dict[str, Metadata]:
+    """Return the arrays' metadata as Zarr has them, where no journal tells them.
+
+    Raises
+    ------
+    DataError
+    """
     told: dict[str, Metadata] = {}
-    for name in names:
+    for name in names_of(attributes["version"]):
         data = read_metadata(path, name)
+        if data is None and not metadata_file(path, name).exists():
+            raise DataError(str(path), f"its array {name!r} is gone")
         if data is None or written_rows(data) is None:
             raise DataError(str(path), f"{name}/{METADATA} is damaged")
         told[name] = data
         _check_array(path, name, data, attributes.get("shape"))
-    return attributes, told
+    return told
 
 
 def _check_array(path: Path, name: str, data: Metadata, grid: object) -> None:

@@ -53,7 +53,8 @@ def _lines_of_arrays(stored: Stored) -> list[bytes]:
             lines.append(journal.lost_line(piece.low, piece.high, str(why)))
         else:
             unsure = columns._replace(doubtful=np.ones(len(values), bool))
-            lines.append(journal.block_line(piece.low, values, unsure))
+            vouched = stored.attributes if stored.sure else None
+            lines.append(journal.block_line(piece.low, values, unsure, vouched))
     n = stored.n_frames
     if stored.n_unnumbered:
         lines.append(journal.lost_line(n, n + stored.n_unnumbered, "nothing numbers them"))
@@ -62,7 +63,7 @@ def _lines_of_arrays(stored: Stored) -> list[bytes]:
 
 def rewrite_journal(stored: Stored) -> None:
     """Write the journal anew: its good lines, and what the arrays tell of the frames between."""
-    head = journal.head_line(journal.Head(stored.attributes, stored.metadata))
+    head = journal.head_line(journal.Head(stored.attributes, stored.metadata, stored.sure))
     kept = b"".join(_line_at(stored.journal, p.block.place) for p in stored.pieces if p.block)
     write_whole(stored.path / JOURNAL, head + kept + b"".join(_lines_of_arrays(stored)))
 

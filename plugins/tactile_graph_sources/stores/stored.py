@@ -25,6 +25,7 @@ from tactile_graph_sources.stores.journal import (
 )
 from tactile_graph_sources.stores.layout import (
     COLUMNS,
+    JOURNAL,
     JOURNALED,
     METADATA,
     NOTES,
@@ -33,13 +34,15 @@ from tactile_graph_sources.stores.layout import (
     check_attributes,
     chunk_file,
     load_zarr,
+    own_attributes,
+    own_metadata,
     read_metadata,
     same_metadata,
     written_rows,
-    zarrs_own,
 )
 
 LONGEST = 200
+UNSURE = "nothing vouches for its grid and quantity any more: all its frames are doubtful"
 
 
 class Lost(Exception):  # noqa: N818 -- what became of the frames
@@ -71,6 +74,10 @@ class Stored:
         Grid, quantity, and where the frames come from.
     metadata : mapping
         What each array is, by name.
+    journaled : bool
+        Whether a journal vouches for what is in it.
+    sure : bool
+        Whether the journal vouches for the attributes; what there is without one is as it is.
     troubles : tuple of str
         What is damaged of the journal and of the metadata.
     pieces : tuple of Piece
@@ -83,14 +90,11 @@ class Stored:
     journal: Journal
     attributes: Mapping[str, Any]
     metadata: Mapping[str, Metadata]
+    journaled: bool
+    sure: bool
     troubles: tuple[str, ...]
     pieces: tuple[Piece, ...]
     n_unnumbered: int
-
-    @property
-    def journaled(self) -> bool:
-        """Whether a journal vouches for what is in it."""
-        return int(self.attributes["version"]) >= JOURNALED
 
     @property
     def n_frames(self) -> int:
@@ -170,14 +174,14 @@ class Stored:
         )
 
     def frames(self, piece: Piece) -> list[Frame]:
-        """Return a piece's frames; those the journal does not vouch for are doubtful.
+        """Return a piece's frames; doubtful if the journal vouches not for them or the attributes.
 
         Raises
         ------
         Lost
         """
         values, columns = self.values(piece), self.columns(piece)
-        unsure = self.journaled and piece.block is None
+        unsure = not self.sure or (self.journaled and piece.block is None)
         try:
             frames = [self._frame(piece.low + i, v, columns, i) for i, v in enumerate(values)]
         except Exception as error:  # notes of an old store, which nothing vouches for
@@ -217,15 +221,13 @@ def open_stored(path: Path) -> Stored:
     """
     load_zarr()
     journal = read_journal(path)
-    if journal.head is not None:
-        attributes, metadata = journal.head
-        check_attributes(path, attributes)
-    else:
-        attributes, metadata = zarrs_own(path)
-    troubles = [] if attributes["version"] < JOURNALED else list(_troubles(path, journal))
+    attributes, metadata = _described(path, journal)
+    # Or a version that was damaged would have a journal overlooked.
+    journaled = int(attributes["version"]) >= JOURNALED or (path / JOURNAL).exists()
+    troubles = list(_troubles(path, journal, metadata)) if journaled else []
     n, claimed, why = _numbered(path, metadata, journal.n_frames)
     # A writer that was killed leaves less than a chunk without numbers, and a whole journal.
-    whole = int(attributes["version"]) < JOURNALED or (
+    whole = not journaled or (
         journal.head is not None and journal.whole and _counted(path, metadata, journal.n_frames)
     )
     unnumbered = claimed - n if why or not whole or claimed - n > chunk_of(path, metadata) else 0
@@ -238,8 +240,25 @@ def open_stored(path: Path) -> Stored:
         edges = [low, *range((low // chunk + 1) * chunk, high, chunk), high]
         pieces += [Piece(a, b, None) for a, b in pairwise(edges)]
     return Stored(
-        path, journal, attributes, metadata, tuple(troubles), tuple(sorted(pieces)), unnumbered
+        path,
+        journal,
+        attributes,
+        metadata,
+        journaled,
+        not journaled or journal.attributes is not None,
+        tuple(troubles),
+        tuple(sorted(pieces)),
+        unnumbered,
     )
+
+
+def _described(path: Path, journal: Journal) -> tuple[Mapping[str, Any], Mapping[str, Metadata]]:
+    """Return attributes and arrays' metadata: as the journal has them, or else Zarr."""
+    attributes = journal.attributes
+    if attributes is None:
+        attributes = journal.head.attributes if journal.head else own_attributes(path)
+    check_attributes(path, attributes)
+    return attributes, journal.head.metadata if journal.head else own_metadata(path, attributes)
 
 
 def chunk_of(path: Path, metadata: Mapping[str, Metadata]) -> int:
@@ -247,14 +266,12 @@ def chunk_of(path: Path, metadata: Mapping[str, Metadata]) -> int:
     return int(array_of(path, "values", metadata["values"], 0).chunks[0])
 
 
-def _troubles(path: Path, journal: Journal) -> list[str]:
+def _troubles(path: Path, journal: Journal, metadata: Mapping[str, Metadata]) -> list[str]:
     """Return what is damaged of the journal and of the metadata."""
     if not journal.there:
         return ["its journal is gone: what is in the arrays is given as doubtful"]
     found = [f"line {n} of its journal is damaged" for n in journal.damaged]
-    if journal.head is None:
-        return found
-    attributes, metadata = journal.head
+    attributes = journal.attributes or (journal.head.attributes if journal.head else {})
     own = (read_metadata(path, "") or {}).get("attributes")
     own = own if isinstance(own, dict) else {}
     if any(k not in own or own[k] != v for k, v in attributes.items()):

@@ -33,7 +33,7 @@ from tactile_graph_sources.stores.layout import (
 )
 from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
 from tactile_graph_sources.stores.sole_writer import SoleWriter
-from tactile_graph_sources.stores.stored import Lost, open_stored
+from tactile_graph_sources.stores.stored import UNSURE, Lost, open_stored
 
 CHUNK = 256
 SMALL_CHUNKS = 16
@@ -95,6 +95,7 @@ class StoreWriter:
         self.n_written = 0
         self._zarr = load_zarr()
         self._metadata: Mapping[str, Metadata] = {}
+        self._attributes: Mapping[str, Any] = {}
         self._grid: dict[str, Any] = {}
         self._held: list[Frame] = []
         self._marks_gap = False
@@ -171,7 +172,7 @@ class StoreWriter:
             except BaseException:
                 shutil.rmtree(part, ignore_errors=True)
                 raise
-        self._grid = grid
+        self._attributes, self._grid = attributes, grid
 
     def _make(self, part: Path, attributes: dict[str, Any]) -> dict[str, Metadata]:
         """Make an empty store, and return its arrays' metadata by name."""
@@ -210,10 +211,15 @@ class StoreWriter:
             )
         if stored.troubles:
             raise _damaged(self.path, stored.troubles[0])
+        if not stored.sure:
+            raise UsageError(
+                f"{self.path}: {UNSURE}; it is read but not gone on with, choose another name"
+            )
         with said(self.path):
             cut(stored.journal)
             stored = adopt(stored)
         self._metadata = stored.metadata
+        self._attributes = stored.attributes
         self._grid = {k: stored.attributes[k] for k in GRID}
         self.chunk = stored.chunk
         self.n_written = stored.n_frames
@@ -253,7 +259,8 @@ class StoreWriter:
         for name in COLUMNS:
             self._write(name, low, rows[name])
         self._put_values_on_disc(low)
-        journal.append(self.path, journal.block_line(low, values, columns))
+        line = journal.block_line(low, values, columns, self._attributes)
+        journal.append(self.path, line)
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
         self._held, self._marks_gap = [], False
         self.n_written, self._notes_end = high, int(ends[-1])

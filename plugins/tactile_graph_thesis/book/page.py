@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from tactile_graph_thesis.book.summary import conclusions, table_lines
+from tactile_graph_thesis.book.summary import NEAR_PERCENT, all_told, conclusions, table_lines
 from tactile_graph_thesis.book.text import number
 from tactile_graph_thesis.item import Compared, Finding
 from tactile_graph_thesis.making import Outcome
@@ -16,6 +16,7 @@ from tactile_graph_thesis.making import Outcome
 STYLE = Path(__file__).parent / "book.css"
 BROAD, TALL = 1.8, 1.3
 """Width by height from which a picture is broad, and up to which it is tall."""
+NEAR = f"within {', '.join(map(str, NEAR_PERCENT))} %"
 TITLE = "The thesis' tables and figures, made again"
 
 
@@ -59,13 +60,14 @@ def _summary(found: Sequence[Outcome]) -> str:
             [
                 _link(x.id, x.name),
                 escape(x.title),
-                str(x.numbers),
-                number(x.median_ratio),
+                str(x.averages),
+                str(x.maxima),
                 f"{x.within} of {x.with_range}" if x.with_range else "–",
             ]
             for x in lines
         ]
-        heads = ("", "", "numbers", "median of ours / thesis", "thesis' within our range")
+        rows.append(["", "together", *map(str, all_told(lines)), ""])
+        heads = ("", "", f"averages {NEAR}", f"maxima {NEAR}", "thesis' within our range")
         parts.append(_grid(heads, rows, text=2))
     parts += _counted(conclusions(found))
     failed = [o for o in found if o.made is None]
@@ -154,7 +156,10 @@ def _findings(findings: Sequence[Finding]) -> str:
     rows = []
     for f in findings:
         mark = "<b class=yes>comes out</b>" if f.holds else "<b class=no>does not come out</b>"
-        rows.append(f"<li>{escape(f.thesis)}: {mark}<br><span>{escape(f.found)}</span></li>\n")
+        rows.append(
+            f"<li>{escape(f.thesis)}: {mark}<br><span>{escape(f.found)}</span>"
+            f"<br><small>What would refute it: {escape(f.refuted_by)}.</small></li>\n"
+        )
     return f"<ul class=findings>{''.join(rows)}</ul>\n"
 
 

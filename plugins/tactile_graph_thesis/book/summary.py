@@ -2,12 +2,45 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from tactile_graph_thesis.item import Compared, Finding
 from tactile_graph_thesis.making import Outcome
+
+NEAR_PERCENT = (10, 30, 50)
+"""How far off a number may be that is counted."""
+
+
+class Nearness(NamedTuple):
+    """How many numbers come near to the thesis'.
+
+    Parameters
+    ----------
+    numbers : int
+        How many there are.
+    near : tuple of int
+        How many of ours are at most so many percent (`NEAR_PERCENT`) off the thesis'.
+    """
+
+    numbers: int
+    near: tuple[int, ...]
+
+    def __str__(self) -> str:
+        return f"{', '.join(map(str, self.near))} of {self.numbers}" if self.numbers else "–"
+
+
+def nearness(rows: Sequence[Compared]) -> Nearness:
+    """Return how many numbers come near to the thesis'.
+
+    Parameters
+    ----------
+    rows : sequence of Compared
+        Those without a ratio are left out.
+    """
+    off = [abs(c.ratio - 1.0) for c in rows if c.ratio is not None]
+    near = (sum(o <= percent / 100.0 + 1e-12 for o in off) for percent in NEAR_PERCENT)
+    return Nearness(len(off), tuple(near))
 
 
 class TableLine(NamedTuple):
@@ -16,10 +49,8 @@ class TableLine(NamedTuple):
     Parameters
     ----------
     id, name, title : str
-    numbers : int
-        How many the thesis gives.
-    median_ratio : float
-        Of ours to the thesis'.
+    averages, maxima : Nearness
+        Of the thesis' numbers that are no maxima, and of those that are.
     within : int
         How many of the thesis' lie in our range.
     with_range : int
@@ -29,8 +60,8 @@ class TableLine(NamedTuple):
     id: str
     name: str
     title: str
-    numbers: int
-    median_ratio: float
+    averages: Nearness
+    maxima: Nearness
     within: int
     with_range: int
 
@@ -52,8 +83,8 @@ def table_lines(found: Sequence[Outcome]) -> list[TableLine]:
                     o.item.id,
                     o.item.name,
                     o.item.title,
-                    len(rows),
-                    _median_ratio(rows),
+                    nearness([c for c in rows if not c.largest]),
+                    nearness([c for c in rows if c.largest]),
                     sum(ranged),
                     len(ranged),
                 )
@@ -61,11 +92,21 @@ def table_lines(found: Sequence[Outcome]) -> list[TableLine]:
     return lines
 
 
-def _median_ratio(rows: Sequence[Compared]) -> float:
-    """Return the median of ratios: of two middle ones the geometric mean."""
-    ratios = sorted(c.ratio for c in rows if c.ratio is not None)
-    middle = len(ratios) // 2
-    return ratios[middle] if len(ratios) % 2 else math.sqrt(ratios[middle - 1] * ratios[middle])
+def all_told(lines: Sequence[TableLine]) -> tuple[Nearness, Nearness]:
+    """Return the averages and the maxima of all tables and figures together.
+
+    Parameters
+    ----------
+    lines : sequence of TableLine
+        Those of studies are left out: what they make again stands in a table already.
+    """
+    lines = [x for x in lines if x.id.startswith(("table-", "figure-"))]
+
+    def told(parts: list[Nearness]) -> Nearness:
+        near = (sum(p.near[k] for p in parts) for k in range(len(NEAR_PERCENT)))
+        return Nearness(sum(p.numbers for p in parts), tuple(near))
+
+    return told([x.averages for x in lines]), told([x.maxima for x in lines])
 
 
 OURS_ALONE = "(not in the thesis)"

@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.cli.terminal import console
-from tactile_graph_thesis.book.summary import conclusions, table_lines
+from tactile_graph_thesis.book.summary import NEAR_PERCENT, all_told, conclusions, table_lines
 from tactile_graph_thesis.book.text import number
 
 if TYPE_CHECKING:
@@ -159,6 +159,7 @@ def show_item(item: Item, made: Made, how: str, aside: bool = False) -> None:
         mark = ("comes out", "green") if finding.holds else ("DOES NOT COME OUT", "bold red")
         say.print(Text.assemble((finding.thesis, "bold"), ": ", mark), soft_wrap=True)
         say.print(f"  {finding.found}", soft_wrap=True)
+        say.print(f"  refuted by: {finding.refuted_by}", style="dim", soft_wrap=True)
     for note in (*made.notes, item.why):
         if note:
             say.print(note, style="dim", soft_wrap=True)
@@ -218,10 +219,13 @@ def _cell(value: Any) -> str:
 def _show_summary(say: Any, found: Sequence[Outcome]) -> None:
     lines = table_lines(found)
     if lines:
-        grid = _grid("", "", "numbers", "median of ours/thesis", "thesis' in our range", text=2)
+        near = f"within {', '.join(map(str, NEAR_PERCENT))} %"
+        heads = (f"averages {near}", f"maxima {near}", "thesis' in our range")
+        grid = _grid("", "", *heads, text=2)
         for x in lines:
             within = f"{x.within} of {x.with_range}" if x.with_range else "–"
-            grid.add_row(x.name, x.title, str(x.numbers), number(x.median_ratio), within)
+            grid.add_row(x.name, x.title, str(x.averages), str(x.maxima), within)
+        grid.add_row("", "together", *map(str, all_told(lines)), "")
         say.print(grid)
     told = conclusions(found)
     holding = sum(f.holds for _, f in told)

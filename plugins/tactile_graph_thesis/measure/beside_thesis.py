@@ -109,7 +109,15 @@ def beside_thesis(
             for value in ((one.largest, *one.largest_range), (one.average, *one.average_range))
         ]
         rows[name] = tuple(
-            Compared(f"{name}, {column}", unit, value, float(number), low, high)
+            Compared(
+                f"{name}, {column}",
+                unit,
+                value,
+                float(number),
+                low,
+                high,
+                largest=column.endswith("max"),
+            )
             for column, unit, number, (value, low, high) in zip(
                 thesis.columns, thesis.units, told, ours, strict=True
             )

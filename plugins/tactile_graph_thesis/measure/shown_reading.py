@@ -53,7 +53,7 @@ def typical_disc(work: Work, name: str = DISCS[0]) -> Frame:
     """
 
     def middling(frames: list[Frame]) -> int:
-        errors = _radius_errors(work, frames, name, "circle-3")
+        errors = radius_errors(work, frames, name, "circle-3")
         return int(np.argsort(errors)[len(frames) // 2])
 
     return _chosen(work, "typical", "discs", name, middling)
@@ -70,7 +70,7 @@ def failing_disc(work: Work, name: str = DISCS[0]) -> Frame:
 
     def worst(frames: list[Frame]) -> int:
         before, after = (
-            _radius_errors(work, frames, name, pipeline) for pipeline in ("circle-2", "circle-3")
+            radius_errors(work, frames, name, pipeline) for pipeline in ("circle-2", "circle-3")
         )
         return int((before - after).argmax())
 
@@ -121,7 +121,15 @@ def _chosen(
     return work.once((kind, name), made)
 
 
-def _radius_errors(work: Work, frames: list[Frame], name: str, pipeline: str) -> Array:
+def radius_errors(work: Work, frames: list[Frame], name: str, pipeline: str) -> Array:
+    """Return the sizes of a pipeline's radius errors on readings of one disc, in cm.
+
+    Parameters
+    ----------
+    work : Work
+    frames : list of Frame
+    name, pipeline : str
+    """
     runner = load(pipeline).runner(seed=work.seed)
     return np.asarray(circle_errors(frames, [runner], [name])[0, 0, :, 2])
 

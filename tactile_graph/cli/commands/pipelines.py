@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -48,7 +49,10 @@ def _head(found: registry.Registry, name: str) -> Head:
     trouble = str(document.problems[0]).partition("\n")[0] if document.problems else ""
     uses = dict.fromkeys(node.step or node.use or "" for node in declared.nodes.values())
     uses.pop("", None)
-    return Head(name, declared.about, declared.evolves, offer.plugin.name, trouble, tuple(uses))
+    parent = declared.evolves
+    with suppress(UsageError):
+        parent = found.spelled("pipelines", parent, str(path))
+    return Head(name, declared.about, parent, offer.plugin.name, trouble, tuple(uses))
 
 
 @click.command()

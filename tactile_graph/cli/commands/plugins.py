@@ -11,8 +11,8 @@ from tactile_graph.cli.endings import NOT_DONE
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.mistakes import near_groups
+from tactile_graph.plugins.names import OWN, Plugin, singular
 
-OWN = "tactile-graph"
 EVERY = "-"
 """Stands for no name."""
 NARROW = 80
@@ -56,7 +56,8 @@ def _list() -> None:
     table.add_column("offers", overflow="fold")
     for plugin in found.plugins:
         spent = ["" if plugin.blocked else f"{plugin.import_ms:.1f}"] if timed else []
-        table.add_row(plugin.name, plugin.package, plugin.version, *spent, _offers(plugin, broken))
+        offers = _offers(found, plugin, broken)
+        table.add_row(plugin.name, plugin.package, plugin.version, *spent, offers)
     out.print(table)
     for plugin in found.plugins:
         if plugin.error:
@@ -100,22 +101,22 @@ def _broken_steps(found: registry.Registry) -> dict[str, str]:
     return broken
 
 
-def _offers(plugin: registry.Plugin, broken: Mapping[str, str]) -> Any:
+def _offers(found: registry.Registry, plugin: Plugin, broken: Mapping[str, str]) -> Any:
     from rich.text import Text
 
     if plugin.blocked:
         return Text("blocked", style="yellow")
     if plugin.error:
         return Text("failed to load, see below", style="red")
-    usable = {
-        kind: [n for n in names if kind != "steps" or n not in broken]
-        for kind, names in plugin.offers.items()
-    }
+    usable = {**plugin.offers, "steps": [
+        n for n in plugin.offers.get("steps", ())
+        if found.spelled("steps", f"{plugin.name}.{n}") not in broken
+    ]}  # fmt: skip
     parts = [
-        f"{len(names)} {registry.singular(kind)}{'s' if len(names) != 1 else ''}"
+        f"{len(names)} {singular(kind)}{'s' if len(names) != 1 else ''}"
         for kind, names in usable.items()
         if names
     ]
-    n_broken = len(plugin.offers.get("steps", ())) - len(usable.get("steps", ()))
+    n_broken = len(plugin.offers.get("steps", ())) - len(usable["steps"])
     parts += [f"{n_broken} of its steps cannot be used, see below"] if n_broken else []
     return Text(", ".join(parts) or "nothing", style="" if parts else "dim")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
+import sys
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -124,11 +126,26 @@ class Zarr:
 
 
 def put_in_place(part: Path, target: Path) -> None:
-    """Give a file, or a folder, its name, in place of what is there."""
+    """Give a file, or a folder, its name, in place of what is there.
+
+    A folder is exchanged with the older one at once where the system can do that; elsewhere there
+    is none of that name between two renames.
+    """
     if not target.is_dir():
         os.replace(part, target)
-        return
-    old = target.with_name(f"{part.name}.old")  # a folder that is not empty is not replaced
-    target.rename(old)
-    part.rename(target)
-    shutil.rmtree(old)
+    elif _exchanged(part, target):
+        shutil.rmtree(part)
+    else:
+        old = target.with_name(f"{part.name}.old")  # a folder that is not empty is not replaced
+        target.rename(old)
+        part.rename(target)
+        shutil.rmtree(old)
+
+
+def _exchanged(one: Path, other: Path) -> bool:
+    """Return whether two names changed places, which Linux alone offers, not on every disc."""
+    exchange = getattr(ctypes.CDLL(None), "renameat2", None) if sys.platform == "linux" else None
+    if exchange is None:
+        return False
+    here, flag = -100, 2  # AT_FDCWD and RENAME_EXCHANGE of renameat2(2)
+    return bool(exchange(here, os.fsencode(one), here, os.fsencode(other), flag) == 0)

@@ -142,14 +142,14 @@ def test_plugins_lists_what_is_offered_broken_blocked_and_refused(hand_made, mon
     assert cells["hand"][1:3] == ["hand-made", "1.2"]
     assert cells["hand"][4:] == ["9", "steps,", "1", "reader,", "2", "pipelines,", "1", "command"]
     assert cells["torn"][4:] == ["failed", "to", "load,", "see", "below"]
-    assert " ".join(cells["twin"][4:]) == "1 of its steps cannot be used, see below"
+    assert " ".join(cells["twin"][4:]) == "2 of its steps cannot be used, see below"
     assert "plugin 'twin' (package twin-package), step 'other': " in got.stdout
     assert "No module named 'x'" in got.stdout
     assert cells["shut"] == ["shut", "shut-package", "4", "blocked"]
     assert "plugin 'torn' (package torn-package): No module named 'antigravity'" in got.stdout
     assert (
-        "clash: step 'disc' of plugin 'twin' (package twin-package) is refused: plugin 'hand' "
-        "(package hand-made) has it already" in got.stdout
+        "clash: step 'disc' is ambiguous: plugin 'hand' (package hand-made) and plugin 'twin' "
+        "(package twin-package) offer it; write hand.disc or twin.disc" in got.stdout
     )
     assert (
         "clash: command 'run' of plugin 'hand' (package hand-made) is refused: tactile-graph has "

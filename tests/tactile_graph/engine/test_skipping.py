@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -559,6 +560,52 @@ def test_each_runs_a_pipeline_over_a_list_and_keeps_the_results_of_its_items(tmp
     assert run(p, 0).outcome("u").reason == "no items to run for"
 
 
+# -- conditions over items -----------------------------------------------------------------------
+
+
+PEAKS = """i: {step: images, in: frame}
+    p: {step: read, in: i, each: true}
+    q: {step: at_least, in: p, each: true, with: {least: 4}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("when", "holds"),
+    [
+        ("any(q > 4)", True),
+        ("all(q > 3)", True),  # the first item is left out: it was skipped
+        ("all(q > 4)", False),
+        ("count(q >= 4) == 2", True),
+        ("count(p >= 3) == 3 and any(i.peak > 4)", True),
+        ("count(i.peak > 3 and i.total > 18) > 1", False),
+    ],
+)
+def test_a_guard_over_items_leaves_out_those_without_a_value(when: str, holds: bool) -> None:
+    p = make(f"{PEAKS}g: {{step: add1, in: frame.index, when: {when}}}", "g")
+    outcome = run(p).outcome("g")
+    assert (outcome == 1) == holds, outcome
+    if not holds:
+        assert outcome.reason.startswith(f"when {when} is false (")
+
+
+def test_a_guard_over_no_items_and_over_a_list_that_was_skipped() -> None:
+    p = make(f"{PEAKS}g: {{step: add1, in: frame.index, when: any(i.peak > 4)}}", "g")
+    assert run(p, 0).outcome("g").reason == "when any(i.peak > 4) is false (i.peak = 0 items)"
+    p = make(f"{PEAKS}g: {{step: add1, in: frame.index, when: all(q > 4)}}", "g")
+    outcome = run(p, 0).outcome("g")
+    assert (outcome.origin, outcome.reason) == ("p", "no items to run for")
+
+
+def test_a_failed_item_fails_a_guard_over_items(tmp_path: Any) -> None:
+    nodes = """i: {step: images, in: frame}
+    u: {use: inner, in: i, each: true}
+    g: {step: add1, in: frame.index, when: any(u.t > 0)}
+    h: {step: add1, in: frame.index, when: count(u.s > 5) == 1}"""
+    result = run(using(tmp_path, nodes, "g, h"))
+    assert (result.outcome("g").origin, result.outcome("g").item) == ("t", (2,))
+    assert result["h"] == 1
+
+
 # -- done once, reused, frozen -----------------------------------------------------------------
 
 
@@ -755,6 +802,15 @@ def test_every_node_that_ran_has_a_time() -> None:
 def test_a_chain_of_2000_nodes_runs() -> None:
     nodes = "\n".join(f"n{i}: {{step: add1, in: n{i - 1}}}" for i in range(1, 2000))
     assert run(make(f"n0: {V[3:]}\n{nodes}", "n1999"))["n1999"] == 3 + 1999
+
+
+def test_a_long_chain_of_choices_is_planned_in_no_time() -> None:
+    """All that each reads stands before it; looked up anew for each, that takes seconds."""
+    nodes = "\n".join(f"n{i}: {{first_of: [n{i - 1}, n{max(0, i - 2)}]}}" for i in range(1, 1900))
+    p = make(f"n0: {V[3:]}\n{nodes}", "n1899")
+    begun = time.process_time()
+    assert run(p, 3)["n1899"] == 3
+    assert time.process_time() - begun < 1.0
 
 
 def test_400_guarded_nodes_in_a_chain_run_and_skip() -> None:

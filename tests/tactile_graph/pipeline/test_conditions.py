@@ -16,6 +16,13 @@ from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.wiring import Ref
 
 
+class Item(NamedTuple):
+    size: float
+    peak: float | None
+    kind: str
+    parts: list[int]
+
+
 class Found(NamedTuple):
     count: int
     names: list[str]
@@ -33,6 +40,9 @@ TYPES = {
     "found": Found,
     "text": str,
     "frame": int,
+    "items": list[Item],
+    "flags": list[bool],
+    "u.s": list[Item | None],
 }
 VALUES = {"a": 3, "b": 0.5, "found.count": 2, "found.names": ("x", "y"), "text": "on"}
 
@@ -170,6 +180,76 @@ def test_a_condition_over_a_field_that_images_in_volts_lack_is_refused(
         return
     with pytest.raises(PipelineError, match=words):
         loads(text)
+
+
+ITEMS = {
+    "items.size": (1.0, 2.0, 3.0),
+    "items.peak": (0.1, 0.9, 0.5),
+    "items.kind": ("disc", "bar", "disc"),
+    "flags": (True, False),
+    "u.s.size": (),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("any(items.size > 2.5)", True),
+        ("all(items.size > 2.5)", False),
+        ("count(items.size > 1.5) == 2", True),
+        ("count(items.size > 1.5 and items.peak > 0.6) >= 2", False),
+        ("any(items.kind == 'disc' and items.peak > 0.6)", False),
+        ("any(items.size > a) or count(flags) == 1", True),
+        ("not any(items.size > 9) and all(flags or a > 1)", True),
+        ("any(u.s.size > 0)", False),
+        ("all(u.s.size > 0)", True),
+        ("count(u.s.size > 0) > 0", False),
+        ("any(abs(items.size - 2) < b)", True),
+        ("len(items) and any(items.size > 2.5)", True),
+    ],
+)
+def test_any_all_and_count_are_over_the_items_of_a_list(text: str, expected: bool) -> None:
+    guard = compile_condition(text, TYPES, {})
+    values = {**VALUES, **ITEMS, "items": (1, 2, 3)}
+    assert bool(guard.function(*[values[r.spelled] for r in guard.refs])) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("items.size > 2", "items is a list: fields of its items are read within any(), all() or"),
+        (
+            "any(items.sise > 2)",
+            "an item of items (Item) has no field 'sise'; did you mean 'size'?",
+        ),
+        ("any(items.zzzzz > 2)", "has no field 'zzzzz'; it has: kind, parts, peak, size"),
+        ("any(a > 2)", "any() is over the items of a list, and none is read in it"),
+        ("any(items.size > 2, 3)", "any() takes one condition over items, like any(fits.radius"),
+        ("any()", "any() takes one condition over items"),
+        ("any(items.size > 1 and flags)", "any() is over the items of one list, got flags, items"),
+        ("any(all(flags))", "all() cannot stand within another any(), all() or count()"),
+        ("any(items.size > 1) > 2", "any() is a yes or no; count() is a number"),
+        ("count(items.size > 1) >= 0", "count() is never negative: this is always true"),
+        ("any(items.kind > 2)", "items.kind is a text and 2 is a number"),
+        ("any(items)", "items is a Item, not a yes/no or a number"),
+        ("count(items.parts > 1)", "items.parts is a list[int] and cannot be compared"),
+        ("any(items.__class__)", "has no field '__class__'"),
+        ("any([x for x in items])", "listcomp is not allowed in a condition"),
+        ("any(1 > 2)", "1 > 2 reads no node"),
+    ],
+)
+def test_what_is_wrong_over_items_is_told(text: str, words: str) -> None:
+    with pytest.raises(ConditionError) as caught:
+        compile_condition(text, TYPES, {})
+    assert words in caught.value.message
+
+
+def test_items_are_told_in_a_reason_once_for_each_field() -> None:
+    guard = compile_condition("any(items.size > 9) or count(items.size > 8) > 1", TYPES)
+    assert guard.reason(((1.0, 2.0), (1.0, 2.0))) == (
+        "when any(items.size > 9) or count(items.size > 8) > 1 is false (items.size = [1, 2])"
+    )
+    assert "(items.size = [1, 1, 1, 1, … of 9])" in guard.reason(((1.0,) * 9, (1.0,) * 9))
 
 
 def test_each_value_is_read_once_in_order() -> None:

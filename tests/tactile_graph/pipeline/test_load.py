@@ -301,7 +301,7 @@ BAD_NODES = [
     ("m: {step: maybe, in: frame}", r"may return None .*Degenerate.* \(plugin '.*', package "),
     (
         M + "n: {step: finer, in: m, when: __import__('os')}",
-        "only abs, len, max, min can be called",
+        "only abs, len, max, min, any, all, count can be called",
     ),
     (M + "n: {step: finer, in: m, when: 'abs(m.count, 1) > 0'}", r"abs\(\) takes one argument"),
     (M + "n: {step: finer, in: m, when: 'm.count ** 9 > 1'}", "pow is not allowed in a condition"),
@@ -327,7 +327,14 @@ BAD_NODES = [
     ),
     ("m: {use: inner, with: {m.levl_v: 1}}", "unknown setting 'levl_v'; did you mean 'level_v'"),
     ("m: {use: inner, with: {q.level_v: 1}}", "node 'm', q.level_v: no node named 'q'"),
-    ("m: {use: inner, in: [frame]}", "an embedded pipeline has one port, 'frame'"),
+    ("m: {use: inner, in: [frame]}", "an embedded pipeline takes one input, its frame, or a map"),
+    (
+        "m: {use: inner, in: {frame: frame, mm: frame}}",
+        "pipeline 'inner' has no node 'mm' to take the place of; did you mean 'm'?",
+    ),
+    ("m: {use: inner, in: {m: frame}}", "frame is a Frame, but stands for 'm', a Mask"),
+    ("m: {use: inner, in: {m: [frame]}}", "'m' takes one input, not a list"),
+    ("c: {step: constant}\nm: {use: inner, in: {m: gone}}", "no node named 'gone'"),
     (
         "c: {step: constant}\nm: {use: inner, in: c}",
         "the pipeline reads frame.image, but c is a int",

@@ -87,15 +87,67 @@ def test_what_is_missing_is_told_with_the_plugins_that_are_down() -> None:
         found.path("pipelines", "zzz")
 
 
-def test_a_name_that_is_taken_is_refused_naming_both_packages() -> None:
-    found = offered(GOOD, ("late", plugin(steps={"step": "x:y", "more": step})))
+LATE = ("late", plugin(steps={"step": "x:y", "more": step}, pads={"pad": Path("late.yaml")}))
+
+
+def test_a_step_that_two_plugins_offer_is_ambiguous_until_it_is_qualified() -> None:
+    found = offered(GOOD, LATE)
+    told = (
+        "step 'step' is ambiguous: plugin 'good' (package good-package) and "
+        "plugin 'late' (package late-package) offer it; write good.step or late.step"
+    )
+    assert found.clashes == [told]
+    with pytest.raises(UsageError, match=f"^{re.escape(told)}$"):
+        found.step("step")
+    assert found.load("steps", "good.step") is step
+    assert found.step("good.step").name == "good.step"
+    assert found.offer("steps", "late.step").target == "x:y"
+    assert found.names("steps") == ["good.step", "late.step", "more"]
+
+
+def test_a_name_that_is_not_shared_may_be_qualified_and_stays_plain() -> None:
+    found = offered(GOOD, LATE)
+    assert found.step("late.more") is found.step("more")
+    assert found.step("late.more").name == "more"
+    assert found.spelled("steps", "late.more") == "more"
+
+
+def test_a_file_of_a_package_means_its_own_step_and_pipeline(tmp_path: Path) -> None:
+    for name in ("good", "late"):
+        (tmp_path / f"{name}.yaml").touch()
+    found = offered(
+        ("good", plugin(steps={"step": step}, pipelines={"p": tmp_path / "good.yaml"})),
+        ("late", plugin(steps={"step": "x:y"}, pipelines={"p": tmp_path / "late.yaml"})),
+    )
+    for name in ("good", "late"):
+        file = str(tmp_path / f"{name}.yaml")
+        assert found.offer("steps", "step", file).plugin.name == name
+        assert found.path("pipelines", "p", file) == tmp_path / f"{name}.yaml"
+    with pytest.raises(UsageError, match=r"write good\.step or late\.step"):
+        found.step("step", str(tmp_path / "mine.yaml"))
+
+
+def test_of_two_pads_the_first_has_the_plain_name_and_the_other_is_had_by_its_own() -> None:
+    found = offered(("good", plugin(pads={"pad": Path("good.yaml")})), LATE)
+    assert found.path("pads", "pad") == Path("good.yaml")
+    assert found.path("pads", "late.pad") == Path("late.yaml")
+    assert found.names("pads") == ["late.pad", "pad"]
     assert found.clashes == [
-        "step 'step' of plugin 'late' (package late-package) is refused: "
-        "plugin 'good' (package good-package) has it already"
+        "pad 'pad' of plugin 'late' (package late-package) is called late.pad: "
+        "plugin 'good' (package good-package) has the plain name"
     ]
-    assert found.load("steps", "step") is step
-    assert found.names("steps") == ["more", "step"]
-    assert found.plugins[1].offers["steps"] == {"more": step}
+
+
+def test_a_qualified_name_that_is_not_there_is_told_what_is_near() -> None:
+    found = offered(GOOD, LATE)
+    for given, told in {
+        "late.mor": "no step named 'late.mor'; did you mean 'late.more'?",
+        "lat.more": "no step named 'lat.more'; did you mean 'late.more'?",
+        "late.zzzz": "no step named 'late.zzzz'; there are: late.more, late.step",
+        "mor": "no step named 'mor'; did you mean 'more'?",
+    }.items():
+        with pytest.raises(UsageError, match=f"^{re.escape(told)}$"):
+            found.step(given)
 
 
 def test_two_plugins_of_one_name_do_not_replace_each_other() -> None:

@@ -110,6 +110,19 @@ def counts_its_calls(mask: Mask) -> int:
     return len(COUNTED)
 
 
+class BreaksWarmedUp:
+    """Skip five frames; then give NaN."""
+
+    def __init__(self) -> None:
+        self._n = 0
+
+    def __call__(self, mask: Mask) -> float:
+        self._n += 1
+        if self._n <= 5:
+            raise Skip(f"warming up: frame {self._n} of 5")
+        return float("nan")
+
+
 class HoldsALambda:
     stateless = True
 
@@ -197,6 +210,7 @@ BROKEN: list[tuple[Callable[..., Any], str]] = [
     (says_too_much, "raises Degenerate with more than one clear line"),
     (ends_the_program, "raises SystemExit: nothing pressed"),
     (never_ends, "values of 1e-100 (and 1 more case): was stopped after"),
+    (BreaksWarmedUp, "an ordinary frame (and 16 more cases): gives as good what is none"),
     (HandsOutItsState, "writes into what it gave before; give a copy"),
 ]
 

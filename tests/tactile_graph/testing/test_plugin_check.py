@@ -101,9 +101,12 @@ def test_a_taken_name_is_told() -> None:
         [("first", "one", "1", lambda: offering(steps={"counted": counted})),
          ("mine", "my-package", "1.2", lambda: module)]
     )  # fmt: skip
-    assert examine_plugin(registry.plugins[0], registry).broken == []
-    (line,) = examine_plugin(registry.plugins[1], registry).broken
-    assert "'counted' of plugin 'mine' (package my-package) is refused" in line
+    for plugin in registry.plugins:
+        report = examine_plugin(plugin, registry)
+        assert (report.broken, report.n_offers) == ([], 1)
+        (line,) = report.clashes
+        assert line.startswith("step 'counted' is ambiguous: ")
+        assert line.endswith("write first.counted or mine.counted")
 
 
 def test_the_shell_shows_what_is_wrong_and_what_is_right(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_filters import image_of, same_grid
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Skip
 from tactile_graph_filters.readings.tare import Tare
 
 EMPTY = np.array([[3.0, 5.0, 4.0], [2.0, 9.0, 4.0], [3.0, 3.0, 3.0]])
@@ -12,16 +12,20 @@ EMPTY = np.array([[3.0, 5.0, 4.0], [2.0, 9.0, 4.0], [3.0, 3.0, 3.0]])
 
 def settled(**settings):
     tare = Tare(n_frames=3, **settings)
-    for _ in range(3):
-        tare(image_of(EMPTY, "counts"))
+    for _ in range(2):
+        with pytest.raises(Skip):
+            tare(image_of(EMPTY, "counts"))
+    tare(image_of(EMPTY, "counts"))
     return tare
 
 
 def test_the_median_of_the_first_frames_is_taken_off():
     tare = Tare(n_frames=3)
+    with pytest.raises(Skip, match="warming up: frame 1 of 3 of the empty pad"):
+        tare(image_of(EMPTY, "counts"))
+    with pytest.raises(Skip, match="frame 2 of 3"):
+        tare(image_of(EMPTY + 1000.0, "counts"))  # someone leant on it
     assert tare(image_of(EMPTY, "counts")).total == 0.0
-    tare(image_of(EMPTY + 1000.0, "counts"))  # someone leant on it
-    tare(image_of(EMPTY, "counts"))
     image = image_of(EMPTY + 7.0, "counts")
     found = tare(image)
     assert found.values.tolist() == np.full((3, 3), 7.0).tolist()
@@ -73,6 +77,11 @@ def test_invalid_cells_stay_invalid_and_hold_zero():
 def test_another_shape_is_refused():
     with pytest.raises(DataError, match=r"must keep its shape .* got \(1, 1\) after \(3, 3\)"):
         settled()(image_of([[1.0]]))
+    warming = Tare(n_frames=3)
+    with pytest.raises(Skip):
+        warming(image_of(EMPTY))
+    with pytest.raises(DataError, match="must keep its shape"):
+        warming(image_of([[1.0]]))
 
 
 def test_nan_is_refused():

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from helpers_html import read_html
@@ -12,6 +14,7 @@ from tactile_graph import loads
 from tactile_graph_pads.learning.learn import learn_pad
 from tactile_graph_pads.learning.pad_file import Making, write_pad
 from tactile_graph_pads.learning.page import nodes, page
+from tactile_graph_pads.learning.pictures import pictures
 from tactile_graph_pads.learning.recordings import read_stack
 
 MAKING = Making("tactile-graph learn-pad '<b>.npz'", "tactile-graph 0", "2026", {"<b>.npz": "0"})
@@ -42,3 +45,15 @@ def test_the_page_is_whole_and_names_stay_text(tmp_path: Path) -> None:
     assert root.all("b") == root.all("i") == root.all("script") == []
     assert "'<b>.npz'" in root.text
     assert "<i>.yaml" in root.text
+
+
+def test_readings_that_are_all_the_same_are_drawn(tmp_path: Path) -> None:
+    pad = MadeUpPad()
+    empty, objects = pad.recorded(tmp_path, n_objects=3)
+    found = learn_pad(read_stack([(empty, None)]), read_stack([(objects, None)]))
+    (picture,) = (
+        p
+        for p in pictures(replace(found, under=np.full(9, 0.25)))
+        if p.title == "Readings under objects"
+    )
+    assert picture.figure.axes[0].patches

@@ -110,3 +110,30 @@ def test_a_damaged_one_says_so(kept: Path) -> None:
         kept.write_bytes(kept.read_bytes()[:3000])
         with pytest.raises(DataError, match="HDF5 file cannot be read"):
             frames_of(kept, sensor="frame")
+
+
+@pytest.mark.parametrize(
+    ("shape", "n", "told"),
+    [
+        ((2, 1900, 1900), 2, "each image is in more than 1,000 pieces"),
+        ((2, 10**5, 10**5), 2, "images of 10,000,000,000 cells; allowed are 4,000,000"),
+        (
+            (10**10, 2, 2),
+            10**10,
+            "outcomes and times unpack to 90,000 MB, of which 0.0 are written",
+        ),
+    ],
+)
+def test_images_that_were_never_written_are_refused_before_they_are_read(
+    tmp_path: Path, shape: tuple[int, ...], n: int, told: str
+) -> None:
+    h5py = pytest.importorskip("h5py", reason="the extra is not installed")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["format"] = "tactile-graph node images"
+        values = file.create_dataset("a/values", shape, "f8", chunks=(1, 2, 2))
+        about = {"kind": "image", "quantity": "volt", "pitch_cm": (1, 1), "origin_cm": (0, 0)}
+        values.attrs.update(about)
+        file.create_dataset("a/outcome", (n,), "u1", chunks=(1,))
+        file.create_dataset("time_s", (n,), "f8", chunks=(1,))
+    with pytest.raises(DataError, match=told):
+        frames_of(tmp_path / "a.h5")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import struct
 import zlib
@@ -35,6 +36,34 @@ def test_an_array_whose_axes_are_none_of_a_stack_is_not_unpacked(
     monkeypatch.setattr(npz_reader.Archive, "load", lambda self, name: loaded.append(name))
     assert "has shape (5000,)" in refused(tmp_path, npz(values=np.zeros(5000)))
     assert loaded == []
+
+
+@pytest.mark.parametrize(
+    "names", [("frame0", "frame1", "frame2"), ("values", "valid"), ("cap", "ftir")]
+)
+def test_arrays_that_only_together_unpack_to_far_too_much_are_refused_before_any_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...]
+) -> None:
+    """Each stays below the bound."""
+    loaded: list[str] = []
+    monkeypatch.setattr(npz_reader.Archive, "load", lambda self, name: loaded.append(name))
+    monkeypatch.setattr(npz_reader, "LARGE", 1_000_000)
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **{n: np.zeros((300, 300)) for n in names})
+    told = f"arrays {names[0]!r} to {names[-1]!r} unpack to {len(names) * 0.72:.0f} MB, "
+    assert told in refused(tmp_path, buffer.getvalue())
+    assert loaded == []
+
+
+def test_datasets_that_only_together_unpack_to_far_too_much_are_refused(tmp_path: Path) -> None:
+    """Each is as large as one alone may be."""
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for i in range(4):
+            file.create_dataset(f"frame{i}", (4_000, 2_000), "f8", chunks=(4, 4))
+    told = "datasets 'frame0', 'frame1', 'frame2' and 1 more unpack to 256 MB, of which 0.0 are wri"
+    with pytest.raises(DataError, match=told):
+        frames_of(tmp_path / "a.h5")
 
 
 def test_an_archive_with_a_long_list_of_members_is_not_listed(

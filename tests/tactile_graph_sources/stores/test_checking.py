@@ -15,6 +15,7 @@ from tactile_graph.steps import Report
 from tactile_graph.wires import TrueObject
 from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores.checking import check
+from tactile_graph_sources.stores.stored import UNSURE
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 zarr = pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -111,18 +112,18 @@ def test_lost_frames_stay_told_as_lost(store: Path) -> None:
     (store / "frames.journal").unlink()
     told = "frames 8 to 9: lost: values/c/2/0/0 is gone"
     assert told in check(store).wrong
-    assert check(store, repair=True).wrong == (told,)
-    assert check(store, repair=True) == (ABOUT, (told,), ())
+    assert check(store, repair=True).wrong == (UNSURE, told)
+    assert check(store, repair=True) == (ABOUT, (UNSURE, told), ())
     report = Report()
     assert [f.index for f in read_store(store, report)] == list(range(8))
-    assert report.troubles == [(str(store), told)]
+    assert report.troubles == [(str(store), UNSURE), (str(store), told)]
 
 
 def test_frames_that_nothing_numbers_stay_told_as_lost(store: Path) -> None:
     shutil.rmtree(store / "number" / "c")
     (store / "frames.journal").unlink()
     checked = check(store, repair=True)
-    assert checked.wrong == ("frames 0 to 9: lost: nothing numbers them",)
+    assert checked.wrong == (UNSURE, "frames 0 to 9: lost: nothing numbers them")
     with pytest.raises(DataError, match="not a single frame"):
         list(read_store(store))
 

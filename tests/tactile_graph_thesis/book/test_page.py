@@ -11,7 +11,13 @@ from tactile_graph.errors import Degenerate
 from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.book.files import compared_csv, csv_text, files_of
 from tactile_graph_thesis.book.page import page
-from tactile_graph_thesis.book.summary import conclusions, table_lines
+from tactile_graph_thesis.book.summary import (
+    Nearness,
+    all_told,
+    conclusions,
+    nearness,
+    table_lines,
+)
 from tactile_graph_thesis.book.text import number
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
 from tactile_graph_thesis.making import Outcome, outcomes
@@ -22,11 +28,12 @@ ROWS = (
     Compared("b", "cm", 2.0, 4.0, 1.0, 3.0),
     Compared("c", "%", 3.0, 5.0, limit=True),
     Compared("d", "cm", 3.0),
+    Compared("e max", "cm", 1.2, 1.0, largest=True),
 )
 FINDINGS = (
-    Finding("up", "yes & more", True),
-    Finding("down", "no", False),
-    Finding("(not in the thesis) sideways", "so", True),
+    Finding("up", "yes & more", "no <more>", True),
+    Finding("down", "no", "yes", False),
+    Finding("(not in the thesis) sideways", "so", "not so", True),
 )
 
 
@@ -73,7 +80,7 @@ def test_a_failing_item_stops_no_other_and_says_why() -> None:
 
 
 def test_ratio_and_range() -> None:
-    one, two, limit, none = ROWS
+    one, two, limit, none, _ = ROWS
     assert (one.ratio, one.within) == (2.0, True)
     assert (two.ratio, two.within) == (0.5, False)
     assert limit.within is None
@@ -84,9 +91,31 @@ def test_ratio_and_range() -> None:
 
 def test_the_summary_counts_numbers_and_conclusions() -> None:
     (line,) = table_lines(made())
-    assert (line.name, line.numbers, line.within, line.with_range) == ("table 9.1", 2, 1, 2)
-    assert line.median_ratio == pytest.approx(1.0)  # of 2 and 0.5
+    assert (line.name, line.within, line.with_range) == ("table 9.1", 1, 2)
+    assert (line.averages, line.maxima) == (Nearness(2, (0, 0, 1)), Nearness(1, (0, 1, 1)))
+    study = line._replace(id="one-pad")
+    assert [str(n) for n in all_told([line, line, study])] == ["0, 0, 2 of 4", "0, 2, 2 of 2"]
     assert [f.thesis for _, f in conclusions(made())] == ["up", "down"]
+
+
+def test_maxima_and_averages_that_miss_in_opposite_ways_do_not_make_up_for_each_other() -> None:
+    rows = (Compared("a", "cm", 0.4, 1.0), Compared("a max", "cm", 2.5, 1.0, largest=True))
+    item = Item("table-9.3", "Off", "Shown.", lambda _: Made(rows))
+    (line,) = table_lines(list(outcomes([item], Work(readings=20))))
+    assert line.averages.near == line.maxima.near == (0, 0, 0)
+    assert nearness([]) == Nearness(0, (0, 0, 0))
+    assert str(nearness([])) == "–"
+
+
+def test_a_number_at_the_edge_is_within() -> None:
+    rows = [Compared("", "", ours, 1.0) for ours in (1.1, 0.7, 1.31, 0.5)]
+    assert nearness(rows).near == (1, 2, 4)
+
+
+@pytest.mark.parametrize("nothing", ["", "  "])
+def test_a_finding_that_nothing_refutes_is_none(nothing: str) -> None:
+    with pytest.raises(ValueError, match="finding 'up': refuted_by must say what would refute it"):
+        Finding("up", "yes", nothing, True)
 
 
 def test_the_page_holds_everything_and_asks_for_nothing() -> None:
@@ -99,6 +128,8 @@ def test_the_page_holds_everything_and_asks_for_nothing() -> None:
     for part in (
         "a &lt;b&gt;",
         "yes &amp; more",
+        "What would refute it: no &lt;more&gt;.",
+        "0, 0, 1 of 2",
         "&lt; 5",
         "nothing to &lt;see&gt;",
         "x &amp; y",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import yaml
 
 from tactile_graph_thesis.catalogue import chosen, items
 from tactile_graph_thesis.items.chapter_4.figures_4_22_to_4_28_rectangles import (
@@ -19,6 +22,10 @@ pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
 SCHEDULE = ("annealing", "state-space")
+VERDICTS: dict[str, list[bool]] = yaml.safe_load(
+    (Path(__file__).parent / "verdicts.yaml").read_text(encoding="utf-8")
+)
+"""What comes out with the work below."""
 
 
 @pytest.fixture(scope="module")
@@ -42,13 +49,19 @@ def test_each_comes_out(name: str, work: Work) -> None:
     for finding in made.findings:
         assert isinstance(finding.holds, bool)
         assert "nan" not in finding.found
+        assert "refuted" not in finding.found
+    assert [finding.holds for finding in made.findings] == VERDICTS.get(name, [])
     if made.table is not None:
         assert all(len(row) == len(made.table.columns) for row in made.table.rows)
     if made.figure is not None:
         for axes in made.figure.axes:
-            drawn = axes.lines or axes.images or axes.collections
+            drawn = axes.lines or axes.images or axes.collections or axes.patches
             assert drawn or axes.get_label() == "<colorbar>", name
             assert not drawn or axes.get_xlabel() or axes.get_ylabel() or axes.get_title(), name
+
+
+def test_every_verdict_is_of_an_item() -> None:
+    assert set(VERDICTS) <= {item.id for item in items()}
 
 
 @pytest.mark.slow

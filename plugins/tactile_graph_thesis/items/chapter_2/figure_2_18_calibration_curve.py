@@ -98,17 +98,20 @@ def _findings(found: Curves) -> tuple[Finding, ...]:
         Finding(
             "a fifth-order polynomial is a usable, smooth calibration curve (figure 2.18)",
             "off in load: " + "; ".join(words),
+            "an error of a fifth of the load or more, rms",
             worst["polynomial"] < 20.0,
         ),
         Finding(
             "(not in the thesis) a power law does not fit volts: the divider saturates",
             f"{worst['power'] / worst['polynomial']:.1f} times the polynomial's error",
+            "an error no larger than the polynomial's",
             worst["power"] > worst["polynomial"],
         ),
         Finding(
             "(not in the thesis) two of the four share a column and so half the supply, beyond "
             "which a curve taken this way knows nothing",
             f"reads up to {top:.2f} V at {found.load_g[-1]:.0f} g an element",
+            "a reading of more than 2.6 V, half the supply and a tenth of a volt",
             bool(top < 2.6),
         ),
     )

@@ -170,11 +170,13 @@ def _findings(found: Weighings) -> tuple[Finding, ...]:
             "at the same load per element, smaller objects weigh more nearly right than larger "
             "ones (figure 2.19)",
             f"without decoupling: {words['coupled']}",
+            "a loss that grows by less than ten points from the smallest object to the largest",
             bool(growth["coupled"] > 10.0 and size["coupled"][small] < size["coupled"][large]),
         ),
         Finding(
             "the cause is the electrical coupling",
             f"with decoupling: {words['decoupled']}",
+            "a decoupled loss that still grows by a tenth as much, or is half as large",
             bool(
                 abs(growth["decoupled"]) < 0.1 * growth["coupled"]
                 and size["decoupled"][large] < 0.5 * size["coupled"][large]
@@ -184,6 +186,7 @@ def _findings(found: Weighings) -> tuple[Finding, ...]:
             "(not in the thesis) what is left comes of calibrating uneven groups by their mean "
             "reading, not of area; a calibration of their sums takes it off too",
             f"with decoupling, by sums: {words['by sums']}",
+            "five percent or more of the weight left amiss",
             bool(size["by sums"].max() < 5.0),
         ),
     )

@@ -154,6 +154,8 @@ def _all_on_the_grain(found: Footprints) -> Finding:
         "the whole image of the disc seems to lie on the bump (figure 2.13)",
         f"element {at} holds {100 * after:.0f} % of all volts ({100 * before:.0f} % without "
         f"the grain); {n_after} of {n_before} elements still read above 0.1 V",
+        "less than half of all volts on the grain's element, or more elements that read than "
+        "without it",
         bool(after > 0.5 and n_after <= n_before),
     )
 
@@ -166,11 +168,13 @@ def _smoothed(found: Footprints) -> tuple[Finding, ...]:
             "with foam the force is spread more evenly, as by a low-pass filter (figure 2.14)",
             f"scatter inside the footprint {100 * rough[0]:.0f} % without, "
             f"{100 * rough[1]:.0f} % with",
+            "scatter that falls by less than three tenths",
             rough[1] < 0.7 * rough[0],
         ),
         Finding(
             "with foam object and background are less distinct",
             f"contrast of rim against surroundings {edge[0]:.2f} without, {edge[1]:.2f} with",
+            "contrast that falls by less than a fifth",
             edge[1] < 0.8 * edge[0],
         ),
     )

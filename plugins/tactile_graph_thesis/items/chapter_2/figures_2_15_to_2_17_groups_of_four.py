@@ -31,7 +31,13 @@ def _table(found: GroupReadings) -> Table:
     return Table(columns, [tuple(map(float, row)) for row in values])
 
 
-def _findings(found: GroupReadings) -> tuple[Finding, ...]:
+def rises_and_flattens(found: GroupReadings) -> tuple[Finding, ...]:
+    """Return whether readings rise with the weight, and less and less.
+
+    Parameters
+    ----------
+    found : GroupReadings
+    """
     mean = found.group_v.mean(axis=0)
     at = {g: float(np.interp(g, found.weight_g, mean)) for g in (100.0, 700.0, 750.0, 3000.0)}
     light = (at[700.0] - at[100.0]) / 6.0
@@ -44,11 +50,13 @@ def _findings(found: GroupReadings) -> tuple[Finding, ...]:
             f"mean of the groups {at[100.0]:.2f} V at 100 g, {at[700.0]:.2f} V at 700 g, "
             f"{at[3000.0]:.2f} V at 3000 g; falls {np.count_nonzero(falls)} times, by at most "
             f"{-1e3 * falls.min():.0f} mV",
+            "a fall by a twentieth of the range, or a reading no higher at 700 or 3000 g",
             bool(-falls.min() < 0.05 * mean[-1] and at[100.0] < at[700.0] < at[3000.0]),
         ),
         Finding(
             "(figure 2.15) the curve flattens: two ranges need two scales",
             f"{1e3 * light:.0f} mV for each 100 g below 700 g, {1e3 * heavy:.0f} mV above",
+            "three tenths of the slope or more above 700 g",
             heavy < 0.3 * light,
         ),
     )
@@ -75,7 +83,7 @@ def _figure(found: GroupReadings) -> Figure:
 
 def _figure_2_15(work: Work) -> Made:
     found = work.on_pad(group_readings)
-    return Made(findings=_findings(found), table=_table(found), figure=_figure(found))
+    return Made(findings=rises_and_flattens(found), table=_table(found), figure=_figure(found))
 
 
 def _figure_2_16(work: Work) -> Made:
@@ -148,25 +156,34 @@ def _bar_table(found: ErrorBars) -> Table:
     return Table(columns, [tuple(map(float, row)) for row in zip(*found[:6], strict=True)])
 
 
-def _bar_findings(found: ErrorBars) -> tuple[Finding, ...]:
+def about_as_in_the_thesis(found: ErrorBars) -> tuple[Finding, ...]:
+    """Return whether single elements and means of four scatter as the thesis says.
+
+    Parameters
+    ----------
+    found : ErrorBars
+    """
     group, single = np.median(found.group_percent), np.median(found.single_percent)
     return (
         Finding(
             "single elements vary by about ±100 %",
             f"at a load's worst element {single:.0f} % (median over loads), standard deviation "
             f"{np.median(found.single_sd_percent):.0f} %",
-            bool(50.0 < single < 300.0),
+            "half as much or less, or twice as much or more",
+            bool(50.0 < single < 200.0),
         ),
         Finding(
             "the mean of four neighbours varies by about ±20 %",
             f"at a load's worst group {group:.0f} % (median over loads; from "
             f"{found.group_percent.min():.0f} to {found.group_percent.max():.0f} %), standard "
             f"deviation {np.median(found.group_sd_percent):.0f} %",
-            bool(group <= 35.0),
+            "half as much or less, or twice as much or more",
+            bool(10.0 < group < 40.0),
         ),
         Finding(
             "averaging over four is a dramatic improvement",
             f"{single / group:.0f} times smaller error bars",
+            "three times or less; of independent elements it would be twice",
             bool(single > 3.0 * group),
         ),
     )
@@ -192,7 +209,9 @@ def _bar_figure(found: ErrorBars) -> Figure:
 
 def _figure_2_17(work: Work) -> Made:
     found = error_bars(work.on_pad(group_readings))
-    return Made(findings=_bar_findings(found), table=_bar_table(found), figure=_bar_figure(found))
+    return Made(
+        findings=about_as_in_the_thesis(found), table=_bar_table(found), figure=_bar_figure(found)
+    )
 
 
 ITEMS = (

@@ -126,11 +126,13 @@ def _sensitivity(found: BiasCurves) -> tuple[Finding, ...]:
             "100 kOhm records the most and 10 kOhm the least, for any load",
             f"at 100 g {at[-1]:.2f} V against {at[0]:.2f} V; ordered by resistor at every load: "
             f"{'yes' if ordered else 'no'}",
+            "a load at which a smaller resistor reads as much",
             ordered,
         ),
         Finding(
             "the sensitivity changes less rapidly beyond 40 kOhm",
             f"at 100 g {rate_below:.2f} V for each 10 kOhm below, {rate_beyond:.2f} V beyond",
+            "a rise beyond that is three quarters of that below, or more",
             bool(rate_beyond < 0.75 * rate_below),
         ),
     )
@@ -160,11 +162,13 @@ def _clustering(found: BiasCurves) -> tuple[Finding, ...]:
             "with eight loaded neighbours the curves beyond 50 kOhm lie close together",
             f"from 50 to 100 kOhm the reading rises by at most {100 * loaded:.0f} % loaded, "
             f"{100 * alone:.0f} % alone",
+            "a rise of 15 % when loaded, or of a fifth of that alone",
             loaded < 0.15 and loaded < 0.2 * alone,
         ),
         Finding(
             "the coupling is more pronounced for resistors above 50 kOhm",
             f"at 100 g the neighbours take {words}",
+            "a load at which a larger resistor loses less",
             bool((np.diff(found.coupling_v, axis=0) > 0.0).all()),
         ),
     )
@@ -192,6 +196,7 @@ def _least_coupling(found: BiasCurves) -> Finding:
     return Finding(
         "of 30, 40 and 50 kOhm the coupling is least at 30 kOhm",
         f"at 100 g {words}; least at every load: {'yes' if least else 'no'}",
+        "a load at which 40 or 50 kOhm lose less",
         least,
     )
 
@@ -273,6 +278,8 @@ def _more_from_heavier(found: NeighbourCurves) -> Finding:
         "the coupling is more pronounced for smaller loading resistances",
         f"of an element at {found.resistance_ohm[k] / 1e3:.0f} kOhm the neighbours take "
         f"{words}; so at every load: {'yes' if falls and between else 'no'}",
+        "a load at which neighbours of less resistance take less, or random ones do not take a "
+        "middling share",
         falls and between,
     )
 

@@ -175,6 +175,7 @@ def _findings(found: ConverterErrors) -> tuple[Finding, ...]:
         Finding(
             "(not in the thesis) with eight loaded elements a column, grams are within 5 % rms",
             _ranges([f"{bits:.0f} bits" for bits in found.bits], by_bits),
+            "an end at 200 g or less, or more bits with a narrower range",
             bool(top_g > 200.0 and wider),
         ),
         Finding(
@@ -182,11 +183,13 @@ def _findings(found: ConverterErrors) -> tuple[Finding, ...]:
             f"at 12 bits the 5 % end at {top_g:.0f} g an element, T = "
             f"{found.column_sum[at]:.4f}; the first lost elements at T = "
             f"{_first_lost(found, twelve)}",
+            "an end where the readings add up to nine tenths of the supply or less",
             bool(found.column_sum[at] > 0.9),
         ),
         Finding(
             "(not in the thesis) noise of the mean reading narrows it from both ends",
             _ranges([f"{1e3 * v:g} mV" for v in found.noise_v], by_noise),
+            "more noise with a wider range",
             narrower,
         ),
     )

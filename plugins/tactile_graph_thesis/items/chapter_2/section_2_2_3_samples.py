@@ -144,11 +144,13 @@ def _findings(found: SampleErrors) -> tuple[Finding, ...]:
             f"reading error {error[ten]:.2f} mV with 10, {error[hundred]:.2f} mV with 100, of a "
             f"step of {1e3 * found.step_v:.2f} mV; with the pad's repeatability "
             f"({1e3 * found.repeatability_v:.0f} mV at 100 g) {ratio:.4f} times as large",
+            "an error with 10 that is a twentieth larger than with 100",
             bool(ratio < 1.05),
         ),
         Finding(
             "a whole scan takes less than one minute (2.2.3)",
             f"{found.frame_s[hundred]:.1f} s with 100 samples, {found.frame_s[ten]:.1f} s with 10",
+            "a minute or more with 100 samples",
             bool(found.frame_s[hundred] < 60.0),
         ),
         Finding(
@@ -156,6 +158,8 @@ def _findings(found: SampleErrors) -> tuple[Finding, ...]:
             "converter step: less noise leaves the rounding in",
             f"at {1e3 * found.noise_v[0]:g} mV of noise 1 sample errs by {1e3 * quiet[0]:.2f} mV, "
             f"100 by {1e3 * quiet[hundred]:.2f} mV",
+            "at the least noise an error halved by 100 samples, or at the pad's own less than a "
+            "sevenfold gain",
             bool(quiet[hundred] > 0.5 * quiet[0] and error[hundred] < 0.15 * error[0]),
         ),
     )

@@ -11,7 +11,7 @@ from tactile_graph import Circle, Mask, load
 from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_thesis.drawing.panels import draw_mask, draw_true, finish, panels
 from tactile_graph_thesis.item import Compared, Finding, Item, Made, Table
-from tactile_graph_thesis.measure.shown_reading import true_shape
+from tactile_graph_thesis.measure.shown_reading import TRIED, true_shape
 from tactile_graph_thesis.measure.threshold_errors import (
     SCENE,
     ThresholdErrors,
@@ -33,8 +33,8 @@ def _figure_4_1(work: Work) -> Made:
     frame = work.frames(SCENE, 6 * work.readings)[0]
     levels = numbers("threshold")["footprints_v"]
     base = load("circle-3")
-    pipelines = [base.with_settings({"footprint.level_v": v}) for v in levels]
-    masks = [p.run(frame, ["footprint"])["footprint"] for p in pipelines]
+    runners = [base.with_settings({"footprint.level_v": v}).runner(["footprint"]) for v in levels]
+    masks = [run(frame)["footprint"] for run in runners]
     true = true_shape(frame)
     figure, axes = panels(2)
     for one, mask in zip(axes, masks, strict=True):
@@ -45,26 +45,46 @@ def _figure_4_1(work: Work) -> Made:
         axes,
         [f"threshold {v:g} V, {m.count} cells" for v, m in zip(levels, masks, strict=True)],
     )
-    voids = [_voids(m, true) for m in masks]
-    return Made(
-        findings=(
-            Finding(
-                "the lower threshold gives the larger footprint",
-                f"{masks[0].count} cells against {masks[1].count}",
-                masks[0].count > masks[1].count,
-            ),
-            Finding(
-                "the higher threshold leaves more voids under the object, and some are there "
-                "at the lower one too",
-                f"{voids[1]} cells void at {levels[1]:g} V, {voids[0]} at {levels[0]:g} V",
-                voids[1] > voids[0] > 0,
-            ),
+    of_disc = work.frames(SCENE, 6 * work.readings)[::6]
+    counts = np.array(
+        [
+            [(m.count, voids(m, true_shape(f))) for m in (run(f)["footprint"] for run in runners)]
+            for f in of_disc[:TRIED]
+        ],
+        np.float64,
+    )
+    return Made(findings=by_threshold(counts, levels), figure=figure)
+
+
+def by_threshold(counts: Array, levels: list[float]) -> tuple[Finding, ...]:
+    """Return whether the lower of two thresholds gives a larger footprint with fewer voids.
+
+    Parameters
+    ----------
+    counts : ndarray, shape (readings, 2, 2)
+        At the lower and the higher one, cells that are on, and cells void under the object.
+    levels : list of float
+    """
+    cells, void = (counts[..., k].mean(axis=0) for k in (0, 1))
+    return (
+        Finding(
+            "a very low threshold gives a very big footprint, a higher one a smaller",
+            f"{cells[0]:.1f} cells at {levels[0]:g} V, {cells[1]:.1f} at {levels[1]:g} V, means "
+            f"of {len(counts)} readings",
+            "less than a tenth more cells; that there are no fewer goes without saying",
+            bool(cells[0] >= 1.1 * cells[1]),
         ),
-        figure=figure,
+        Finding(
+            "the higher threshold leaves a lot of voids under the object, and some are there "
+            "at the lower one too",
+            f"{void[1]:.1f} cells void at {levels[1]:g} V, {void[0]:.1f} at {levels[0]:g} V",
+            "less than half a cell void at either, or less than half a cell more at the higher",
+            bool(void[1] > void[0] + 0.5 and void[0] > 0.5),
+        ),
     )
 
 
-def _voids(mask: Mask, disc: Circle) -> int:
+def voids(mask: Mask, disc: Circle) -> int:
     """Return how many cells with their centre in the disc are off."""
     off = np.hypot(mask.x_cm[None, :] - disc.x_cm, mask.y_cm[:, None] - disc.y_cm)
     return int(((off < disc.radius_cm - 0.5) & ~mask.values).sum())
@@ -129,16 +149,19 @@ def _light_and_heavy(found: ThresholdErrors) -> tuple[Finding, ...]:
             "above 0.015 V heavier discs of the same radius err less",
             f"mean error there {lightest.mean():.2f} cm for the lightest, "
             f"{heaviest.mean():.2f} cm for the heaviest discs",
+            "a level above 0.015 V at which one of the heaviest errs as much as the lightest",
             bool((heaviest < lightest).all()),
         ),
         Finding(
             "heavier discs err by less than 1 cm for most thresholds",
             f"the heaviest do at {100 * small:.0f} % of the levels",
+            "1 cm or more at half of the levels",
             small > 0.5,
         ),
         Finding(
             "the lightest discs err more above 0.015 V than below",
             f"{lightest.mean():.2f} cm above, {lightest_below.mean():.2f} cm up to it",
+            "no larger mean error above",
             bool(lightest.mean() > lightest_below.mean()),
         ),
     )
@@ -181,6 +204,7 @@ def _one_threshold(found: ThresholdErrors) -> tuple[Finding, ...]:
         Finding(
             "errors are lowest between 0.01 and 0.015 V",
             f"the mean over all discs is least at {least_v:g} V, {over_all.min():.3f} cm",
+            "a least error elsewhere",
             low - 1e-9 <= least_v <= high + 1e-9,
         ),
         Finding(
@@ -188,6 +212,7 @@ def _one_threshold(found: ThresholdErrors) -> tuple[Finding, ...]:
             f"the mean error over all discs there is {over_all[at]:.3f} cm, "
             f"{100 * (more - 1):.0f} % above the least of any level; "
             f"the worst disc's {found.mean_cm[at].max():.2f} cm",
+            "an error there a quarter above the least of any level",
             bool(over_all[at] < 1.25 * over_all.min()),
         ),
     )

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactile_graph import Degenerate, Frame, Mask
+from tactile_graph import Degenerate, Frame, Image, Mask
 from tactile_graph_fitters.rectangle.fit_rectangle import fit_rectangle
 from tactile_graph_thesis.drawing.panels import (
     BOUNDARY,
@@ -65,6 +65,7 @@ def _figure_4_22(work: Work) -> Made:
                 "there is little gain in a rectangle over an ellipse",
                 f"mean length error {off['ellipse']:.2f} cm of the ellipse's full axis, "
                 f"{off['rectangle']:.2f} cm of a rectangle fitted to the same points",
+                "half the error or less by the rectangle",
                 off["rectangle"] > 0.5 * off["ellipse"],
             ),
         ),
@@ -106,16 +107,25 @@ def _figure_4_25(work: Work) -> Made:
     shown = draw_image(axes[0], smooth, 1.0)
     figure.colorbar(shown, ax=axes, label="share of the 3 × 3 cells that are on", shrink=0.8)
     draw_true(axes[0], true_shape(frame))
-    grown = int((smooth.values > 1e-9).sum())
     return Made(
-        findings=(
-            Finding(
-                "the filtered image is much bigger than the original",
-                f"{grown} cells are not 0, {footprint.count} were on",
-                grown > 1.3 * footprint.count,
-            ),
-        ),
-        figure=finish(figure, axes, ["low pass"]),
+        findings=(much_bigger(smooth, footprint),), figure=finish(figure, axes, ["low pass"])
+    )
+
+
+def much_bigger(smooth: Image, footprint: Mask) -> Finding:
+    """Return whether a filtered footprint covers many more cells.
+
+    Parameters
+    ----------
+    smooth : Image
+    footprint : Mask
+    """
+    grown = int((smooth.values > 1e-9).sum())
+    return Finding(
+        "the filtered image is much bigger than the original",
+        f"{grown} cells are not 0, {footprint.count} were on",
+        "three tenths more cells or fewer",
+        grown > 1.3 * footprint.count,
     )
 
 
@@ -145,16 +155,27 @@ def _figure_4_26(work: Work) -> Made:
         draw_true(one, true_shape(frame))
     finish(figure, axes, [f"footprint, {before.count} cells", f"compared, {after.count} cells"])
     return Made(
-        findings=(
-            Finding(
-                "the comparison keeps the size of the footprint and takes noise points away",
-                f"{after.count} of {before.count} cells stay; {lone_cells(before)} of them "
-                f"touched no other, {lone_cells(after)} do now",
-                after.count > 0.7 * before.count and lone_cells(after) < lone_cells(before),
-            ),
-        ),
+        findings=(keeps_size_and_cleans(before, after),),
         figure=figure,
         notes=(f"{100 * STRAYS:.0f} % of the elements off the object are switched on.",),
+    )
+
+
+def keeps_size_and_cleans(before: Mask, after: Mask) -> Finding:
+    """Return whether a comparison takes lone cells away and hardly any other.
+
+    Parameters
+    ----------
+    before, after : Mask
+    """
+    lone, left = lone_cells(before), lone_cells(after)
+    others = (after.count - left) / max(before.count - lone, 1)
+    return Finding(
+        "the comparison keeps the size of the footprint and takes noise points away",
+        f"of {before.count - lone} cells that touch others {100 * others:.0f} % stay; {lone} "
+        f"touched no other, {left} do now",
+        "a tenth of the cells that touch others gone, or half of the lone ones left",
+        others > 0.9 and left < 0.5 * lone,
     )
 
 

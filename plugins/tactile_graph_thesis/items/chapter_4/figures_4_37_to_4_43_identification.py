@@ -67,6 +67,7 @@ def _figure(number: str) -> Callable[[Work], Made]:
             Finding(
                 f"the error falls below {limit:g} % beyond {said['beyond_g']} g",
                 f"largest error there {_worst(curve):.1f} %",
+                f"a reading of either pair in {100 / limit:.0f}, or more, taken for the other",
                 _worst(curve) < limit,
             ),
             *decreases(curve.differences_g, error, SAID if number in SAID_OF else NOT_SAID),
@@ -96,7 +97,8 @@ def decreases(differences_g: Array, error_percent: Array, said: str = SAID) -> t
             said,
             f"{error_percent[0]:.0f} % at {differences_g[0]:g} g, {error_percent[-1]:.1f} % at "
             f"{differences_g[-1]:g} g; a curve that never rises explains {100 * explained:.0f} % "
-            f"of how errors vary; refuted below {100 * FALLING:.0f} %",
+            "of how errors vary",
+            f"a falling curve that explains less than {100 * FALLING:.0f} %",
             explained >= FALLING,
         ),
     )
@@ -141,7 +143,12 @@ def _told_apart_worst(work: Work, figures: tuple[str, ...], thesis: str) -> Find
     """Return whether the first of some figures has the largest mean error."""
     errors = {number: _mean_error(work, number) for number in figures}
     words = ", ".join(f"figure {number} {error:.1f} %" for number, error in errors.items())
-    return Finding(thesis, f"mean error {words}", errors[figures[0]] == max(errors.values()))
+    return Finding(
+        thesis,
+        f"mean error {words}",
+        f"a larger error in any but figure {figures[0]}",
+        errors[figures[0]] == max(errors.values()),
+    )
 
 
 def _table(curve: Curve) -> Table:

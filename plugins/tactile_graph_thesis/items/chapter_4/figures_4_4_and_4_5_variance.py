@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 LONGEST_GROUP = 30
 """Figure 4.4 is drawn to this N."""
+FLAT = 0.25
+"""Change from which a variance is not settled: that of one from 30 readings has this deviation."""
 
 
 def running_variances(error_cm: Array, largest: int) -> Array:
@@ -76,7 +78,7 @@ def _figure_4_4(work: Work) -> Made:
     columns = (samples.readings, samples.mean, samples.low, samples.high)
     return Made(
         compared=(Compared(what, "cm²", mean, said, low, high),),
-        findings=(_flatness(samples.runs, work),),
+        findings=(hardly_changes(samples.runs, _ends(samples.runs, work)),),
         table=Table(
             ("readings", "mean_cm2", "low_cm2", "high_cm2"),
             [tuple(map(float, row)) for row in zip(*columns, strict=True)],
@@ -111,19 +113,55 @@ def _variance_figure(found: ThresholdErrors, samples: SampleVariances) -> Figure
     return figure
 
 
-def _flatness(runs: Array, work: Work) -> Finding:
-    """Return how much a variance still changes between the N of the flat part and the chosen N.
-
-    ``runs`` are running variances, shape (..., N - 1).
-    """
+def _ends(runs: Array, work: Work) -> tuple[int, int]:
+    """Return the N from which the thesis finds the variance flat, and the N it chooses."""
     last = min(work.group, runs.shape[-1] + 1)
-    start = min(int(numbers("variance")["flat_from"]), last)
-    change = np.abs(runs[..., last - 2] / runs[..., start - 2] - 1.0)
+    return min(int(numbers("variance")["flat_from"]), last), last
+
+
+def _change(runs: Array, ends: tuple[int, int]) -> Array:
+    start, last = ends
+    return np.abs(runs[..., last - 2] / runs[..., start - 2] - 1.0)
+
+
+def hardly_changes(runs: Array, ends: tuple[int, int]) -> Finding:
+    """Return whether a variance is settled between the N of the flat part and the chosen N.
+
+    Parameters
+    ----------
+    runs : ndarray, shape (..., N - 1)
+        Running variances.
+    ends : (int, int)
+        The two N.
+    """
+    (start, last), change = ends, _change(runs, ends)
     return Finding(
         f"from N = {start} on the variance hardly changes, so {last} readings are enough",
         f"from {start} to {last} readings it changes by {100 * np.median(change):.0f} % in half "
         f"of all series, by more than {100 * np.quantile(change, 0.95):.0f} % in one of twenty",
-        bool(np.median(change) < 0.25),
+        f"a change of {100 * FLAT:.0f} % or more in half of all series",
+        bool(np.median(change) < FLAT),
+    )
+
+
+def hardly_changes_anywhere(runs: Array, level_v: Array, ends: tuple[int, int]) -> Finding:
+    """Return whether the same holds at each threshold.
+
+    Parameters
+    ----------
+    runs : ndarray, shape (levels, ..., N - 1)
+    level_v : ndarray, shape (levels,)
+    ends : (int, int)
+        The two N.
+    """
+    change = np.median(_change(runs, ends).reshape(len(level_v), -1), axis=1)
+    worst = int(change.argmax())
+    return Finding(
+        f"the whole range of thresholds strengthens that {ends[1]} readings are enough",
+        f"the variance changes most at {level_v[worst]:g} V, by {100 * change[worst]:.0f} % in "
+        f"half of all series from {ends[0]} to {ends[1]} readings",
+        f"a threshold at which it changes by {100 * FLAT:.0f} % or more in half of all series",
+        bool(change[worst] < FLAT),
     )
 
 
@@ -146,7 +184,7 @@ def _figure_4_5(work: Work) -> Made:
     figure.colorbar(shown, ax=parts, label="variance of the radius error / cm²")
     at_group = mean[:, min(work.group, largest) - 2]
     return Made(
-        findings=(_flatness(runs, work),),
+        findings=(hardly_changes_anywhere(runs, found.level_v, _ends(runs, work)),),
         table=Table(
             ("threshold_v", "readings", "variance_cm2"),
             [

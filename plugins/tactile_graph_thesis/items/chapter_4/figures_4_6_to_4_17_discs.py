@@ -91,18 +91,30 @@ def _figure_4_9(work: Work) -> Made:
 # -- circle-1 and circle-2 -------------------------------------------------------------------
 
 
-def _shrinks(pipeline: str, before: str, after: str, title: str, thesis: str) -> Any:
-    """Return a figure of one node, and whether it has less area than another."""
+def _figure_4_10(work: Work) -> Made:
+    frame = typical_disc(work)
+    result = stages("circle-1", frame, work.seed)
+    before, after = result["footprint"], result["eroded"]
+    return Made(
+        findings=(quite_small(before, after),),
+        figure=_mask_figure({"before": before, "eroded": after}, frame),
+    )
 
-    def make(work: Work) -> Made:
-        frame = typical_disc(work)
-        result = stages(pipeline, frame, work.seed)
-        one, other = result[before].area_cm2, result[after].area_cm2
-        finding = Finding(thesis, f"{one:.0f} cm² before, {other:.0f} cm² after", other < one)
-        figure = _mask_figure({"before": result[before], title: result[after]}, frame)
-        return Made(findings=(finding,), figure=figure)
 
-    return make
+def quite_small(before: Mask, after: Mask) -> Finding:
+    """Return whether an image is quite small beside what it was.
+
+    Parameters
+    ----------
+    before, after : Mask
+    """
+    one, other = before.area_cm2, after.area_cm2
+    return Finding(
+        "erosion leaves an image quite small beside the original",
+        f"{one:.0f} cm² before, {other:.0f} cm² after, {100 * other / one:.0f} %",
+        "half of the area or more left",
+        other < 0.5 * one,
+    )
 
 
 def _figure_4_12(work: Work) -> Made:
@@ -137,15 +149,24 @@ def _figure_4_15(work: Work) -> Made:
     frame = typical_disc(work)
     one, two = (stages(p, frame, work.seed)["eroded"] for p in ("circle-1", "circle-2"))
     return Made(
-        findings=(
-            Finding(
-                "more points are left than in figure 4.10",
-                f"{two.count} cells of {two.cell_area_cm2:.2f} cm² against {one.count} of "
-                f"{one.cell_area_cm2:.2f} cm²: {two.area_cm2:.0f} and {one.area_cm2:.0f} cm²",
-                two.count > one.count,
-            ),
-        ),
+        findings=(more_is_left(one, two),),
         figure=_mask_figure({"by element #1": one, "by element #2": two}, frame),
+    )
+
+
+def more_is_left(one: Mask, two: Mask) -> Finding:
+    """Return whether a second mask holds more of the footprint, on cells of another size.
+
+    Parameters
+    ----------
+    one, two : Mask
+    """
+    return Finding(
+        "element #2 leaves more of the footprint than element #1",
+        f"{two.count} cells of {two.cell_area_cm2:.2f} cm² against {one.count} of "
+        f"{one.cell_area_cm2:.2f} cm²: {two.area_cm2:.0f} and {one.area_cm2:.0f} cm²",
+        "no more area; cells of a quarter the size are more in any case",
+        two.area_cm2 > one.area_cm2,
     )
 
 
@@ -183,13 +204,7 @@ ITEMS = (
         "figure-4.10",
         "After erosion",
         "The footprint of figure 4.8 eroded by element #1.",
-        _shrinks(
-            "circle-1",
-            "footprint",
-            "eroded",
-            "eroded",
-            "erosion leaves an image quite small beside the original",
-        ),
+        _figure_4_10,
         ONE_DISC,
     ),
     Item(

@@ -10,19 +10,12 @@ from tactile_graph_thesis.drawing.beside import beside_figure
 from tactile_graph_thesis.item import Finding, Item, Made, Table
 from tactile_graph_thesis.measure.beside_thesis import beside_thesis
 from tactile_graph_thesis.measure.circles import circle_errors
+from tactile_graph_thesis.measure.one_pad import TABLES
 from tactile_graph_thesis.measure.rectangles import signed_errors
 from tactile_graph_thesis.numbers import error_table
 from tactile_graph_thesis.work import Work
 
 Array = NDArray[np.float64]
-PIPELINES = {
-    "table-4.3": "circle-1",
-    "table-4.4": "circle-2",
-    "table-4.5": "circle-3",
-    "table-4.7": "rectangle-1",
-    "table-4.8": "rectangle-2",
-}
-"""Which pipeline a table belongs to."""
 
 
 def table_errors(work: Work, name: str) -> dict[str, Array]:
@@ -40,8 +33,8 @@ def table_errors(work: Work, name: str) -> dict[str, Array]:
 def _measured(work: Work, name: str) -> dict[str, Array]:
     objects = error_table(name).objects
     n = len(objects) * work.readings
-    runner = load(PIPELINES[name]).runner(seed=work.seed)
-    if PIPELINES[name].startswith("circle"):
+    runner = load(TABLES[name]).runner(seed=work.seed)
+    if TABLES[name].startswith("circle"):
         found = circle_errors(work.frames("discs", n), [runner], objects)[0]
         return dict(zip(objects, found, strict=True))
     signed = signed_errors(runner, work.frames("rectangles", n))
@@ -82,51 +75,76 @@ def _table_4_3(work: Work) -> Made:
 
 def _table_4_4(work: Work) -> Made:
     before, now = (_average(work, t, 2) for t in ("table-4.3", "table-4.4"))
-    centre = [np.mean([_average(work, t, q) for q in (0, 1)]) for t in ("table-4.3", "table-4.4")]
-    return _made(
-        work,
-        "table-4.4",
-        "Errors of the second circular localisation",
-        (
-            Finding(
-                "the radius improves somewhat over the first algorithm",
-                f"mean error {_said(now, before, 'cm')}",
-                now < before,
-            ),
-            Finding(
-                "the centres stay approximately the same",
-                f"mean error {_said(float(centre[1]), float(centre[0]), 'cm')}",
-                bool(abs(centre[1] / centre[0] - 1.0) < 0.1),
-            ),
-        ),
+    centre = [_centre(work, t) for t in ("table-4.3", "table-4.4")]
+    findings = (
+        smaller("the radius improves somewhat over the first algorithm", now, before),
+        alike("the centres stay approximately the same", centre[1], centre[0]),
     )
+    return _made(work, "table-4.4", "Errors of the second circular localisation", findings)
 
 
 def _table_4_5(work: Work) -> Made:
     before, now = (_average(work, t, 2) for t in ("table-4.4", "table-4.5"))
-    centre = [np.mean([_average(work, t, q) for q in (0, 1)]) for t in ("table-4.4", "table-4.5")]
+    centre = [_centre(work, t) for t in ("table-4.4", "table-4.5")]
     worst = max(np.mean(e) for errors in table_errors(work, "table-4.5").values() for e in errors.T)
-    return _made(
-        work,
-        "table-4.5",
-        "Errors of the third circular localisation",
-        (
-            Finding(
-                "the convex hull improves the radius dramatically",
-                f"mean error {_said(now, before, 'cm')}",
-                now < 0.5 * before,
-            ),
-            Finding(
-                "the centres are somewhat improved",
-                f"mean error {_said(float(centre[1]), float(centre[0]), 'cm')}",
-                bool(centre[1] < centre[0]),
-            ),
-            Finding(
-                "errors are typically within or around 1 cm, less than an element's pitch",
-                f"largest average error {worst:.2f} cm",
-                bool(worst < 1.0),
-            ),
-        ),
+    findings = (
+        smaller("the convex hull improves the radius dramatically", now, before, 0.5),
+        smaller("the centres are somewhat improved", centre[1], centre[0]),
+        within_an_element(float(worst)),
+    )
+    return _made(work, "table-4.5", "Errors of the third circular localisation", findings)
+
+
+def _centre(work: Work, name: str) -> float:
+    return float(np.mean([_average(work, name, q) for q in (0, 1)]))
+
+
+def smaller(thesis: str, now_cm: float, before_cm: float, share: float = 1.0) -> Finding:
+    """Return whether an error fell below a share of what it was.
+
+    Parameters
+    ----------
+    thesis : str
+        What the thesis concludes.
+    now_cm, before_cm : float
+    share : float
+    """
+    left = "no smaller error" if share == 1.0 else f"{100 * share:.0f} % of the error or more left"
+    return Finding(
+        thesis, f"mean error {_said(now_cm, before_cm, 'cm')}", left, now_cm < share * before_cm
+    )
+
+
+def alike(thesis: str, now_cm: float, before_cm: float) -> Finding:
+    """Return whether an error is within a tenth of what it was.
+
+    Parameters
+    ----------
+    thesis : str
+        What the thesis concludes.
+    now_cm, before_cm : float
+    """
+    return Finding(
+        thesis,
+        f"mean error {_said(now_cm, before_cm, 'cm')}",
+        "a change by a tenth",
+        abs(now_cm / before_cm - 1.0) < 0.1,
+    )
+
+
+def within_an_element(worst_cm: float) -> Finding:
+    """Return whether all average errors are below 1 cm.
+
+    Parameters
+    ----------
+    worst_cm : float
+        The largest.
+    """
+    return Finding(
+        "errors are typically within or around 1 cm, less than an element's pitch",
+        f"largest average error {worst_cm:.2f} cm",
+        "an average error of 1 cm",
+        worst_cm < 1.0,
     )
 
 
@@ -135,35 +153,35 @@ def _table_4_5(work: Work) -> Made:
 
 def _table_4_7(work: Work) -> Made:
     lengths = {k: float(np.nanmean(e[:, 1])) for k, e in table_errors(work, "table-4.7").items()}
-    one, two = lengths.values()
-    return _made(
-        work,
-        "table-4.7",
-        "Errors of the first rectangular localisation",
-        (
-            Finding(
-                "the only large error is that of RECTANGLE I's length",
-                f"RECTANGLE I {one:.2f} cm on average, RECTANGLE II {two:.2f} cm",
-                one > two,
-            ),
-        ),
+    findings = (only_large_error(*lengths.values()),)
+    return _made(work, "table-4.7", "Errors of the first rectangular localisation", findings)
+
+
+def only_large_error(one_cm: float, two_cm: float) -> Finding:
+    """Return whether the error of RECTANGLE I's length is the larger.
+
+    Parameters
+    ----------
+    one_cm, two_cm : float
+        Average errors of the two rectangles' lengths.
+    """
+    return Finding(
+        "the only large error is that of RECTANGLE I's length",
+        f"RECTANGLE I {one_cm:.2f} cm on average, RECTANGLE II {two_cm:.2f} cm",
+        "as large a one of RECTANGLE II",
+        one_cm > two_cm,
     )
 
 
 def _table_4_8(work: Work) -> Made:
-    findings = []
-    for j, quantity in ((1, "length"), (2, "breadth")):
-        before, now = (_average(work, t, j) for t in ("table-4.7", "table-4.8"))
-        findings.append(
-            Finding(
-                f"morphological cleaning somewhat improves the {quantity}",
-                f"mean error {_said(now, before, 'cm')}",
-                now < before,
-            )
+    findings = tuple(
+        smaller(
+            f"morphological cleaning somewhat improves the {quantity}",
+            *(_average(work, t, j) for t in ("table-4.8", "table-4.7")),
         )
-    return _made(
-        work, "table-4.8", "Errors of the second rectangular localisation", tuple(findings)
+        for j, quantity in ((1, "length"), (2, "breadth"))
     )
+    return _made(work, "table-4.8", "Errors of the second rectangular localisation", findings)
 
 
 _CIRCLES = (

@@ -67,8 +67,8 @@ def looks_like_the_original(made: Restoration) -> Finding:
         "with lines the restored image looks much like the original, without them it is "
         "smoothed throughout",
         f"levels off the original (rms): corrupted {corrupted:.1f}, without lines {smooth:.1f}, "
-        f"with lines {lined:.1f}; refuted where lines take away less than a fifth of the error "
-        "with noise, and of the error without lines",
+        f"with lines {lined:.1f}",
+        "lines that take away less than a fifth of the error with noise, or of that without lines",
         lined < 0.8 * min(smooth, corrupted),
     )
 
@@ -90,8 +90,8 @@ def matches_the_rectangle(amiss: dict[str, int]) -> Finding:
     words = ", ".join(f"{n} by {name}" for name, n in amiss.items())
     return Finding(
         "the lines match the rectangle's dimensions exactly",
-        f"cells that what the lines enclose has too many or lacks: {words}; refuted by a single "
-        "one by the first, which is the thesis' schedule",
+        f"cells that what the lines enclose has too many or lacks: {words}",
+        "a single one by the first, which is the thesis' schedule",
         next(iter(amiss.values())) == 0,
     )
 
@@ -130,8 +130,8 @@ def seems_bigger(made: Restoration) -> Finding:
     read, smooth = (int((im.values > level).sum()) for im in (made.observed, made.smooth))
     return Finding(
         "without lines the object seems bigger, and the image is smooth",
-        f"{smooth} cells above {100 * BIG:.0f} % of the peak against {read} as read; refuted "
-        "where it is less than a tenth more",
+        f"{smooth} cells above {100 * BIG:.0f} % of the peak against {read} as read",
+        "less than a tenth more cells",
         smooth > 1.1 * read,
     )
 
@@ -149,8 +149,8 @@ def not_changed_much(made: Restoration) -> Finding:
     )
     return Finding(
         "with lines the image is not changed much",
-        f"it moves by {100 * lined:.1f} % of the peak (rms), without lines by "
-        f"{100 * smooth:.0f} %; refuted from {100 * LITTLE:.0f} % on",
+        f"it moves by {100 * lined:.1f} % of the peak (rms), without lines by {100 * smooth:.0f} %",
+        f"a move of {100 * LITTLE:.0f} % of the peak",
         lined < LITTLE,
     )
 
@@ -207,7 +207,8 @@ def very_similar(made: list[Hulls], which: str) -> Finding:
     return Finding(
         "the hulls by both ways are very similar",
         f"the hull of what lines enclose has {ratio:.2f} times the area of circle-3's, in the "
-        f"median of {len(made)} readings; refuted by a median {100 * SIMILAR:.0f} % off",
+        f"median of {len(made)} readings",
+        f"a median {100 * SIMILAR:.0f} % off",
         bool(1.0 - SIMILAR < ratio < 1.0 / (1.0 - SIMILAR)),
     )
 

@@ -57,7 +57,8 @@ def _annealing(work: Work) -> Made:
             Finding(
                 "(not in the thesis) a start temperature that is hot beside squared levels has one",
                 f"{hot.schedule}: {hot.rms_levels.mean():.1f} levels off instead of "
-                f"{chosen.rms_levels.mean():.1f}; refuted below {NOTHING_LEVELS:g} level less",
+                f"{chosen.rms_levels.mean():.1f}",
+                f"an error less than {NOTHING_LEVELS:g} level smaller",
                 hot.off_chosen_levels < -NOTHING_LEVELS,
             ),
         ),
@@ -82,7 +83,8 @@ def no_effect(what: str, one: Annealed, chosen: Annealed) -> Finding:
     return Finding(
         f"{what}: {one.schedule} instead of {chosen.schedule} does not affect the results much",
         f"{one.rms_levels.mean():.2f} levels off the original (rms) instead of "
-        f"{chosen.rms_levels.mean():.2f}; refuted by a change above {NOTHING_LEVELS:g} level",
+        f"{chosen.rms_levels.mean():.2f}",
+        f"a change of more than {NOTHING_LEVELS:g} level",
         abs(one.off_chosen_levels) <= NOTHING_LEVELS,
     )
 
@@ -116,7 +118,8 @@ def _state_space(work: Work) -> Made:
             little_difference(by[200], by[250]),
             Finding(
                 "(not in the thesis) between 50 and 250 levels there is one",
-                f"{by[50].off_finest:.2f} of 200 levels (rms); refuted below {NOTHING_LEVELS:g}",
+                f"{by[50].off_finest:.2f} of 200 levels (rms)",
+                f"less than {NOTHING_LEVELS:g} level",
                 by[50].off_finest >= NOTHING_LEVELS,
             ),
         ),
@@ -140,7 +143,8 @@ def little_difference(one: StateSpace, finer: StateSpace) -> Finding:
     """
     return Finding(
         f"from {one.n_levels} to {finer.n_levels} levels there is little or no difference",
-        f"{one.off_finest:.2f} of 200 levels (rms); refuted from {NOTHING_LEVELS:g} on",
+        f"{one.off_finest:.2f} of 200 levels (rms)",
+        f"a difference of {NOTHING_LEVELS:g} level",
         one.off_finest < NOTHING_LEVELS,
     )
 

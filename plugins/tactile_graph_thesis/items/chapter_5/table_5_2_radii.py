@@ -65,8 +65,8 @@ def as_good(rows: tuple[RadiusRow, ...], way: str) -> Finding:
     return Finding(
         "with a convex hull the Bayesian way does as well as the heuristic one",
         f"a radius is off by {np.nanmean(ours):.2f} cm by {way}, by {np.nanmean(other):.2f} cm by "
-        f"circle-3, the means of the two are {alike:.2f} cm apart; refuted by an error "
-        f"{WORSE_CM:g} cm larger",
+        f"circle-3, the means of the two are {alike:.2f} cm apart",
+        f"an error more than {WORSE_CM:g} cm larger",
         more <= WORSE_CM,
     )
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 PIPELINES = (
     (CIRCLE, ("circle-1", "circle-2", "circle-3")),
-    (RECTANGLE, ("rectangle-1", "rectangle-2", "rectangle-3")),
+    (RECTANGLE, ("rectangle-1", "rectangle-2", "rectangle-3", "ellipse-direct")),
 )
 """What is read off, and the stages of an evolution it is read off."""
 PLACES = {"frame": (VOLTS,), "footprint": CELLS}

@@ -115,6 +115,7 @@ def _subpixel(work: Work) -> Made:
             Finding(
                 "cutting elements in four makes the radius somewhat more accurate (section 4.2.5)",
                 f"radius error {scaled[0]:.2f} cm uncut with element #1, {two:.2f} cm at 2 × 2",
+                "a radius no nearer at 2 × 2",
                 bool(two < scaled[0]),
             ),
             Finding(
@@ -122,6 +123,7 @@ def _subpixel(work: Work) -> Made:
                 f"{two:.2f} cm at 2 × 2; least {best:.2f} cm at {at} × {at}, with an "
                 f"{list(KINDS)[k]}; at {factors[-1]} × {factors[-1]} {fixed[-1]:.2f} cm with "
                 f"as many cells, {scaled[-1]:.2f} cm with as many centimetres",
+                "a least error that is nine tenths of that at 2 × 2 or more",
                 best < 0.9 * two,
             ),
         ),

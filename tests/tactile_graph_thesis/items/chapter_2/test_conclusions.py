@@ -12,8 +12,10 @@ from tactile_graph_thesis.work import Work
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 STUDIES = (
+    "current-limit",
     "converter",
     "samples",
+    "stack-order",
     "bias-sensitivity",
     "bias-loaded",
     "bias-coupling",
@@ -25,7 +27,7 @@ STUDIES = (
     "curve",
     "weight-area",
 )
-SLOW = {"weight-area", "converter", "samples"}
+SLOW = {"stack-order", "weight-area", "converter", "samples"}
 
 
 def study(name: str) -> Item:

@@ -8,9 +8,11 @@ import pytest
 from tactile_graph_pads.pad import Pad, load_pad
 from tactile_graph_thesis.items.chapter_2.figures_2_15_to_2_17_groups_of_four import (
     ErrorBars,
+    about_as_in_the_thesis,
     error_bars,
+    rises_and_flattens,
 )
-from tactile_graph_thesis.measure.groups_of_four import group_readings
+from tactile_graph_thesis.measure.groups_of_four import GroupReadings, group_readings
 
 THESIS, PLAIN = load_pad("thesis"), load_pad("plain")
 
@@ -58,3 +60,51 @@ def test_the_range_holds_the_largest_deviation() -> None:
     bars = bars_of(THESIS, 1)
     largest = abs(bars.group_range_v - bars.mean_v).max(axis=0) / bars.mean_v
     assert bars.group_percent == pytest.approx(100 * largest)
+
+
+def bars(single_percent: float, group_percent: float) -> ErrorBars:
+    one = np.ones(3)
+    single, group = single_percent * one, group_percent * one
+    return ErrorBars(one, one, group, single, 0.5 * group, 0.5 * single, one, one)
+
+
+@pytest.mark.parametrize(
+    ("single", "group", "expected"),
+    [
+        (100.0, 20.0, [True, True, True]),
+        (45.0, 20.0, [False, True, False]),
+        (210.0, 20.0, [False, True, True]),
+        (190.0, 45.0, [True, False, True]),
+        (60.0, 9.0, [True, False, True]),
+        (60.0, 30.0, [True, True, False]),
+    ],
+)
+def test_bars_of_another_size_refute_the_thesis(
+    single: float, group: float, expected: list[bool]
+) -> None:
+    assert [f.holds for f in about_as_in_the_thesis(bars(single, group))] == expected
+
+
+def test_independent_elements_are_no_dramatic_improvement() -> None:
+    rng = np.random.default_rng(2)
+    read = 1.0 + 0.3 * rng.standard_normal((9, 20, 4))
+    even = GroupReadings(np.arange(1.0, 21.0), np.zeros((9, 2), np.intp), read, read, read)
+    assert not about_as_in_the_thesis(error_bars(even))[2].holds
+
+
+@pytest.mark.parametrize(
+    ("law", "expected"),
+    [
+        (lambda g: 1.0 - np.exp(-g / 600.0), [True, True]),
+        (lambda g: g / 3000.0, [True, False]),
+        (lambda g: 1.0 - np.abs(g - 2000.0) / 3000.0, [False, True]),
+    ],
+    ids=["flattens", "straight", "falls"],
+)
+def test_a_straight_curve_does_not_flatten_and_a_falling_one_does_not_rise(
+    law: object, expected: list[bool]
+) -> None:
+    weights = np.array([50.0, 100.0, 400.0, 700.0, 750.0, 1500.0, 2000.0, 2500.0, 3000.0])
+    read = np.repeat(law(weights)[None, :, None], 4, axis=2)  # type: ignore[operator]
+    found = rises_and_flattens(GroupReadings(weights, np.zeros((1, 2), np.intp), read, read, read))
+    assert [f.holds for f in found] == expected

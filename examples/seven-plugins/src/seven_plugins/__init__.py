@@ -1,0 +1,1 @@
+"""Seven small plugins, each in one file."""

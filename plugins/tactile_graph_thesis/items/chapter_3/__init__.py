@@ -1,0 +1,1 @@
+"""Chapter 3: the techniques, each shown on its own."""
