@@ -1,4 +1,4 @@
-"""The figures of docs/likelihood.md, drawn from runs made here.
+"""The figures of docs/likelihood.md and its evidence, drawn from runs made here.
 
     python benchmarks/likelihood_pictures.py [-o docs/pictures] [--scenes 100]
 

@@ -1,6 +1,7 @@
-"""Check the documentation: docstrings, doctests, links between pages, and the commands shown.
+"""Check the documentation: docstrings, doctests, links, commands, lengths, and every block run.
 
-Run with ``python docs/check.py``; exits with 1 and says what is wrong.
+Run with ``python docs/check.py``; exits with 1 and says what is wrong. ``--words`` tells instead
+how many words of each kind there are. What is made when the site is built is checked by that.
 """
 
 from __future__ import annotations
@@ -13,12 +14,23 @@ import pkgutil
 import re
 import shlex
 import sys
+import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from types import ModuleType
 from unittest.mock import patch
 
+from making.blocks import blocks_of, run_blocks
+from making.generate import INTO, KEPT
+from making.tutorial_pictures import PAGE, write_pictures
+from making.words import MOST_WORDS, by_kind, prose_words
+
 ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+LONG = {"objects.md"}
+"""Pages that are still to be parted."""
 PACKAGES = sorted(
     p.parent.name
     for folder in (ROOT, ROOT / "plugins", ROOT / "pipelines")
@@ -79,14 +91,43 @@ def doctests(module: ModuleType) -> Iterator[str]:
 def pages() -> list[Path]:
     """Return the Markdown pages."""
     first = [ROOT / f"{name}.md" for name in ("README", "CHANGELOG", "CONTRIBUTING")]
-    return [*first, *sorted((ROOT / "docs").glob("*.md"))]
+    return [*first, *(p for p in sorted(DOCS.rglob("*.md")) if INTO not in p.parents)]
+
+
+def guides() -> list[Path]:
+    """Return the pages whose blocks are run; those of other pages are tests' matter."""
+    return [*sorted((DOCS / "how-to").glob("*.md")), DOCS / "files.md"]
 
 
 def links(page: Path) -> Iterator[str]:
     """Yield the page's links to files that are not there."""
     for target, _ in LINK.findall(page.read_text(encoding="utf-8")):
-        if "://" not in target and not (page.parent / target).exists():
+        to = (page.parent / target).resolve()
+        made = INTO in to.parents or page.name in ("contributing.md", "changelog.md")
+        if "://" not in target and not made and not to.exists():
             yield f"{page}: no such file: {target}"
+
+
+def lengths(page: Path) -> Iterator[str]:
+    """Yield that a page has more words to read than anybody reads."""
+    words = prose_words(page)
+    if words > MOST_WORDS and DOCS in page.parents and page.name not in LONG:
+        yield f"{page}: {words} words outside tables and blocks, of at most {MOST_WORDS}"
+
+
+def blocks(page: Path) -> list[str]:
+    """Return which blocks of a page fail, run in an empty folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        return run_blocks(blocks_of(page), Path(folder))
+
+
+def tutorial() -> list[str]:
+    """Return which blocks of the tutorial fail; what they draw is kept for the site."""
+    try:
+        write_pictures(INTO, KEPT)
+    except LookupError as error:
+        return [f"{PAGE}: {error}"]
+    return []
 
 
 def commands(page: Path) -> Iterator[str]:
@@ -123,14 +164,25 @@ def _command(page: Path, line: str, cli: object) -> Iterator[str]:
 
 def main() -> int:
     """Run every check; return the exit code."""
-    found = [text for page in pages() for check in (links, commands) for text in check(page)]
+    if "--words" in sys.argv:
+        for kind, (read, every) in by_kind(DOCS, pages()[3:]).items():
+            print(f"{kind:12} {read:6} words to read, {every:6} with tables and blocks")
+        return 0
+    checks = (links, commands, lengths)
+    found = [text for page in pages() for check in checks for text in check(page)]
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        waiting = [pool.submit(tutorial), *(pool.submit(blocks, page) for page in guides())]
+        found += [text for one in waiting for text in one.result()]
     n = 0
     for module in modules():
         n += 1
         found += [*docstrings(module), *doctests(module)]
     for text in found:
         print(text)
-    print(f"{n} modules and {len(pages())} pages checked, {len(found)} troubles")
+    print(
+        f"{n} modules and {len(pages())} pages checked, {len(guides()) + 1} of them by running all "
+        f"their blocks, {len(found)} troubles"
+    )
     return 1 if found else 0
 
 

@@ -1,4 +1,4 @@
-"""The numbers of docs/fields.md that a study of the thesis plugin gives."""
+"""The numbers of the pages about fields that a study of the thesis plugin gives."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ from tactile_graph_thesis.measure.simulated_rectangle import (
     schedules,
 )
 
-PAGE = Path(__file__).parents[2] / "docs" / "fields.md"
-ERRATA = PAGE.with_name("errata.md")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = (DOCS / "fields.md", DOCS / "evidence" / "fields.md")
+ERRATA = DOCS / "errata.md"
 ROWS = {
     EVERY_LINE: "every line (`thesis-circle`)",
     ENCLOSED: "what lines enclose (`circle-enclosed`)",
@@ -40,14 +41,19 @@ ROWS = {
 }
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(not PAGE.is_file(), reason="the docs are not beside the tests"),
+    pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests"),
     pytest.mark.usefixtures("warm_kernels"),
 ]
 
 
+def both() -> str:
+    """Return the page that explains and the one with the evidence, as one text."""
+    return "\n".join(page.read_text("utf-8") for page in PAGES)
+
+
 def cells(first: str, columns: int) -> list[list[str]]:
     """Return the further cells of the page's rows of so many columns that begin with a cell."""
-    rows = [[c.strip() for c in t.split("|")[1:-1]] for t in PAGE.read_text("utf-8").splitlines()]
+    rows = [[c.strip() for c in t.split("|")[1:-1]] for t in both().splitlines()]
     return [r[1:] for r in rows if len(r) == columns and r[0] == first]
 
 
@@ -67,7 +73,7 @@ def test_table_5_2_is_as_printed(way: str, radii: tuple[RadiusRow, ...]) -> None
 
 
 def test_the_areas_of_hulls_are_as_printed() -> None:
-    made, page = hulls(0, 25), " ".join(PAGE.read_text("utf-8").split())
+    made, page = hulls(0, 25), " ".join(both().split())
     for which, words in (
         ("enclosed", "the hulls have {:.2f} times the area of `circle-3`'s in the median"),
         ("every_line", "spoilt by lines astray ({:.2f} times the area)"),
@@ -106,5 +112,5 @@ def test_the_lines_astray_are_as_many_as_told(way: str, words: str) -> None:
     outline = on[:-1] ^ on[1:], on[:, :-1] ^ on[:, 1:]
     found = made.lines.horizontal, made.lines.vertical
     astray = sum(int((f & ~o).sum()) for f, o in zip(found, outline, strict=True))
-    page = " ".join(PAGE.read_text("utf-8").split())
+    page = " ".join(both().split())
     assert words.format(astray, made.lines.count) in page

@@ -1,0 +1,98 @@
+"""The built site: its links lead somewhere, every step has its page, and search needs no network.
+
+``TACTILE_GRAPH_SITE`` names the folder of a build; without it these are skipped.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from tactile_graph.plugins.registry import installed
+
+SITE = Path(os.environ.get("TACTILE_GRAPH_SITE", "no such folder"))
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not SITE.is_dir(), reason="no site is built: TACTILE_GRAPH_SITE names one"),
+]
+TARGET = re.compile(r'(?:href|src)="([^"]+)"')
+BROWSER = (
+    "chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--dump-dom",
+    "--virtual-time-budget=10000", "--host-rules=MAP * ~NOTFOUND",
+)  # fmt: skip
+"""A browser that prints what a page came to, and reaches no host."""
+IDS = re.compile(r'\bid="([^"]+)"')
+
+
+@cache
+def text(page: Path) -> str:
+    return page.read_text("utf-8")
+
+
+@cache
+def ids(page: Path) -> frozenset[str]:
+    return frozenset(IDS.findall(text(page)))
+
+
+def trouble(page: Path, target: str) -> str:
+    """Return what is wrong with a link of a page; nothing for one to another place."""
+    if re.match(r"[a-z]+:|//", target) or target in ("#", ""):
+        return ""
+    path, _, anchor = target.partition("#")
+    to = (page.parent / unquote(path.partition("?")[0])).resolve() if path else page
+    if not to.is_file():
+        return f"{page.relative_to(SITE)}: nothing at {target}"
+    if anchor and to.suffix == ".html" and unquote(anchor) not in ids(to):
+        return f"{page.relative_to(SITE)}: no place {target}"
+    return ""
+
+
+def test_every_link_and_picture_is_there() -> None:
+    pages = [p for p in sorted(SITE.rglob("*.html")) if SITE / "_static" not in p.parents]
+    assert len(pages) > 250
+    targets = [(page, target) for page in pages for target in set(TARGET.findall(text(page)))]
+    assert len(targets) > 10_000
+    assert [told for page, target in targets if (told := trouble(page, target))] == []
+
+
+def test_nothing_is_loaded_from_another_place() -> None:
+    loads = re.compile(r'<(?:script|img|iframe)[^>]+src="(https?:)?//|<link[^>]+href="(https?:)?//')
+    assert [page.name for page in SITE.rglob("*.html") if loads.search(text(page))] == []
+
+
+def test_every_step_has_its_page_with_a_picture_or_the_reason_why_not() -> None:
+    steps = SITE / "catalogue" / "steps"
+    for name in installed().names("steps"):
+        page = text(steps / installed().offer("steps", name).plugin.name / f"{name}.html")
+        assert (f"{name}-shown.svg" in page) != ("No picture." in page), name
+        assert ("Cost" in page) or "No picture." in page or "What it gives" in page, name
+
+
+def test_every_pipeline_has_its_page_with_its_graph_and_file() -> None:
+    for name in installed().names("pipelines"):
+        page = text(SITE / "catalogue" / "pipelines" / f"{name}.html")
+        assert f"{name}-graph.svg" in page
+        assert "outputs" in page
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium")
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [("hysteresis", "glossary.html"), ("fit_circle_taubin", "fit_circle_taubin.html")],
+)
+def test_search_finds_pages_from_the_disk_alone(words: str, found: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [*BROWSER, f"--user-data-dir={tmp_path}",
+         f"{SITE.resolve().as_uri()}/search.html?q={words}"],
+        capture_output=True, text=True, timeout=120, check=True,
+    )  # fmt: skip
+    _, _, results = done.stdout.partition('id="search-results"')
+    assert re.search(r"found \d+ pages? matching|Search finished", results)
+    assert found in results
