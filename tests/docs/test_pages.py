@@ -22,9 +22,9 @@ from tactile_graph.cli import cli
 from tactile_graph.errors import DataError, PipelineError
 from tactile_graph.pipeline.conditions import FUNCTIONS
 from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
+from tactile_graph.plugins.core import tactile_graph_quantities
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind, read_signature
-from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
@@ -95,7 +95,7 @@ def test_keys_functions_and_quantities_of_a_pipeline_file_are_all_told() -> None
     told = re.findall(r"^\| `(\w+)` \|", page, re.M)
     assert set(told) == {*TOP_KEYS, *NODE_KEYS}
     assert f"`+ - * / // %`, numbers, texts, `{' '.join(FUNCTIONS)}`" in page
-    assert [q for q in QUANTITIES if f"`{q}`" not in page] == []
+    assert [q for q in tactile_graph_quantities() if f"`{q}`" not in page] == []
 
 
 def test_the_pipelines_shown_within_others_run(tmp_path: Path) -> None:

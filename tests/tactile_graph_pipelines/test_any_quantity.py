@@ -32,7 +32,7 @@ KNOWN_IN_GRAMS = {
 
 SLOW = {
     *("locate", "locate-circle", "locate-contacts", "locate-objects", "locate-rectangle"),
-    "bayes-circle",
+    *("bayes-circle", "bayes-objects", "bayes-lines", "bayes-rectangle", "circle-by-order"),
     *set(tactile_graph_thesis.tactile_graph_pipelines()) - {"thesis-lines"},
 }
 """Those of which much is compiled, and steps between others, which are like those."""

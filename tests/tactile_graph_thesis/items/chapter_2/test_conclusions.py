@@ -15,6 +15,7 @@ STUDIES = (
     "current-limit",
     "converter",
     "samples",
+    "coupling-directions",
     "stack-order",
     "bias-sensitivity",
     "bias-loaded",
