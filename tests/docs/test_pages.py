@@ -202,6 +202,7 @@ def test_the_tests_shown_for_plugins_pass(
         test(**{name: request.getfixturevalue(name) for name in wanted})
 
 
+@pytest.mark.slow  # takes seconds
 def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
     (code,) = fenced("compare", "python")
     short = code.replace("n_frames=200", "n_frames=12")

@@ -36,6 +36,7 @@ def test_no_threshold_and_no_level_in_volts_is_anywhere(name: str) -> None:
     assert "_v:" not in text
 
 
+@pytest.mark.slow  # much is compiled
 def test_bayes_circle_is_nearer_than_circle_3_on_the_same_frames() -> None:
     ours, threshold = load("bayes-circle").runner(), load("circle-3").runner()
     rows = []

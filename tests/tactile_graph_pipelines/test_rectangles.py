@@ -49,6 +49,7 @@ def errors(name: str, n: int, seed: int, **pad: object) -> NDArray[np.float64]:
     return np.array(rows)
 
 
+@pytest.mark.slow  # takes seconds
 def test_rectangle_3_errs_by_at_most_half_of_rectangle_2_in_every_column() -> None:
     second, third = (errors(name, 160, seed=1) for name in ("rectangle-2", "rectangle-3"))
     assert len(third) == 160
@@ -158,6 +159,7 @@ def test_a_footprint_too_narrow_for_the_opening_vanishes_and_says_so() -> None:
     assert "opened.count = 0" in skipped.reason
 
 
+@pytest.mark.slow  # each is compiled
 @pytest.mark.parametrize("name", EVERY)
 def test_a_frame_full_of_nan_fails_in_words_and_the_run_goes_on(name: str) -> None:
     good = next(iter(load(name).frames()))

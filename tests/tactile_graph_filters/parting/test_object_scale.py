@@ -134,6 +134,7 @@ def test_blocks_that_are_all_off_leave_a_part_whole():
     assert np.array_equal(labels, on.astype(np.int32))
 
 
+@pytest.mark.slow  # much is compiled
 def test_a_full_pad_is_one_contact():
     mask = mask_of(np.ones((40, 60)))
     assert [c.n_cells for c in SPLIT(image_of(np.ones((40, 60))), mask).contacts] == [2400]

@@ -79,6 +79,7 @@ def test_its_standard_deviations_are_those_of_its_errors():
     assert 0.85 < np.std(radius) < 1.2
 
 
+@pytest.mark.slow  # takes seconds
 @pytest.mark.parametrize("kind", ["uneven", "square", "ring", "two"])
 def test_what_bears_no_even_disc_says_so(kind):
     rng = np.random.default_rng(3)

@@ -26,6 +26,7 @@ def noisy(seed, noise=0.03, n=60):
     return rng, truth, rectangle_xy(truth, n) + rng.normal(0, noise, (n, 2))
 
 
+@pytest.mark.slow  # takes seconds
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds)
 def test_truth_to_points_to_truth(seed):

@@ -99,6 +99,7 @@ def test_a_shift_is_the_best_of_all_sets_of_cells_where_smoothness_is_convex(see
     assert energy(problem, *fused) == pytest.approx(best_shift(problem, labels, other))
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
 def test_fusing_and_shifting_only_lower_the_energy(lines):
     """Fused plain and compiled; shifts compiled are a part of what polishes."""
