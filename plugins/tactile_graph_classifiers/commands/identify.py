@@ -53,6 +53,7 @@ def identify(
     presses of an object, named --together, tell what one does not: strangers above all. Programs
     ask 'tactile-graph run identify-any -o -' for lines.
     """
+    from tactile_graph.compiled import answered_meanwhile
     from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
@@ -65,8 +66,9 @@ def identify(
     report = Report()
     runner = opened.runner([node], seed)
     lines = _Together(opened, node, together) if together else _Lines(node)
-    for frame in span.of(opened.frames(seed, report)):
-        lines.add(runner(frame))
+    with answered_meanwhile():
+        for frame in span.of(opened.frames(seed, report)):
+            lines.add(runner(frame))
     for where, what in report.troubles:
         say(f"{where}: {what}", err=True)
     lines.summarise()

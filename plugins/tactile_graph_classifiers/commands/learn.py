@@ -50,13 +50,15 @@ def learn(
     or none. What the pipeline calls an empty pad is left out. How the objects are told apart best
     is found by leaving readings and objects out, and how well that did is said.
     """
+    from tactile_graph.compiled import answered_meanwhile
     from tactile_graph_classifiers.database.rows import Lesson, Setting
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
     if not recordings and source is None:
         raise UsageError("name the recordings to learn from, or a --source")
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    read = _Read(opened, only, seed, span)
+    with answered_meanwhile():
+        read = _Read(opened, only, seed, span)
     first = read.rows[0]
     readings = [m.values.tolist() for m in read.rows]
     lesson = Lesson(name, shape or read.shape, readings, read.sources)  # type: ignore[arg-type]
