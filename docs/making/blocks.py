@@ -8,6 +8,8 @@
 - ``text`` behind one of these is what it prints: its lines come in this order, ``…`` standing for
   anything.
 - A block that begins with ``# not run:`` and the reason is left alone.
+- A comment ``<!-- before: … -->`` right above a block holds what bash does first, such as making
+  the files that the page's reader has; ``<!-- run by FILE -->`` says what else runs the block.
 """
 
 from __future__ import annotations
@@ -22,12 +24,19 @@ from contextlib import chdir, redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
+from types import ModuleType
+from unittest.mock import patch
 
 import yaml
 
+ROOT = Path(__file__).parents[2]
 NOT_RUN = "# not run: "
 PART = "# part of "
-FENCE = re.compile(r"^```(\w+)[^\n]*\n(.*?)^```$", re.M | re.S)
+FENCE = re.compile(
+    r"^(?:<!-- (?:before:\n(?P<before>(?:(?!-->).)*)|run by (?P<run_by>\S+) )-->\n)?"
+    r"(?P<fence>```)(?P<language>\w+)[^\n]*\n(?P<text>.*?)^```$",
+    re.M | re.S,
+)
 FILE = re.compile(r"# ([\w-]+\.yaml)$")
 RUN = ("python", "sh", "yaml")
 LONGEST_S = 600.0
@@ -35,11 +44,16 @@ LONGEST_S = 600.0
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: where it stands, its language, its text."""
+    """A fenced block: where it stands, its language, its text; what bash does before.
+
+    ``run_by`` is the file that runs it, below the project's root, where that is not this one.
+    """
 
     place: str
     language: str
     text: str
+    before: str = ""
+    run_by: str = ""
 
     @property
     def first(self) -> str:
@@ -51,15 +65,23 @@ def blocks_of(page: Path) -> list[Block]:
     """Return the blocks of a page that are run, and the texts behind them, in order."""
     text = page.read_text("utf-8")
     return [
-        Block(f"{page.name}:{text.count(chr(10), 0, m.start()) + 1}", m[1], m[2])
+        Block(
+            f"{page.name}:{text.count(chr(10), 0, m.start('fence')) + 1}",
+            m["language"], m["text"], m["before"] or "", m["run_by"] or "",
+        )
         for m in FENCE.finditer(text)
-        if m[1] in (*RUN, "text")
-    ]
+        if m["language"] in (*RUN, "text")
+    ]  # fmt: skip
 
 
 def run_blocks(blocks: Iterable[Block], folder: Path) -> list[str]:
     """Run the blocks of one page in a folder, and return what went wrong, in words."""
-    space: dict[str, object] = {"__name__": "__page__"}
+    module = ModuleType("the_page")  # what blocks define asks for the module it is defined in
+    with patch.dict(sys.modules, {module.__name__: module}):
+        return _troubles(blocks, folder, vars(module))
+
+
+def _troubles(blocks: Iterable[Block], folder: Path, space: dict[str, object]) -> list[str]:
     troubles: list[str] = []
     printed: str | None = None
     for block in blocks:
@@ -69,9 +91,12 @@ def run_blocks(blocks: Iterable[Block], folder: Path) -> list[str]:
             printed = None
             continue
         printed = None
-        if block.first.startswith(NOT_RUN):
+        if block.run_by and not (ROOT / block.run_by).is_file():
+            troubles.append(f"{block.place}: there is no {block.run_by} to run it")
+        if block.run_by or block.first.startswith(NOT_RUN):
             continue
         try:
+            _shell(block.before, folder)
             printed = _run(block, folder, space)
         except BlockError as error:
             troubles.append(f"{block.place}: {error}")
@@ -91,6 +116,8 @@ def _run(block: Block, folder: Path, space: dict[str, object]) -> str:
 
 
 def _shell(text: str, folder: Path) -> str:
+    if not text:
+        return ""
     beside = str(Path(sys.executable).parent)
     environment = os.environ | {
         "PATH": os.pathsep.join([beside, os.environ.get("PATH", "")]),

@@ -10,8 +10,9 @@ MOST_WORDS = 2000
 KINDS = {
     "user guides": "index tutorial/ how-to/ reference glossary pipelines files recordings devices "
     "compare notebook plugins hooks api contributing project",
-    "explanation": "explanation architecture pad likelihood any-pad fields merging stability",
-    "evidence": "evidence/ reproduce errata benchmarks promises attacks objects",
+    "explanation": "explanation architecture pad likelihood any-pad fields objects merging "
+    "stability",
+    "evidence": "evidence/ reproduce errata benchmarks promises attacks evolution mutations",
 }
 """Pages, and rooms of them, by kind."""
 _BLOCK = re.compile(r"^(```+|:::+)[^\n]*\n.*?^\1\s*$", re.M | re.S)

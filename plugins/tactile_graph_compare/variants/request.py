@@ -74,14 +74,16 @@ def parse_request(text: str, registry: Registry) -> VariantRequest:
 
 
 def words_of(text: str) -> list[str]:
-    """Return a variant's words, the pipeline's name or file first; its spaces need no quotes.
+    """Return a variant's words, the pipeline's name or file first.
+
+    A file's spaces need no quotes, unless two dashes follow: there the options begin.
 
     Raises
     ------
     ValueError
         If a quotation does not end.
     """
-    found = re.match(r"(?P<file>.+?\.ya?ml)(?P<rest>\s+--.*)?$", text, re.DOTALL)
+    found = re.match(r"(?P<file>(?:(?!\s--).)+?\.ya?ml)(?P<rest>\s+--.*)?$", text, re.DOTALL)
     if found is None or found["file"][0] in "\"'":
         return shlex.split(text)
     return [found["file"], *shlex.split(found["rest"] or "")]

@@ -36,6 +36,12 @@ def test_python_blocks_share_their_names_and_what_they_print_is_held_against_the
     assert told.startswith("page.md:9: nothing printed reads 'x is 3 in … s'; it was:\nx is 2")
 
 
+def test_a_block_may_define_a_dataclass_as_a_module_does(run: Run) -> None:
+    head = "from __future__ import annotations\nfrom dataclasses import dataclass\n"
+    shape = "@dataclass\nclass Disc:\n    radius_cm: float\nprint(Disc(2.0))\n"
+    assert run(f"```python\n{head}{shape}```\n```text\nDisc(radius_cm=2.0)\n```\n") == []
+
+
 def test_lines_that_come_in_another_order_are_told(run: Run) -> None:
     page = "```sh\necho one; echo two\n```\n\n```text\n{}\n{}\n```\n"
     assert run(page.format("one", "two")) == []
@@ -68,6 +74,19 @@ def test_yaml_that_says_not_what_it_is_is_refused(run: Run) -> None:
     (told,) = run("```yaml\nnodes: {}\n```\n")
     assert "says neither" in told
     assert run("```yaml\n# part of a pipeline file\nnodes: {}\n```\n") == []
+
+
+def test_files_that_a_reader_has_are_made_before(run: Run) -> None:
+    made = "<!-- before:\necho 7 > mine.csv\n-->\n"
+    assert run(made + "```sh\ncat mine.csv\n```\n```text\n7\n```\n") == []
+    (told,) = run("<!-- before:\nfalse\n-->\n```sh\necho never\n```\n")
+    assert told.startswith("page.md:4: ends with 1")
+
+
+def test_a_block_that_something_else_runs_is_left_to_it(run: Run) -> None:
+    assert run("<!-- run by .ci/run -->\n```sh\nfalse\n```\n") == []
+    (told,) = run("<!-- run by .ci/walk -->\n```sh\nfalse\n```\n")
+    assert told == "page.md:2: there is no .ci/walk to run it"
 
 
 def test_what_is_marked_is_not_run(run: Run) -> None:

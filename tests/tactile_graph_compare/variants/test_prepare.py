@@ -67,6 +67,13 @@ def test_a_variant_says_its_settings_as_a_command_line_would():
     assert parse_request(again.strip("'"), installed()) == got
 
 
+def test_a_setting_may_be_a_file_as_a_pipeline_may():
+    pads = {"circle.pad": "my-pad.yaml", "footprint.pad": "my pad.yaml"}
+    settings = "--set circle.pad=my-pad.yaml --set 'footprint.pad=my pad.yaml'"
+    for name in ("locate-circle", "a dir/x y.yaml"):
+        assert parse_request(f"{name} {settings}", installed()) == VariantRequest(name, pads)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -205,7 +205,7 @@ _EIGHT = (
     "which fill a lost element too; after one pass the opening often leaves nothing of "
     "RECTANGLE II, of which the thesis' table shows no trace. Whether the second algorithm betters "
     "the first also depends on what a cell is taken for: at the pad's true pitch it does not, "
-    "with a cell read as a whole centimetre it does (docs/objects.md)."
+    "with a cell read as a whole centimetre it does (docs/evidence/objects.md)."
 )
 
 ITEMS = (
