@@ -3,6 +3,7 @@
     python benchmarks/attacks/files.py                    # each once; ten minutes
     python benchmarks/attacks/files.py --only npz zip     # those with one of these words
     python benchmarks/attacks/files.py --tries 40 --seed 3 # forty of them, drawn at random
+    python benchmarks/attacks/files.py --after 300        # goes on where a run was ended
 
 Recordings, pipelines, conditions, pads, presets, scenes, databases and their exports, at most 20 MB
 each. A file that is refused must be within 0.5 CPU seconds and 200 MB beyond what the process held
@@ -211,8 +212,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything took too much or was foreign."""
     parser = parser_of(__doc__, 0)
     parser.add_argument("--only", nargs="+", default=[""], help="words, one of which is in it")
+    parser.add_argument("--after", type=int, default=0, help="how many of them are left out first")
     args = parser.parse_args(arguments)
-    files = [f for f in hostile() if any(word in f.what for word in args.only)]
+    files = [f for f in hostile() if any(word in f.what for word in args.only)][args.after :]
     if args.tries:
         files = random.Random(args.seed).sample(files, min(args.tries, len(files)))
     return told(attack(files), args)

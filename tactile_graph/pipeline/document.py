@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 import unicodedata
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
@@ -16,6 +17,7 @@ from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
 DEEPEST = 40
+MOST_KEYS = 2_000  # of one mapping
 MOST_CHARACTERS, MOST_BYTES = 400_000, 4_000_000  # PyYAML takes a second for a million line ends
 MOST_PROBLEMS = 100  # nobody reads more, and each may take a millisecond to word
 LONGEST_NUMBER = 1_000  # characters; the value of 1:59:59:… takes their square
@@ -135,6 +137,8 @@ def read_document(text: str, file: str) -> Document:
     if not _clean(document):
         return document
     try:
+        if len(text) > OFTEN_READ:
+            _look_ahead(text)
         node = (_composed if len(text) <= OFTEN_READ else _composed.__wrapped__)(text)
         if node is None:
             document.problem_at(Mark(file, 1, 1), "the file is empty")
@@ -144,7 +148,11 @@ def read_document(text: str, file: str) -> Document:
         mark = error.problem_mark or error.context_mark
         place = Mark(file, mark.line + 1, mark.column + 1) if mark else Mark(file, 1, 1)
         document.problem_at(place, f"this is not YAML: {_yaml_words(error)}")
-    except (yaml.YAMLError, _TooMuch) as error:
+    except _TooMuch as error:
+        document.problem_at(
+            Mark(file, error.line, 1), f"this is not YAML that can be read: {error}"
+        )
+    except yaml.YAMLError as error:
         document.problem_at(Mark(file, 1, 1), f"this is not YAML that can be read: {error}")
     return document
 
@@ -160,6 +168,40 @@ def _composed(text: str) -> yaml.Node | None:
     if node is not None:
         _measure(node)
     return node
+
+
+def _look_ahead(text: str) -> None:
+    """Refuse a text of too many values by libyaml, if there is one: PyYAML takes far longer."""
+    if not hasattr(yaml, "CSafeLoader"):
+        return
+    count, within = 0, [_Collection()]
+    with suppress(yaml.YAMLError):  # PyYAML says more of what is wrong
+        for event in yaml.parse(text, Loader=yaml.CSafeLoader):
+            if isinstance(event, yaml.CollectionEndEvent):
+                within.pop()
+            if not isinstance(event, yaml.NodeEvent):
+                continue
+            count += 1
+            within[-1].n_inside += 1
+            if count > MOST_NODES:
+                raise _TooMuch(f"more than {MOST_NODES} values")
+            if within[-1].is_mapping and within[-1].n_inside > 2 * MOST_KEYS:
+                raise _TooMuch(f"a mapping of more than {MOST_KEYS} keys", within[-1].line)
+            if isinstance(event, yaml.CollectionStartEvent):
+                is_mapping = isinstance(event, yaml.MappingStartEvent)
+                mark = event.start_mark
+                within.append(_Collection(is_mapping, mark.line + 1 if mark else 1))
+            if len(within) > DEEPEST + 2:
+                return
+
+
+@dataclass
+class _Collection:
+    """A mapping or sequence that is being read, and how many keys and values it holds so far."""
+
+    is_mapping: bool = False
+    line: int = 1
+    n_inside: int = 0
 
 
 def _yaml_words(error: yaml.MarkedYAMLError) -> str:
@@ -188,7 +230,9 @@ def _clean(document: Document) -> bool:
 
 
 class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
-    pass
+    def __init__(self, text: str, line: int = 1) -> None:
+        super().__init__(text)
+        self.line = line
 
 
 class _Loader(yaml.SafeLoader):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean
-from tactile_graph.pipeline.declaration import MOST_NODES, declare
+from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
@@ -169,10 +169,10 @@ def _load_inner(
     if len(names) > MOST_LEVELS:
         raise UsageError(f"pipelines use each other more than {MOST_LEVELS} deep")
     if overrides:
-        return _small_enough(_load(path, registry, overrides, None, opened))
+        return _load(path, registry, overrides, None, opened)
     if target not in opened.loaded:
         try:
-            opened.loaded[target] = _small_enough(_load(path, registry, {}, None, opened))
+            opened.loaded[target] = _load(path, registry, {}, None, opened)
         except TactileGraphError as error:
             opened.loaded[target] = error
     came = opened.loaded[target]
@@ -186,15 +186,6 @@ def _refuse_circle(names: list[str], opened: Sequence[object], again: object) ->
         i = opened.index(again)
         loop = " -> ".join((*names[i:], names[i]))
         raise UsageError(f"pipelines use each other in a circle: {loop}")
-
-
-def _small_enough(graph: Graph) -> Graph:
-    if len(graph.nodes) > MOST_NODES:
-        raise UsageError(
-            f"pipeline {graph.name!r} has {len(graph.nodes)} nodes with those of the pipelines "
-            f"it uses; allowed are {MOST_NODES}"
-        )
-    return graph
 
 
 def _parent(name: str, document: Document, registry: Registry) -> str:

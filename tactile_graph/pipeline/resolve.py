@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +12,7 @@ from tactile_graph.errors import PluginError, Problem, TactileGraphError, UsageE
 from tactile_graph.pipeline.bind import bind_inputs
 from tactile_graph.pipeline.checks import check_conditions, check_fields_read, check_overrides
 from tactile_graph.pipeline.conditions import Guard, compile_condition
-from tactile_graph.pipeline.declaration import NodeDeclaration
+from tactile_graph.pipeline.declaration import MOST_NODES, NodeDeclaration
 from tactile_graph.pipeline.facts import (
     choice_facts,
     frame_facts,
@@ -63,13 +64,17 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         text = f"the nodes form a cycle: {' -> '.join(loop)}"
         scope.document.problem(text, "nodes", loop[0], key=True)
         scope.types.update(dict.fromkeys(loop, UNKNOWN))
+    uses = Counter(declared.use for declared in scope.declaration.nodes.values())
     for name in order:
-        declared = scope.declaration.nodes[name]
+        declared, n_before = scope.declaration.nodes[name], len(scope.nodes)
         try:
             _node(scope, declared)
         except TactileGraphError as error:
             scope.problem(declared, str(error))
             scope.types.setdefault(name, UNKNOWN)
+        uses[declared.use] -= 1
+        to_come = uses[declared.use] * (len(scope.nodes) - n_before) if declared.use else 0
+        _refuse_too_many(scope, declared, len(scope.nodes) + to_come)
     check_conditions(scope)
     check_fields_read(scope)
     check_overrides(scope)
@@ -81,6 +86,15 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         text=scope.document.text, frame_rules=tuple(scope.rules),
         overrides=scope.overrides, source_override=replaced, registry=scope.registry,
     )  # fmt: skip
+
+
+def _refuse_too_many(scope: Scope, declared: NodeDeclaration, n_nodes: int) -> None:
+    """Refuse a pipeline by the nodes it has or, with all uses like this one, comes to have."""
+    if n_nodes > MOST_NODES:
+        raise UsageError(
+            f"pipeline {scope.declaration.name!r}, node {declared.name!r}: comes to {n_nodes} "
+            f"nodes with those of the pipelines it uses; allowed are {MOST_NODES}"
+        )
 
 
 def _source(scope: Scope, replaced: SourceOverride) -> Source | None:

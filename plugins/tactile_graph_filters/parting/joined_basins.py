@@ -53,6 +53,7 @@ def _joined_plain(
     cuts = _cuts_plain(owner, count, values, half)
     costs = {a: _cost_plain(owner, (a,), values, known, rules) for a in alive}
     unions: dict[tuple[int, ...], float] = {}
+    boxes = _boxes(owner, count)
 
     def gain(*groups: int) -> float:
         if groups not in unions:
@@ -61,13 +62,13 @@ def _joined_plain(
         return float(hold * cut + sum(costs[a] for a in groups) - unions[groups])
 
     while True:
-        pairs = [p for p in combinations(alive, 2) if _are_near(owner, *p)]
-        best = _best([(gain(*p), p) for p in pairs])
+        best = _best([(gain(*p), p) for p in _near(boxes, alive)])
         best = best or _best([(gain(*t), t) for t in _threes(alive, cuts)])
         if not best:
             break
         for other in best[1:]:
             owner[owner == other] = best[0]
+            boxes[:, best[0]] = np.maximum(boxes[:, best[0]], boxes[:, other])
             cuts[best[0]] += cuts[other]
             cuts[:, best[0]] = cuts[best[0]]
             alive.remove(other)
@@ -112,11 +113,26 @@ def _best(gains: list[tuple[float, tuple[int, ...]]]) -> tuple[int, ...]:
     return found
 
 
-def _are_near(owner: NDArray[np.int32], a: int, b: int) -> bool:
-    (i, j), (k, m) = np.nonzero(owner == a), np.nonzero(owner == b)
-    apart = max(i.min(), k.min()) - min(i.max(), k.max())
-    aside = max(j.min(), m.min()) - min(j.max(), m.max())
-    return bool(max(apart, aside) <= REACH_CELLS)
+def _boxes(owner: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+    """Return the last row, last column, first row and first column of each group.
+
+    Shape (4, count + 1); the first ones are negative, so that a union's box is the largest of each.
+    """
+    rows, columns = np.nonzero(owner)
+    boxes = np.full((4, count + 1), -max(owner.shape))
+    for box, at in zip(boxes, (rows, columns, -rows, -columns), strict=True):
+        np.maximum.at(box, owner[rows, columns], at)
+    return boxes
+
+
+def _near(boxes: NDArray[np.int64], alive: list[int]) -> list[tuple[int, ...]]:
+    """Return the pairs of groups whose boxes are within reach of each other, in order."""
+    last, first = boxes[:2, alive], -boxes[2:, alive]
+    apart = np.maximum(first[:, :, None], first[:, None]) - np.minimum(
+        last[:, :, None], last[:, None]
+    )
+    pairs = np.argwhere(np.triu(apart.max(axis=0) <= REACH_CELLS, 1))
+    return [(alive[a], alive[b]) for a, b in pairs.tolist()]
 
 
 def _cuts_plain(owner: NDArray[np.int32], count: int, values: Array, half: float) -> Array:

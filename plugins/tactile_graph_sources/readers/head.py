@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from tactile_graph_sources.readers.tables.layout import Layout
 
 SAMPLE = 1 << 20
+MOST_LINES = 100_000
+"""Lines by which a table is recognised; a sample has more where they are under ten bytes long."""
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
@@ -55,9 +57,11 @@ class Head:
         """How the numbers lie in a plain table; None where it is no table."""
         from tactile_graph_sources.readers.tables.decide import layout_of
 
-        labels = self.labels
-        lines = self.lines if labels is None else [labels.plain(line) for line in self.lines]
-        return layout_of(lines, self.told, self.whole, () if labels is None else labels.names)
+        labels, lines = self.labels, self.lines[:MOST_LINES]
+        whole = self.whole and len(lines) == len(self.lines)
+        if labels is None:
+            return layout_of(lines, self.told, whole)
+        return layout_of([labels.plain(line) for line in lines], self.told, whole, labels.names)
 
     @cached_property
     def labels(self) -> Labels | None:

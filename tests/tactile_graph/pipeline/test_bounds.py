@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from helpers_graphs import registry
 from tactile_graph import load, loads
 from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.pipeline import document
 from tactile_graph.pipeline import load as module
 
 LEAF = "pipeline: leaf\nnodes: {a: {step: read, in: frame}}\noutputs: [a]\n"
@@ -60,6 +62,40 @@ def test_too_many_nodes_in_all_are_refused(tmp_path: Path, read_files: list[Path
     with pytest.raises(PipelineError, match=r"nodes with those of the pipelines it uses; allowed"):
         load(nested(tmp_path, 20, uses=2), registry())
     assert len(read_files) <= 21
+
+
+def test_a_pipeline_of_very_many_uses_is_refused_by_the_first(
+    tmp_path: Path, read_files: list[Path]
+) -> None:
+    """Each use has settings of its own, and so is read anew."""
+    nested(tmp_path, 1)
+    uses = "".join(
+        f"  m{k}: {{use: p0.yaml, in: frame, with: {{a.tag: x{k}}}}}\n" for k in range(1200)
+    )
+    outer = tmp_path / "outer.yaml"
+    outer.write_text(f"pipeline: outer\nnodes:\n{uses}outputs: [m0]\n")
+    with pytest.raises(UsageError, match=r"'outer', node 'm0': comes to 2400 nodes with those of"):
+        load(outer, registry())
+    assert len(read_files) == 2
+
+
+@pytest.mark.skipif(not hasattr(yaml, "CSafeLoader"), reason="PyYAML is without libyaml here")
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("a: {b: 1}\nl: [" + "1, " * 21_000 + "1]", "more than 20000 values"),
+        ("".join(f"node_number_{k}: 1\n" for k in range(2001)), "a mapping of more than 2000 keys"),
+    ],
+    ids=["values", "keys"],
+)
+def test_a_long_text_of_too_many_values_is_never_composed(
+    text: str, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    composed: list[str] = []
+    monkeypatch.setattr(document._composed, "__wrapped__", composed.append)
+    with pytest.raises(PipelineError, match=what):
+        loads(text, registry())
+    assert composed == []
 
 
 def test_a_long_chain_of_pipelines_is_refused(tmp_path: Path) -> None:
@@ -145,10 +181,12 @@ def test_a_hundred_mistakes_of_any_kind_end_the_look_at_a_file(text: str) -> Non
 
 def test_very_many_nodes_or_conditions_are_refused() -> None:
     nodes = "".join(f"  n{i}: {{}}\n" for i in range(2001))
-    with pytest.raises(PipelineError, match="2001 nodes; allowed are 2000"):
+    # With libyaml, and without.
+    with pytest.raises(PipelineError, match=r":3:1: .* 2000 keys|: 2001 nodes; allowed are 2000"):
         loads(f"pipeline: x\nnodes:\n{nodes}outputs: [n0]\n", registry=registry())
     conditions = nodes.replace("{}", "a > 1")
-    with pytest.raises(PipelineError, match="2001 conditions; allowed are 2000"):
+    told = r":5:1: .* 2000 keys|: 2001 conditions; allowed are 2000"
+    with pytest.raises(PipelineError, match=told):
         loads(f"{LEAF}conditions:\n{conditions}", registry=registry())
 
 

@@ -1,3 +1,5 @@
+import cProfile
+import pstats
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +14,7 @@ from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.parting.basins import basins, taps_of
 from tactile_graph_filters.parting.filled_hull import misfit
-from tactile_graph_filters.parting.joined_basins import joined
+from tactile_graph_filters.parting.joined_basins import _joined_plain, joined
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
@@ -227,6 +229,23 @@ def test_both_twins_agree_on_uneven_scenes():
         assert owners[0][0] == owners[1][0]
         assert owners[0][1] == pytest.approx(owners[1][1], abs=1e-6)
         assert np.array_equal(owners[0][2], owners[1][2])
+
+
+def calls_to_join(n):
+    """Return how many calls the plain code makes of a strip of n groups that nothing joins."""
+    owner = np.zeros((4 * n, 1), np.int32)
+    owner[::4, 0] = np.arange(1, n + 1)
+    values = (owner > 0).astype(float)
+    rules = np.array([0.3, 0.5, 8.0, 0.5, 0.0])
+    profile = cProfile.Profile()
+    profile.runcall(_joined_plain, owner, n, values, np.ones(owner.shape, bool), rules)
+    return pstats.Stats(profile).total_calls
+
+
+@pytest.mark.usefixtures("plain_kernels")
+def test_plain_joining_takes_in_proportion_to_the_groups():
+    """Far groups are told by their boxes, all at once, not pair by pair from the cells."""
+    assert calls_to_join(120) < 3 * calls_to_join(60)
 
 
 @pytest.mark.usefixtures("plain_kernels")

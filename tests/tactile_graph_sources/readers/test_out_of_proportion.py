@@ -17,7 +17,7 @@ from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError, TactileGraphError, UsageError
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.devices.preset_file import load_preset, read_preset
-from tactile_graph_sources.readers import archive, hdf5, json_stack, mcap_chunks
+from tactile_graph_sources.readers import archive, hdf5, head, json_stack, mcap_chunks
 from tactile_graph_sources.readers import npz as npz_reader
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.stores.journal import read_journal
@@ -117,6 +117,15 @@ def test_json_of_more_lists_than_numbers_is_refused(
         monkeypatch.setattr(json_stack, name, value)
     monkeypatch.setattr(json_stack, "MOST_DAMAGED", 5)
     assert what in refused(tmp_path, text)
+
+
+def test_of_very_short_lines_no_more_are_looked_at_than_tell_what_the_table_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(head, "MOST_LINES", 500)
+    assert "500 lines of 1 values could be one matrix" in refused(tmp_path, "1\n" * 2000)
+    frames, _ = frames_of(write(tmp_path, "1,2\n3,4\n\n" * 600))
+    assert [f.image.shape for f in frames] == [(2, 2)] * 600
 
 
 def test_a_dataset_that_was_never_written_or_lies_elsewhere_is_refused(tmp_path: Path) -> None:
