@@ -301,6 +301,10 @@ def damaged(base: Path, written: Sequence[Frame], work: Path, seed: int) -> list
 # -- killed writers ----------------------------------------------------------------------------
 
 
+SOON_S = 0.05
+"""How long after there is a store every second command that makes one is killed."""
+
+
 class Forked:
     """A command in a process of its own, which can be killed, and the frames its writer took."""
 
@@ -340,6 +344,16 @@ class Forked:
         time.sleep(max(0.0, self.begun + after_s - time.monotonic()))
         os.kill(self.pid, signal.SIGKILL)
         os.waitpid(self.pid, 0)
+
+    def kill_once_there(self, store: Path, after_s: float) -> None:
+        """Kill it so long after there is a store, unless it has ended."""
+        ended = False
+        while not ended and not store.exists():
+            time.sleep(0.0005)
+            ended = os.waitpid(self.pid, os.WNOHANG)[0] == self.pid
+        if not ended:
+            self.begun = time.monotonic()
+            self.kill(after_s)
 
 
 class Killing:
@@ -389,8 +403,12 @@ class Killing:
                 raise RuntimeError(f"{name} writes nothing even when it is let")
         self.lay_out(name)
         after_s = rng.random() * 1.1 * self.lasts[name]
+        makes, soon_s = not self.store.exists(), rng.random() * SOON_S
         child = Forked(self.command(name))
-        child.kill(after_s)
+        if makes and rng.random() < 0.5:
+            child.kill_once_there(self.store, soon_s)
+        else:
+            child.kill(after_s)
         verdict, why = self._judge(name, child.n_taken)
         return verdict, f"{name} after {after_s:.3f} s: {why}"
 
