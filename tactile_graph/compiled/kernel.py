@@ -116,6 +116,8 @@ class Kernel(Generic[P, R]):
             self.call = self._counted
 
     def _counted(self, *args: Any) -> R:
+        if _running.as_machine_code:
+            return self.loops(*args)
         return self._first_compiled(*args) if self._enough_to_do(args) else self.plain(*args)
 
     def _enough_to_do(self, args: tuple[Any, ...]) -> bool:

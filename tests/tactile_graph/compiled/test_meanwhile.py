@@ -197,6 +197,24 @@ def test_kernels_that_are_plain_at_first_keep_their_own_rule(world: World) -> No
     assert world.compiled_here == ["inner"]
 
 
+def test_those_within_plain_loops_are_not_compiled_here_however_often_they_are_called(
+    world: World,
+) -> None:
+    later: Kernel[Any, Any] = compiled_later(inner.loops)
+
+    @compiled_as_is
+    def often(x: Any) -> float:
+        total = 0.0
+        for _ in range(300):
+            total += later(x)
+        return total
+
+    with answered_meanwhile():
+        assert often.call(X) == 1800.0
+    assert world.compiled_here == []
+    assert [name for _, name in world.asked] == [often.loops.__qualname__]
+
+
 def test_one_is_told_who_compiles(world: World, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tactile_graph.compiled.preparing.WORTH_A_LINE_S", -1.0)
     said = io.StringIO()
