@@ -143,12 +143,20 @@ class Kernel(Generic[P, R]):
             return self.loops(*args)
         import numpy as np  # only now: a command's help must not pay for it
 
+        before = [(array, array.copy()) for array in _writeable(args)]
         _running.plain_loops, _running.as_machine_code = True, not self.plain_first
         try:
             with np.errstate(all="ignore"):
                 return cast(R, _unboxed(self.loops(*args)))
+        except (ArithmeticError, ValueError):
+            if mode() == "plain":
+                raise
         finally:
             _running.plain_loops = _running.as_machine_code = False
+        # Python refuses what is no number, as exp(1000) and log(0): machine code gives infinity.
+        for array, values in before:
+            array[...] = values
+        return self.compiled(*args)
 
     def _first_compiled(self, *args: Any) -> R:
         if answering and not self.plain_first:
@@ -182,6 +190,15 @@ def n_elements(value: object) -> int:
     if isinstance(value, tuple):
         return sum(map(n_elements, value))
     return int(getattr(value, "size", 1))
+
+
+def _writeable(value: object) -> Iterator[Any]:
+    """Yield the arrays of an argument that loops may write to."""
+    if isinstance(value, tuple):
+        for item in value:
+            yield from _writeable(item)
+    elif getattr(getattr(value, "flags", None), "writeable", False):
+        yield value
 
 
 def _unboxed(answer: Any) -> Any:

@@ -33,6 +33,9 @@ BEYOND, SHARE_BEYOND = 3, 0.03
 NEARLY = 0.03
 """Of a cell's width, by which its height may differ: sizes come out wrong by half of that."""
 
+LEAST = 1e-300
+"""Load, in whatever unit, whose logarithm is taken for that of all below."""
+
 MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
 
@@ -86,10 +89,10 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     touched = int(np.count_nonzero(shows))
     if touched == 0:
         raise Degenerate("no reading rises above the noise: no outline fits")
-    logs = np.log(np.where(shows, loads, 1.0))
+    logs = np.log(np.where(shows, np.maximum(loads, LEAST), 1.0))
     law = image.quantity in ("volt", "siemens", "gram")
     edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if law else -math.inf)
-    logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, 1e-300)), edge))
+    logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, LEAST)), edge))
     states = np.where(shows, ON, UNDER).astype(np.uint8)
     states[~known] = UNKNOWN
     ceiling = ceiling_of(logs[shows])

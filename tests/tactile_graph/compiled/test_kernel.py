@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -152,3 +153,27 @@ def test_plain_loops_within_others_keep_their_kind_of_numbers() -> None:
 
     assert outer(np.zeros(1)) == np.inf
     assert type(inner(np.zeros(1))) is float
+
+
+def grown(values: Any, out: Any) -> float:
+    """Write to ``out`` before it comes to what Python calls an overflow."""
+    for i in range(values.shape[0]):
+        out[i] += 1.0
+        out[i] *= math.exp(values[i])
+    return float(out[0])
+
+
+def test_what_python_refuses_as_no_number_machine_code_answers() -> None:
+    kernel = compiled_later(grown)
+    out = np.ones(2)
+
+    assert kernel(np.array([0.0, 1000.0]), out) == 2.0
+    np.testing.assert_array_equal(out, [2.0, np.inf])
+
+
+def test_plain_code_alone_says_what_it_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", "plain")
+    kernel = compiled_later(grown)
+
+    with pytest.raises(OverflowError):
+        kernel(np.array([1000.0]), np.ones(1))

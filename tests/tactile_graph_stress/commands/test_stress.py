@@ -98,3 +98,9 @@ def test_ctrl_c_shows_and_writes_the_steps_that_are_done(tmp_path, monkeypatch):
 def test_wrong_usage_is_told(args, words):
     with pytest.raises(UsageError, match=words):
         run(*args)
+
+
+@pytest.mark.slow
+def test_no_built_in_step_breaks():
+    result = run()
+    assert result.exit_code == 0, result.output
