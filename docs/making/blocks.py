@@ -25,7 +25,6 @@ from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 from types import ModuleType
-from unittest.mock import patch
 
 import yaml
 
@@ -77,8 +76,11 @@ def blocks_of(page: Path) -> list[Block]:
 def run_blocks(blocks: Iterable[Block], folder: Path) -> list[str]:
     """Run the blocks of one page in a folder, and return what went wrong, in words."""
     module = ModuleType("the_page")  # what blocks define asks for the module it is defined in
-    with patch.dict(sys.modules, {module.__name__: module}):
+    sys.modules[module.__name__] = module
+    try:
         return _troubles(blocks, folder, vars(module))
+    finally:
+        del sys.modules[module.__name__]  # and no more: what a page imports stays imported
 
 
 def _troubles(blocks: Iterable[Block], folder: Path, space: dict[str, object]) -> list[str]:
