@@ -22,6 +22,7 @@ from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
 from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores.in_ranges import ranges_of_stores
 from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
@@ -125,6 +126,9 @@ def recording(
         for frame in opened(one, told, report, label).frames:
             yield frame if frame.index == index else frame.with_index(index)
             index += 1
+
+
+recording.ranges = ranges_of_stores  # type: ignore[attr-defined]
 
 
 class Opened(NamedTuple):
