@@ -13,6 +13,7 @@ from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+from tactile_graph.errors import DataError
 from tactile_graph.many.executor_kind import Opened, Place
 from tactile_graph.many.portion import Portion
 
@@ -22,6 +23,8 @@ TOLERATED = 2
 """Deaths with a portion under way before it is done with no other beside it."""
 DEADLY = 2
 """Deaths over the same frames, alone, by which these are to blame."""
+BROKE = (BrokenExecutor, OSError, EOFError)
+"""What an executor raises that is given work and cannot have it done any more."""
 Done = TypeVar("Done")
 
 
@@ -63,6 +66,7 @@ class InOrder(Generic[Done]):
         self._opened: Opened | None = None
         self._under: deque[_Under] = deque()
         self._without: frozenset[int] = frozenset()
+        self._why = ""
         self.n_deaths = 0
         """How often a worker died."""
 
@@ -112,9 +116,9 @@ class InOrder(Generic[Done]):
         portion = portion.leaving_out(self._without)
         try:
             future = self._at_work().executor.submit(self._work, self._given, portion)
-        except BrokenExecutor as error:  # it broke since, which the portions under way do not know
+        except BROKE as error:  # since, which the portions under way do not know
             future = Future()
-            future.set_exception(error)
+            future.set_exception(BrokenExecutor(str(error)))
         return _Under(portion, future, n_deaths)
 
     def _first_done(self) -> Done:
@@ -122,7 +126,8 @@ class InOrder(Generic[Done]):
         first = self._under[0]
         while True:
             try:
-                return first.future.result()
+                result: Done = first.future.result()
+                return result
             except self._at_work().died as death:
                 self._mend(death)
             if first.n_deaths >= TOLERATED:
@@ -174,7 +179,14 @@ class InOrder(Generic[Done]):
         """Return the frame without which the frames before it kill nobody; None if none does.
 
         The fewest first frames that kill are found by halving; the last of them is to blame.
+
+        Raises
+        ------
+        DataError
+            If workers die without any frame.
         """
+        if not any(self._tried(portion.first(0))[0] for _ in range(DEADLY)):
+            raise DataError("workers", f"they die before their first frame, {self._why}")
         lives, kills = 0, portion.n_frames
         while kills - lives > 1:
             half = (lives + kills) // 2
@@ -193,6 +205,7 @@ class InOrder(Generic[Done]):
                 return True, under.future.result()
             except self._at_work().died as death:
                 self.n_deaths += 1
+                self._why = str(death)
                 if isinstance(death, BrokenExecutor):
                     self._at_work().end()
                     self._opened = None

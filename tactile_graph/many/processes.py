@@ -1,4 +1,4 @@
-"""The executor ``processes``: workers on this machine, which end when the one they work for does."""
+"""The executor ``processes``: workers on this machine, that end with the process they are of."""
 
 from __future__ import annotations
 
@@ -14,9 +14,6 @@ from multiprocessing.context import BaseContext
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 from tactile_graph.plugins.registry import restrict, selected
-
-PRELOADED = "tactile_graph.api.pipeline"
-"""What workers have imported before they are forked, from a process that runs no threads."""
 
 
 def opened(address: str, n_workers: int | None) -> Opened:
@@ -47,8 +44,18 @@ def _context() -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([PRELOADED])
+    context.set_forkserver_preload(_imported())
     return context
+
+
+def _imported() -> list[str]:
+    """Return what this process has imported, for workers to be forked from one that has it too.
+
+    That process runs no threads. Of other packages it imports the outermost module only.
+    """
+    names = [n for n in sys.modules if n.startswith("tactile_graph") and n != "tactile_graph.cli"]
+    others = {n.partition(".")[0] for n in sys.modules} - sys.stdlib_module_names
+    return names + sorted(n for n in others if n.isidentifier() and not n.startswith("_"))
 
 
 def _begin(lifeline: Connection, selection: str) -> None:

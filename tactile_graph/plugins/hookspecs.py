@@ -123,7 +123,7 @@ def tactile_graph_exporters() -> Mapping[str, str]:  # type: ignore[empty-body]
 
 @hook_of("tactile_graph.many.executor_kind:ExecutorKind")
 def tactile_graph_executors() -> Mapping[str, str]:  # type: ignore[empty-body]
-    """Name for ``--on`` -> import string of the `ExecutorKind` that does the work of many frames."""
+    """Name for ``--on`` -> import string of the `ExecutorKind` that works on many frames."""
 
 
 @hook(Answer(wanted='its unit is needed, or "" where it is its own', imported=False))

@@ -132,8 +132,9 @@ def run(
         _check_divided(lines, plot)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     one = _Run(opened, tuple(only), span, seed, lines, plot, verify)
-    if not (divided and one.divided(workers, on, resume)):
-        one.go()
+    if divided:
+        one.divided(workers, on, resume)
+    one.go()
 
 
 def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
@@ -174,8 +175,8 @@ class _Run:
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
 
-    def divided(self, workers: int | None, on: str | None, resume: bool) -> bool:
-        """Let workers run it; return whether they can, after saying why if they cannot."""
+    def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
+        """Let workers run it, and leave the command; say why if they cannot."""
         from tactile_graph.cli.many.many_run import Asked, ManyRun, division_for
         from tactile_graph.cli.terminal import console
         from tactile_graph.many.executor_kind import place_of
@@ -189,7 +190,7 @@ class _Run:
         say = console(stderr=True)
         if division.why_not:
             say.print(f"in one process: {division.why_not}", style="yellow", soft_wrap=True)
-            return False
+            return
         if division.by_recording:
             text = "each recording by one worker: state starts anew with each"
             say.print(text, style="yellow", soft_wrap=True)
