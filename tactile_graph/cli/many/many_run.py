@@ -1,4 +1,4 @@
-"""``run --workers`` from its first frame to its closing lines, or from where an earlier one ended."""
+"""``run --workers`` from its first frame, or where an earlier one ended, to its closing lines."""
 
 from __future__ import annotations
 
