@@ -8,7 +8,7 @@ from typing import Any
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 
-PATIENCE_S = 10
+PATIENCE_S = 5
 MISSING = "a Dask cluster needs Dask: pip install 'tactile-graph[cluster]'"
 
 
