@@ -36,7 +36,7 @@ def opened(address: str, n_workers: int | None) -> Opened:
     there = sum(client.nthreads().values()) or 1
 
     def end() -> None:
-        executor.shutdown(wait=False, cancel_futures=True)
+        executor.shutdown(wait=False)  # it cancels what is under way
         client.close(timeout=PATIENCE_S)
 
     n = there if n_workers is None else min(n_workers, there)

@@ -8,7 +8,7 @@ workers die each time is found by halving, told, and left out.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -50,6 +50,8 @@ class InOrder(Generic[Done]):
         What is the same for all of them.
     left_out : callable
         Told the place of each frame that is left out because workers died of it.
+    without : iterable of int
+        Places of frames that are known to be left out.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class InOrder(Generic[Done]):
         work: Callable[[bytes, Portion], Done],
         given: bytes,
         left_out: Callable[[int], None],
+        without: Iterable[int] = (),
     ) -> None:
         self._place = place
         self._work = work
@@ -65,7 +68,7 @@ class InOrder(Generic[Done]):
         self._tell = left_out
         self._opened: Opened | None = None
         self._under: deque[_Under] = deque()
-        self._without: frozenset[int] = frozenset()
+        self._without = frozenset(without)
         self._why = ""
         self.n_deaths = 0
         """How often a worker died."""

@@ -186,7 +186,7 @@ class ManyRun:
         """Yield what each portion came to, when it is kept."""
         asked = self.asked
         given = pickle.dumps(self._job())
-        with InOrder(asked.place, done, given, self._leave_out) as workers:
+        with InOrder(asked.place, done, given, self._leave_out, self.left_out) as workers:
             again = True
             while again:
                 again = False
