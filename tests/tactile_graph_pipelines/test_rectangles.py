@@ -56,6 +56,7 @@ def test_rectangle_3_errs_by_at_most_half_of_rectangle_2_in_every_column() -> No
     assert (third.mean(axis=0) <= 0.5 * second.mean(axis=0)).all()
 
 
+@pytest.mark.slow
 def test_rectangle_3_finds_the_angle_within_a_degree_and_the_sides_within_0_4_cm() -> None:
     found = errors("rectangle-3", 160, seed=1).mean(axis=0)
     assert found[0] < 1.0
@@ -183,6 +184,7 @@ def test_every_rectangle_is_in_pad_coordinates_whatever_was_done_to_the_image(na
     assert there.angle_rad == pytest.approx(here.angle_rad, abs=1e-6)
 
 
+@pytest.mark.slow  # four fits are compiled
 def test_the_direct_ellipses_agree_with_each_other_on_an_even_pad() -> None:
     source = load("ellipse-direct").with_source(
         "simulate", scene="rectangle-1", frames=5, sigma=0.0, voids=0.0

@@ -61,6 +61,7 @@ def even(mask):
     return image_of(mask.values.astype(float))
 
 
+@pytest.mark.slow
 def test_two_discs_joined_by_a_neck_are_two_contacts_of_half_the_cells_each():
     found = SPLIT(even(NARROW), NARROW)
     assert found.count == 2

@@ -99,6 +99,7 @@ def test_what_bears_no_even_disc_says_so(kind):
         assert kind in ("ring", "two")
 
 
+@pytest.mark.slow
 def test_invalid_elements_say_nothing():
     rng = np.random.default_rng(4)
     truth = Circle(10.0, 9.0, 5.0)

@@ -37,6 +37,7 @@ def test_truth_to_points_to_truth(seed):
     assert got.misfit < 1e-8
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds, dx=st.floats(-1e3, 1e3), dy=st.floats(-1e3, 1e3))
 def test_moved_points_move_the_rectangle(seed, dx, dy):

@@ -12,6 +12,7 @@ from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.state import State
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", range(4))
 def test_a_label_that_costs_no_more_than_others_stays(label):
     """Between 0 and 3 all labels cost the same, if the cell itself has no datum."""

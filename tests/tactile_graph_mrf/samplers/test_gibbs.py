@@ -42,6 +42,7 @@ MODELS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_the_energy_given_is_the_energy_of_what_is_given(model):
     image = picture()
