@@ -62,6 +62,7 @@ def test_a_reading_in_another_unit_gives_the_same_circle() -> None:
     )
 
 
+@pytest.mark.slow
 def test_bayes_rectangle_finds_angle_and_sides() -> None:
     run = load("bayes-rectangle").runner()
     rows = []

@@ -63,6 +63,7 @@ def test_rectangle_3_finds_the_angle_within_a_degree_and_the_sides_within_0_4_cm
     assert found[1:].max() < 0.4
 
 
+@pytest.mark.slow
 def test_read_at_1_cm_a_cell_the_second_evolution_errs_less_than_the_first_as_in_the_thesis() -> (
     None
 ):
@@ -172,6 +173,7 @@ def test_a_frame_full_of_nan_fails_in_words_and_the_run_goes_on(name: str) -> No
     assert second.ok
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rectangle-1", "rectangle-2", "rectangle-3"])
 def test_every_rectangle_is_in_pad_coordinates_whatever_was_done_to_the_image(name: str) -> None:
     source = load(name).with_source("simulate", scene="rectangle-1", frames=1, sigma=0.0, voids=0.0)

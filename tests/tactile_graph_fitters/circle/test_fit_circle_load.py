@@ -109,6 +109,7 @@ def test_invalid_elements_say_nothing():
     assert found.n_cells < FitCircleLoad()(loaded(truth)).n_cells
 
 
+@pytest.mark.slow
 def test_a_disc_half_beyond_the_rim_is_found():
     truth = Circle(10.0, 1.0, 4.0)
     assert off(FitCircleLoad()(loaded(truth)), truth) < 2e-3

@@ -61,6 +61,7 @@ def test_defaults_are_the_thesis():
     assert Model().n_levels == 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_same_seed_same_bits_compiled_or_not(model):
     pytest.importorskip("numba")
