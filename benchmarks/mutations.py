@@ -14,8 +14,9 @@ that call a mutant's (``BY_MACHINE_CODE``) are not changed, and are compiled. ``
 tests that are too slow for that judge the survivors, each with a copy of the machine code on disk.
 A sample is drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
-Left out: annotations, texts, what only draws, prints or writes, and tests that take more than
-``SLOW_S`` seconds of processor time each (their number is told).
+Left out: annotations, texts, what only draws, prints or writes, and tests that take more processor
+time than ``SLOW_S`` each by plain loops, ``COMPILED_SLOW_S`` by machine code (their number is
+told).
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
 BY_MACHINE_CODE = ("thesis", "pipelines")
 """Families without kernels of their own."""
-SLOW_S = 4.0
+SLOW_S, COMPILED_SLOW_S = 1.0, 3.0
+"""Of a test, in plain loops and by machine code."""
 MUTANT_S = 20
 """Processor time after which a test of a mutant is stopped, which is a failure."""
 LEAST_TIMEOUT_S = 120.0
@@ -496,7 +498,7 @@ def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path, no
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nowhere, stream)
-    limit_s = 2 * SLOW_S if mutant is None else MUTANT_S
+    limit_s = slow_s(noted) if mutant is None else MUTANT_S
     compiles = PLAIN not in os.environ and mutant and mutant.family not in BY_MACHINE_CODE
     watch = Watch(COMPILED_S if compiles else limit_s, noted)
     told = ["-n0", "-p", "no:cacheprovider", "-m", "", "--no-header", "--tb=no", *UNWARNED]
@@ -577,7 +579,7 @@ def quick_tests(family: str, kept: Path) -> Tests:
             [str(path)], None, 900.0, False, cache=machine_code(family), noted=family
         )
         took = found.get("seconds", {})
-        good = {n: s for n, s in took.items() if n not in found["failed"] and s <= SLOW_S}
+        good = {n: s for n, s in took.items() if n not in found["failed"] and s <= slow_s(family)}
         left += len(took) - len(good)
         tests.seconds.update(good)
         tests.called.update({n: found["called"][n] for n in good})
@@ -587,6 +589,16 @@ def quick_tests(family: str, kept: Path) -> Tests:
     )
     kept.write_text(json.dumps(tests._asdict()))
     return tests
+
+
+def slow_s(family: str) -> float:
+    """Return the processor time from which a family's tests are left out.
+
+    Parameters
+    ----------
+    family : str
+    """
+    return COMPILED_SLOW_S if family in BY_MACHINE_CODE else SLOW_S
 
 
 def machine_code(family: str) -> str:
