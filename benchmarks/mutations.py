@@ -14,9 +14,9 @@ that call a mutant's (``BY_MACHINE_CODE``) are not changed, and are compiled. ``
 tests that are too slow for that judge the survivors, each with a copy of the machine code on disk.
 A sample is drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
-Left out: annotations, texts, what only draws, prints or writes, and tests that take more processor
-time than ``SLOW_S`` each by plain loops, ``COMPILED_SLOW_S`` by machine code (their number is
-told).
+Left out: annotations, texts, what only draws, prints or writes, flags that only refuse what no
+right code does (``strict`` of a zip, ``frozen``), and tests that take more processor time than
+``SLOW_S`` each by plain loops, ``COMPILED_SLOW_S`` by machine code (their number is told).
 """
 
 from __future__ import annotations
@@ -48,6 +48,8 @@ FAMILIES = ("thesis", "mrf", "filters", "fitters")
 PRESENTING = ("drawing", "book", "commands", "__init__.py")
 """Rooms and files that only present; what draws within others goes by `DRAWS`."""
 DRAWS = re.compile(r"\baxes\b|\bfigure\b|\bpanels\(|_FIGURE\b")
+GUARDS = ("strict", "frozen")
+"""Flags that refuse what no right code does: lists of two lengths in a zip, a changed record."""
 THESIS_WAYS = ("circle-1", "circle-2", "circle-3", "rectangle-1", "rectangle-2", "identify")
 UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
@@ -242,9 +244,11 @@ def _defaults(tree: ast.Module) -> set[int]:
 
 
 def _left_out(tree: ast.Module) -> set[int]:
-    """Return the nodes of annotations, texts, and functions that draw."""
+    """Return the nodes of annotations, texts, mere guards, and functions that draw."""
     roots: list[ast.AST] = []
     for node in ast.walk(tree):
+        if isinstance(node, ast.keyword) and node.arg in GUARDS:
+            roots.append(node)
         roots += [v for n in ("annotation", "returns") if (v := getattr(node, n, None))]
         if isinstance(node, (ast.JoinedStr, ast.Subscript)) and _only_words(node):
             roots.append(node)
@@ -777,7 +781,7 @@ def run(
         if kept is None:
             by = killer_compiled(mutant)
         else:
-            by = killer(mutant, quick_tests(mutant.family, kept / f"{mutant.family}.json"))
+            by = killer(mutant, quick_tests(mutant.family, kept / f"{mutant.family}.tests.json"))
         found[f"{mutant.path}:{mutant.place}"] = asdict(mutant) | {"killed_by": by}
         out.write_text(json.dumps(list(found.values()), indent=1))
         told = by or "SURVIVES"

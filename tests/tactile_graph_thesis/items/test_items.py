@@ -183,6 +183,5 @@ def test_what_an_item_gives_does_not_depend_on_what_was_made_before(work: Work) 
 if __name__ == "__main__":
     warm_up()
     shared = Work(seed=0, readings=20, quick=True)
-    made_of = {i.id: i.make(shared) for i in items() if i.id not in NOISES}
-    texts = {name: told(made) for name, made in made_of.items()}
+    texts = {i.id: told(i.make(shared)) for i in items() if i.id not in NOISES}
     FILE.write_text(yaml.safe_dump(texts, sort_keys=False, width=100, allow_unicode=True))
