@@ -108,7 +108,7 @@ def test_a_change_of_more_than_a_level_is_an_effect(off: float, none: bool) -> N
     assert no_effect("start temperature", other, chosen).holds == none
 
 
-@pytest.mark.parametrize(("energy", "stuck"), [(110.0, True), (109.9, False), (50.0, False)])
+@pytest.mark.parametrize(("energy", "stuck"), [(110.1, True), (109.9, False), (50.0, False)])
 def test_quick_cooling_that_ends_as_low_is_not_frozen(energy: float, stuck: bool) -> None:
     slow = Annealed(HOT, np.array([6.0]), 0.0, 100.0)
     assert freezes(Annealed(QUICK, np.array([6.0]), 0.0, energy), slow).holds == stuck
