@@ -3,7 +3,7 @@
     python benchmarks/mutations.py thesis mrf filters fitters --mutants 60 -o found.json
     python benchmarks/mutations.py --again found.json -o found.json     # survivors once more
     python benchmarks/mutations.py --again found.json --compiled ...    # by machine code
-    python benchmarks/mutations.py --table found.json                   # for docs/mutations.md
+    python benchmarks/mutations.py --table found.json ...               # for docs/mutations.md
 
 A mutant is a module with one comparison, operator, number, flag, condition or returned value
 changed, or a shipped pipeline with one setting changed. It is never written into the tree: a
@@ -43,6 +43,8 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
+import yaml
+
 ROOT = Path(__file__).resolve().parents[1]
 FAMILIES = ("thesis", "mrf", "filters", "fitters")
 PRESENTING = ("drawing", "book", "commands", "__init__.py")
@@ -61,6 +63,7 @@ MUTANT_S = 20
 """Processor time after which a test of a mutant is stopped, which is a failure."""
 LEAST_TIMEOUT_S = 120.0
 COMPILED_S = 600.0
+POLL_S = 0.05
 TESTS_AT_ONCE_S = 5.0
 """Of tests that take about as long together, one process after the other runs as many."""
 PLAIN = "TACTILE_GRAPH_KERNELS"
@@ -484,11 +487,10 @@ def in_a_child(
             if loops:
                 _loops_answer()
             _child(tests, mutant, stop, answer, noted)
-        start = time.monotonic()
-        while time.monotonic() - start < limit_s:
+        for _ in range(math.ceil(limit_s / POLL_S)):  # no clock: it goes on while all is stopped
             if os.waitpid(pid, os.WNOHANG)[0]:
                 return json.loads(answer.read_text()) if answer.exists() else {"code": -1}
-            time.sleep(0.05)
+            time.sleep(POLL_S)
         os.killpg(pid, signal.SIGKILL)
         os.waitpid(pid, 0)
         return {"code": -9}
@@ -789,28 +791,47 @@ def run(
         print(f"{k}/{len(chosen)} {time.monotonic() - start:.0f} s {what}: {told}", flush=True)
 
 
+REASONS = Path(__file__).with_name("mutations.yaml")
+"""Why survivors live: ``path: before -> after`` and the reason, written by hand."""
+
+
 def table(found: list[dict[str, Any]]) -> str:
-    """Return what came out as Markdown.
+    """Return what came out as Markdown: shares, and survivors with the reasons of `REASONS`.
 
     Parameters
     ----------
     found : list of dict
     """
-    lines = ["| family | mutants | killed | share | 95 % interval |", "|---|---|---|---|---|"]
+    why: dict[str, str] = yaml.safe_load(REASONS.read_text()) or {}
+    head = "| family | places | mutants | killed | 95 % interval | change nothing | of the others |"
+    lines = [head, "|---|---|---|---|---|---|---|"]
     for family in dict.fromkeys(one["family"] for one in found):
-        told = [bool(one["killed_by"]) for one in found if one["family"] == family]
-        low, high = wilson(sum(told), len(told))
-        share = sum(told) / len(told)
-        lines.append(
-            f"| {family} | {len(told)} | {sum(told)} | {share:.0%} | {low:.0%} to {high:.0%} |"
-        )
-    lines += ["", "Survivors:", ""]
-    lines += [
-        f"- `{one['path']}:{one['line']}` `{one['before']}` -> `{one['after']}`"
-        for one in found
-        if not one["killed_by"]
-    ]
+        of = [one for one in found if one["family"] == family]
+        killed = sum(bool(one["killed_by"]) for one in of)
+        same = sum(why.get(_key(one), "").startswith("same:") for one in of)
+        low, high = wilson(killed, len(of))
+        shown = f"{killed} ({killed / len(of):.0%}) | {100 * low:.0f} to {100 * high:.0f} %"
+        others = f"{killed / max(len(of) - same, 1):.0%}"
+        places = len(mutants_of(family))
+        lines.append(f"| {family} | {places} | {len(of)} | {shown} | {same} | {others} |")
+    left = sorted((o for o in found if not o["killed_by"]), key=lambda o: (o["path"], o["line"]))
+    lines += ["", "| survivor | change | why |", "|---|---|---|"]
+    for one in left:
+        told = [f"`{_cell(one[name])}`" for name in ("before", "after")]
+        reason = why.get(_key(one), "not noticed by any test").replace("same:", "no difference:")
+        where = f"`{one['path'].partition('tactile_graph_')[2]}` {one['line']}"
+        lines.append(f"| {where} | {' to '.join(told)} | {reason} |")
     return "\n".join(lines)
+
+
+def _key(one: dict[str, Any]) -> str:
+    return f"{one['path']}: {one['before']} -> {one['after']}"
+
+
+def _cell(text: str) -> str:
+    """Return code as it fits a cell of a table."""
+    shown = text if len(text) <= 60 else f"{text[:57]}…"
+    return shown.replace("|", "\\|")
 
 
 def main() -> None:
@@ -821,12 +842,12 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--again", type=Path, help="try these survivors once more")
     parser.add_argument("--compiled", action="store_true", help="with --again: by machine code")
-    parser.add_argument("--table", type=Path)
+    parser.add_argument("--table", type=Path, nargs="+", help="for docs/mutations.md")
     parser.add_argument("--kept", type=Path, default=Path(tempfile.gettempdir()))
     parser.add_argument("-o", "--output", type=Path, default=Path("mutations.json"))
     given = parser.parse_args()
     if given.table:
-        print(table(json.loads(given.table.read_text())))
+        print(table([one for path in given.table for one in json.loads(path.read_text())]))
         return
     given.kept.mkdir(parents=True, exist_ok=True)
     os.chdir(ROOT)
