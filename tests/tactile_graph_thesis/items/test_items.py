@@ -64,9 +64,9 @@ def _columns(table: Table | None) -> dict[str, float]:
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Return whether two are the same, numbers to 2 % or a unit: one reading may go otherwise."""
+    """Return whether two are the same, numbers to 2 %: one reading may go otherwise."""
     if isinstance(one, float | int):
-        return bool(one == pytest.approx(other, rel=0.02, abs=1.0 if one == round(one) else 2e-3))
+        return bool(one == pytest.approx(other, rel=0.02, abs=2e-3))
     if isinstance(one, list):
         return len(one) == len(other) and all(map(alike, one, other))
     if isinstance(one, dict):
