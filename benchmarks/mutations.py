@@ -63,6 +63,8 @@ MUTANT_S = 20
 """Processor time after which a test of a mutant is stopped, which is a failure."""
 LEAST_TIMEOUT_S = 120.0
 COMPILED_S = 600.0
+EVERY = ("test_defaults", "test_constants")
+"""Tests of what every module is imported with; they name none."""
 POLL_S = 0.05
 TESTS_AT_ONCE_S = 5.0
 """Of tests that take about as long together, one process after the other runs as many."""
@@ -631,6 +633,8 @@ def in_stages(mutant: Mutant, tests: Tests) -> list[list[str]]:
         for file in {name.partition("::")[0] for name in tests.seconds}
         if names.search((ROOT / file).read_text()) or names.search(Path(file).stem)
     }
+    if _on_import(mutant):
+        near |= {f for f in (n.partition("::")[0] for n in tests.seconds) if Path(f).stem in EVERY}
     reached = {mutant.path}
     if _on_import(mutant):
         family = python_files(mutant.family)
