@@ -66,6 +66,8 @@ COMPILED_S = 600.0
 EVERY = ("test_defaults", "test_constants")
 """Tests of what every module is imported with; they name none."""
 POLL_S = 0.05
+NO_SUCH_TEST = 4
+"""Exit code of pytest."""
 TESTS_AT_ONCE_S = 5.0
 """Of tests that take about as long together, one process after the other runs as many."""
 PLAIN = "TACTILE_GRAPH_KERNELS"
@@ -706,6 +708,8 @@ def killer(mutant: Mutant, tests: Tests) -> str:
         found = in_a_child(stage, mutant, limit_s, stop=True, cache=cache)
         if found["code"] == -9:
             return "time"
+        if found["code"] == NO_SUCH_TEST:
+            raise SystemExit("tests have changed; take away what --kept holds of them")
         if found["code"]:
             return str((found.get("failed") or ["import"])[0])
     if stages and "compiled_twin_of" in (ROOT / mutant.path).read_text():
