@@ -32,6 +32,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
@@ -73,11 +74,10 @@ class Forest:
     """A random forest on the features: what others would take from the shelf; it knows no limit."""
 
     def __init__(self, database: dict[str, Any], features: list[str]) -> None:
-        from sklearn.ensemble import RandomForestClassifier
-
         self._columns = [database["features"].index(name) for name in features]
         rows = [(r, o["name"]) for o in database["objects"] for r in o["readings"]]
-        self._forest = RandomForestClassifier(500, random_state=0, n_jobs=1)
+        ensemble = import_module("sklearn.ensemble")  # for those who have it; no dependency of ours
+        self._forest = ensemble.RandomForestClassifier(500, random_state=0, n_jobs=1)
         self._forest.fit(np.array([r for r, _ in rows])[:, self._columns], [n for _, n in rows])
 
     def __call__(self, measured: Measurements) -> Nearest:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -184,8 +185,11 @@ def _check_file(path: Path) -> None:
 
 def _no_recording(folder: Path) -> DataError:
     held = sorted(p.name for p in folder.iterdir() if p.is_file())
-    told = one_of(held, most=5) if held else "it holds none"
-    return DataError(str(folder), f"is a directory; give a file in it ({told})")
+    if not held:
+        return DataError(str(folder), "is a directory without a file in it; give a file")
+    told = f"is a directory; give a file in it ({one_of(held, most=5)})"
+    several = f", or all of them: {shlex.quote(str(folder))}/*" if len(held) > 1 else ""
+    return DataError(str(folder), told + several)
 
 
 def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
