@@ -68,6 +68,7 @@ def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
     assert max(sensor["n_contacts"]) >= 2
 
 
+@pytest.mark.slow
 def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_rests(
     tmp_path: Path,
 ) -> None:
@@ -120,6 +121,7 @@ def test_it_is_converted_to_what_it_is_not_and_needs_no_extra(
     assert inspect.other_kind(Path(name)) == ending
 
 
+@pytest.mark.slow
 def test_pipelines_that_cannot_take_it_are_named_with_the_reason(mat: Path) -> None:
     assert "takes volt, got a frame of counts" in run(mat)
 
@@ -142,6 +144,7 @@ def test_one_frame_has_contacts_and_no_noise(tmp_path: Path) -> None:
     assert sensor["n_contacts"] == [2]
 
 
+@pytest.mark.slow
 def test_a_file_that_is_none_is_an_error_and_costs_the_others_nothing(
     tmp_path: Path, mat: Path
 ) -> None:
