@@ -28,6 +28,8 @@ WHY = {
     "skeleton": "as many passes as half the thickest object is wide",
     "bridge_lines": CACHES,
     "find_bad": CACHES,
+    "near_hull": "each point with each side; a hull has few, this outline of all objects many",
+    "line_contacts": "not mended: parts in contact are joined pair by pair",
     "pick_contact": "sorts the contacts, whose records no longer fit the cache",
 }
 """What was found where a time grows faster than the cells."""
@@ -101,7 +103,7 @@ def _faster(points: Sequence[Point]) -> str:
     for of in _scenes(points):
         slope = large_end(of)
         if slope is not None and slope.faster and of[0].step != COPY:
-            found.setdefault(of[0].step, []).append(f"{of[0].scene} {_told(slope)}")
+            found.setdefault(of[0].step, []).append(f"{of[0].scene} {_plain(slope)}")
     if not found:
         return "\n## Faster than the cells\n\nNothing.\n"
     rows = [f"| `{s}` | {', '.join(how)} | {WHY.get(s, '')} |" for s, how in found.items()]
@@ -133,5 +135,8 @@ def _row(points: list[Point]) -> str:
 def _told(slope: Exponent | None) -> str:
     if slope is None:
         return ""
-    text = f"{slope.value:.2f} ({slope.low:.2f}–{slope.high:.2f})"
-    return f"**{text}**" if slope.faster else text
+    return f"**{_plain(slope)}**" if slope.faster else _plain(slope)
+
+
+def _plain(slope: Exponent) -> str:
+    return f"{slope.value:.2f} ({slope.low:.2f}–{slope.high:.2f})"
