@@ -59,20 +59,23 @@ def main() -> None:
     parser.add_argument("--sides", type=int, nargs="+", default=list(SIDES))
     parser.add_argument("--bound", type=float, default=2.0, help="seconds a call may take")
     parser.add_argument("--keep", type=Path, help="JSON file: its points are not measured again")
+    parser.add_argument("--kept", action="store_true", help="measure nothing, show what is kept")
     parser.add_argument("--page", type=Path, help="write the page to this file")
     chosen = parser.parse_args()
     warm_up()
     wanted = chosen.steps or [COPY, *steps()]
     points = _kept(chosen.keep)
     missing = [n for n in wanted if n not in {p.step for p in points}]
-    for point in measured(missing, sorted(chosen.sides), Bounds(chosen.bound)):
+    to_time = [] if chosen.kept else missing
+    for point in measured(to_time, sorted(chosen.sides), Bounds(chosen.bound)):
         points.append(point)
         if chosen.keep:
             chosen.keep.write_text(json.dumps([p.__dict__ for p in points]))
     shown = sorted((p for p in points if p.step in wanted), key=lambda p: (p.family, p.step))
     print(table(shown))
     if chosen.page:
-        chosen.page.write_text(page(shown, chosen.bound))
+        timed = {p.step for p in shown}
+        chosen.page.write_text(page(shown, chosen.bound, [n for n in wanted if n not in timed]))
 
 
 def _kept(file: Path | None) -> list[Point]:

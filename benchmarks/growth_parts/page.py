@@ -14,7 +14,6 @@ HEAD = (
 )
 SORTED = "sorts its points: n log n"
 PAGES = "memory that goes back to the system with each large array, see above"
-CACHES = "what it keeps no longer fits the cache: 8 numbers a cell and more"
 WHY = {
     "hull": SORTED,
     "hull_graham": SORTED,
@@ -26,11 +25,8 @@ WHY = {
     "rotate_points": PAGES,
     "fit_ellipse_direct": PAGES,
     "skeleton": "as many passes as half the thickest object is wide",
-    "bridge_lines": CACHES,
-    "find_bad": CACHES,
     "near_hull": "each point with each side; a hull has few, this outline of all objects many",
-    "line_contacts": "not mended: parts in contact are joined pair by pair",
-    "pick_contact": "sorts the contacts, whose records no longer fit the cache",
+    "pick_contact": "sorts the contacts: n log n",
 }
 """What was found where a time grows faster than the cells."""
 
@@ -76,10 +72,12 @@ MENDED = {
 }
 
 
-def page(points: Sequence[Point], bound_s: float) -> str:
-    """Return the whole page."""
+def page(points: Sequence[Point], bound_s: float, missing: Sequence[str] = ()) -> str:
+    """Return the whole page; ``missing`` steps are told not to be timed."""
     told = INTRODUCTION.format(bound=bound_s, n=LARGE_END, faster=FASTER)
-    return f"{told}{_mended(points)}{_faster(points)}\n## Every step\n\n{table(points)}\n"
+    left = f"\nNot timed: {', '.join(f'`{name}`' for name in missing)}.\n" if missing else ""
+    body = f"\n## Every step\n\n{table(points)}\n"
+    return f"{told}{_mended(points)}{_faster(points)}{body}{left}"
 
 
 def _mended(points: Sequence[Point]) -> str:
@@ -98,15 +96,18 @@ def table(points: Sequence[Point]) -> str:
 
 
 def _faster(points: Sequence[Point]) -> str:
-    """Return what surely grows faster than the cells, each with the why."""
+    """Return what surely grows faster than the cells, of steps timed on enough sizes to tell."""
     found: dict[str, list[str]] = {}
     for of in _scenes(points):
-        slope = large_end(of)
+        slope = large_end(of) if sum(bool(p.rounds_s) for p in of) >= LARGE_END else None
         if slope is not None and slope.faster and of[0].step != COPY:
             found.setdefault(of[0].step, []).append(f"{of[0].scene} {_plain(slope)}")
     if not found:
         return "\n## Faster than the cells\n\nNothing.\n"
-    rows = [f"| `{s}` | {', '.join(how)} | {WHY.get(s, '')} |" for s, how in found.items()]
+    rows = [
+        f"| `{s}` | {', '.join(how)} | {WHY.get(s, 'not looked into yet')} |"
+        for s, how in found.items()
+    ]
     head = "| step | exponent over the largest pads | why |\n|---|---|---|"
     return "\n## Faster than the cells\n\n" + "\n".join([head, *rows]) + "\n"
 

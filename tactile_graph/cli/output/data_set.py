@@ -80,7 +80,7 @@ class DataSet:
         if before is not None and before["made_by"] != self._made_by:
             raise UsageError(
                 f"-o {export.name}: holds results of {before['pipeline']!r}, as it was then: "
-                "another pipeline, other settings or outputs; name another folder, or remove this one"
+                "another pipeline, other settings or outputs; name another folder, or remove it"
             )
         self._manifest: dict[str, Any] = before or {
             "kind": KIND,
