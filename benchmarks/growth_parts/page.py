@@ -24,7 +24,7 @@ WHY = {
     "subdivide_image": PAGES,
     "rotate_points": PAGES,
     "fit_ellipse_direct": PAGES,
-    "skeleton": "as many passes as half the thickest object is wide",
+    "skeleton": "scikit-image's thinning: pass after pass, more for thicker objects",
     "near_hull": "each point with each side; a hull has few, this outline of all objects many",
     "pick_contact": "sorts the contacts: n log n",
 }
