@@ -120,11 +120,22 @@ def recording(
         skip=skip,
     )
     index = 0
-    for one in paths:
-        label = one.name if len(paths) > 1 else ""
+    labels = labels_of(paths) if len(paths) > 1 else [""]
+    for one, label in zip(paths, labels, strict=True):
         for frame in opened(one, told, report, label).frames:
             yield frame if frame.index == index else frame.with_index(index)
             index += 1
+
+
+def labels_of(paths: list[Path]) -> list[str]:
+    """Return what frames of several files are labelled with: names, with folders if names recur."""
+    names = [path.name for path in paths]
+    longest = max(len(path.parts) for path in paths)
+    for n_parts in range(2, longest + 1):
+        if len({*names}) == len({*paths}):
+            break
+        names = ["/".join(path.parts[-n_parts:]) for path in paths]
+    return names
 
 
 class Opened(NamedTuple):
