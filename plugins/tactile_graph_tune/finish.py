@@ -49,6 +49,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
             Point("", p.choice, _predicted(tuning, p.choice)) for p in _some(tuning.front.points)
         ),
         bound=tuning.bound(),
+        everything_us=tuning.everything_us(),
         worths=worths,
         settings=tuning.variants[tuning.chosen.variant].settings,
         ratio=_interval(tuning, tuned_us, given_us),

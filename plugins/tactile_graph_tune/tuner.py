@@ -64,6 +64,11 @@ class Tuning:
     always: Choice
     chosen: Choice
 
+    def everything_us(self) -> float:
+        """Return the mean time of the frames that report, nothing skipped."""
+        nodes = self.variants[0].table.nodes.values()
+        return sum(float(c.time_us[self.split.reporting].mean()) for c in nodes)
+
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""
         rows = self.split.reporting

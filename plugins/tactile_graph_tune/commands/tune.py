@@ -42,9 +42,9 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @pipeline_argument
 @click.argument("recordings", metavar="[RECORDING]...", nargs=-1)
 @click.option("--truth", type=click.Path(path_type=Path), metavar="FILE",
-              help="What truly lay there, frame by frame, for recordings that do not hold it.")  # fmt: skip
+              help="What truly lay there, for recordings that do not hold it.")  # fmt: skip
 @click.option("--held-out", multiple=True, metavar="RECORDING",
-              help="Report on this recording, and choose by the others; can be repeated.")  # fmt: skip
+              help="Report on this recording, choose by the others; can be repeated.")  # fmt: skip
 @click.option("--source", metavar="STEP", help="Take frames from this source step.")
 @click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
               help="A setting of the source; can be repeated.")  # fmt: skip

@@ -19,6 +19,7 @@ def as_json(tuned: Tuned) -> str:
         "points": {label: _point(p) for label, p in tuned.points.items()},
         "front": [_point(p) for p in tuned.front],
         "oracle": {"time_us": tuned.bound.time_us.tolist(), "error": tuned.bound.loss.tolist()},
+        "everything_us": tuned.everything_us,
         "guards": [as_data(w) for w in tuned.worths],
         "settings": as_data(tuned.settings),
         "time_ratio": as_data(tuned.ratio),

@@ -18,11 +18,11 @@ def write_figure(tuned: Tuned, name: str) -> None:
     axes = figure.subplots()
     judged = tuned.judged
     bound = tuned.bound
-    axes.step(bound.time_us.clip(0.1), bound.loss, where="post", color=INK, lw=1.2, ls=":",
+    axes.plot(bound.time_us, bound.loss, color=INK, lw=1.2, ls=":",
               label="oracle: knows each frame's errors")  # fmt: skip
     front = tuned.front
     axes.plot([p.weight.time_us.mean for p in front], [p.weight.loss.mean for p in front],
-              "o", ms=4, color=OWN, alpha=0.5, label="front, on frames it was not chosen by")  # fmt: skip
+              "o", ms=4, color=OWN, alpha=0.5, label="front, on unseen frames")  # fmt: skip
     marks = {GIVEN: ("s", HAND), ALWAYS: ("D", BEST), CHOSEN: ("*", OWN)}
     for label, (mark, colour) in marks.items():
         weight = tuned.points[label].weight
@@ -31,6 +31,8 @@ def write_figure(tuned: Tuned, name: str) -> None:
                       yerr=[[loss - low], [high - loss]], fmt=mark, color=colour, capsize=2,
                       ms=13 if label == CHOSEN else 8, lw=1.0, label=label)  # fmt: skip
     axes.set_xscale("log")
+    if all(p.weight.loss.mean > 0.0 for p in (*front, *tuned.points.values())):
+        axes.set_yscale("log")
     least = min([p.weight.time_us.mean for p in front] + [tuned.points[CHOSEN].weight.time_us.mean])
     axes.set_xlim(left=max(0.1, 0.1 * least))
     axes.set_xlabel("time a frame, µs (sum of its steps)")
