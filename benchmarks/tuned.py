@@ -67,12 +67,15 @@ class Case:
         Frames of the project's simulator: how many, and of which seed.
     other : callable
         Frames of a kind of pad of the second simulator: which, how many, and of which seed.
+    fields : tuple of str
+        What guards may ask: what a pad's units, its noise and the weight of things say nothing of.
     """
 
     ladder: str
     by_hand: str
     own: Callable[[int, int], Frames]
     other: Callable[[str, int, int], Frames]
+    fields: tuple[str, ...]
 
 
 def simulated(scene: str) -> Callable[[int, int], Frames]:
@@ -130,14 +133,27 @@ def streamed(n: int, seed: int) -> Frames:
     return list(stream(n, seed).frames)
 
 
+COUNTED = ("footprint.mask.count", "footprint.mask.fraction")
+CIRCLES = ("cells.share", *COUNTED, "even.uneven", "even.n_cells", "even.centre_std_cm",
+           "even.radius_std_cm", "even.radius_cm", "likely.centre_std_cm", "likely.surprise",
+           "likely.fits", "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
+RECTANGLES = (*COUNTED, "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise",
+              "likely.fits", "located.centre_std_cm", "located.angle_std_deg",
+              "located.surprise", "located.fits", "loaded.length_cm",
+              "loaded.breadth_cm")  # fmt: skip
+NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distance",
+            "near.margin", "likely.known", "likely.probability")  # fmt: skip
 CASES = {
-    "circles": Case("circle-ladder", "adaptive", simulated("discs"), benched("disc")),
+    "circles": Case("circle-ladder", "adaptive", simulated("discs"), benched("disc"), CIRCLES),
     "rectangles": Case(
-        "rectangle-ladder", "locate-rectangle", simulated("rectangles"), benched("rectangle")
+        "rectangle-ladder", "locate-rectangle", simulated("rectangles"), benched("rectangle"),
+        RECTANGLES,
     ),
-    "identification": Case("identify-ladder", "identify-likelihood", simulated("identify"), named),
-    "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty),
-}
+    "identification": Case(
+        "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
+    ),
+    "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty, CIRCLES),
+}  # fmt: skip
 
 
 # -- one case ----------------------------------------------------------------------------------
@@ -178,7 +194,9 @@ def run(name: str, n: int, seed: int) -> tuple[dict[str, Told], Tuned]:
         "unseen pads": frames_of(case, UNSEEN, n, seed + 2, own=False),
     }
     apart = [f for frames in told.values() for f in frames]
-    tuning = searched(Request(ladder, seed=seed), choosing, apart, lambda what, n, of: None)
+    tuning = searched(
+        Request(ladder, fields=case.fields, seed=seed), choosing, apart, lambda what, n, of: None
+    )
     rows = np.split(tuning.split.reporting, [len(told["unseen frames"])])
     found, whole = {}, finished(tuning, lambda what, n, of: None)
     for (label, frames), part in zip(told.items(), rows, strict=True):

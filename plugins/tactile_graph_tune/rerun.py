@@ -51,4 +51,6 @@ def rerun(
                 taken[label][k, i] = time.perf_counter() - start
                 if k == 0:
                     found[label][i] = losses[label](frame, result.outcome_at)
-    return {k: (1e6 * np.median(taken[k], axis=0), found[k]) for k in pipelines}
+    # What cannot be held against the truth of a frame is no answer to it.
+    lost = {k: np.where(np.isnan(x), judged.price, x) for k, x in found.items()}
+    return {k: (1e6 * np.median(taken[k], axis=0), lost[k]) for k in pipelines}

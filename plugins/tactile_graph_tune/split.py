@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
@@ -61,19 +62,39 @@ def split_of(frames: Sequence[Frame], n_apart: int, seed: int) -> Split:
             f"others tell what came of it, so {LEAST_FRAMES} are needed at least"
         )
     groups = _blocks([f.label for f in frames])
-    rng = np.random.default_rng([seed, 5])
     rows = np.arange(n)
     if n_apart:
         if n_apart >= n:
             raise UsageError("no frame with a known truth is left to choose by")
         return Split(rows[: n - n_apart], rows[n - n_apart :], groups, "recordings named for it")
-    labels = np.unique([f.label for f in frames], return_inverse=True)[1]
-    several = labels.max() > 0
-    parts = labels if several else groups
-    mixed = rng.permutation(np.unique(parts))
-    chosen = np.isin(parts, mixed[: (len(mixed) + 1) // 2])
+    chosen, several = _half(frames, groups, rows, np.random.default_rng([seed, 5]))
     how = "recording by recording" if several else "by stretches of neighbouring frames"
     return Split(rows[chosen], rows[~chosen], groups, how)
+
+
+def halves_of(frames: Sequence[Frame], split: Split, seed: int) -> list[NDArray[np.int64]]:
+    """Return the rows that choose in two halves, recording by recording if there are several.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+    split : Split
+    seed : int
+    """
+    rng = np.random.default_rng([seed, 6])
+    first, _ = _half(frames, split.groups, split.choosing, rng)
+    return [split.choosing[first], split.choosing[~first]]
+
+
+def _half(
+    frames: Sequence[Frame], groups: NDArray[np.int64], rows: NDArray[np.int64], rng: Generator
+) -> tuple[NDArray[np.bool_], bool]:
+    """Return which rows are in the first half, and whether recordings were told apart."""
+    labels = np.unique([frames[k].label for k in rows], return_inverse=True)[1]
+    several = bool(labels.max() > 0)
+    parts = labels if several else groups[rows]
+    mixed = rng.permutation(np.unique(parts))
+    return np.isin(parts, mixed[: (len(mixed) + 1) // 2]), several
 
 
 def _blocks(labels: Sequence[str]) -> NDArray[np.int64]:

@@ -15,20 +15,21 @@ from tactile_graph_compare.score.answers import answers_of
 from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
-from tactile_graph_tune.search.front import Choice, Front, Weighed
+from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.oracle import Bound, Options, bound_of, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
 from tactile_graph_tune.search.search import Search, Space, orders_of, pruned
-from tactile_graph_tune.split import Split, split_of
+from tactile_graph_tune.search.select import Goal, limit_of, merged, selected
+from tactile_graph_tune.split import Split, halves_of, split_of
 from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.losses import PRICES, quantity_of
-from tactile_graph_tune.table.record import Judged, leaves_of, record
+from tactile_graph_tune.table.record import Judged, Rounds, leaves_of, record
 from tactile_graph_tune.tuned import Tuned
 
 COSTLY = 0.1
 """Share of all time from which a step without a guard is offered one."""
 MOST_OFFERED = 3
-N_PRICES = 9
+N_PRICES = 7
 Told = Callable[[str, int, int], None]
 """Is told what is done, how far, and how far it goes."""
 
@@ -127,18 +128,35 @@ def searched(
             f"{judged.quantity!r}: choose another with --error, or leave these frames out"
         )
     _check_answers(variants, judged)
-    rows = split.choosing
-    spaces = [_space(v, v.table.taken(rows), request) for v in variants]
-    front, always = Front(), _always(spaces[0])
+    spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
+    always = _always(spaces[0])
     if not spaces[0].questions.fields and len(spaces) == 1 and len(spaces[0].given.order) < 2:
         raise UsageError(
             f"pipeline {request.pipeline.name!r}: nothing to choose: it has no guard, no first_of "
             "that answers, and no costly step before which a field is known; mark a setting free "
             "(--free node.setting=low:high)"
         )
-    _search(spaces, front, always, judged, told)
-    chosen = _chosen(request, spaces, front, always)
+    folds = halves_of(every, split, request.seed)
+    fronts = [Front() for _ in folds]
+    for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
+        half = [_space(v, v.table.taken(rows), request) for v in variants]
+        _search(half, front, judged)
+        told("weigh choices", k + 1, len(folds))
+
+    def predict(choice: Choice) -> Predicted:
+        return variants[choice.variant].predicted(choice)
+
+    goal = _goal(request, (spaces[0].given, always))
+    chosen = selected(goal, fronts, folds, predict)
+    allowed = limit_of(goal, split.choosing, predict)
+    chosen = pruned(spaces[chosen.variant], chosen, allowed, goal.by_time)
+    front = merged(fronts, split.choosing, predict)
     return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
+
+
+def _goal(request: Request, references: tuple[Choice, ...]) -> Goal:
+    by_time = request.most_us is not None
+    return Goal(request.most_us if by_time else request.most_loss, by_time, references)
 
 
 # -- before the search -----------------------------------------------------------------------
@@ -173,7 +191,8 @@ def _variants(
     while True:
         parted = [d.keeping(kept) for d in given]
         opened = [d.opened() for d in parted]
-        tables = record(opened, frames, judged, request.rounds, request.seed, told)
+        also = [c.field for p in parted[0].places.values() for c in p.given]
+        tables = record(opened, also, frames, judged, Rounds(request.rounds, request.seed, told))
         nodes = set().union(*(bound(p, t) for p, t in zip(opened, tables, strict=True)))
         stay = {p.name for d in parted for p in d.places.values() if nodes & set(p.nodes)}
         if not stay:
@@ -253,46 +272,19 @@ def _always(space: Space) -> Choice:
 # -- the search ------------------------------------------------------------------------------
 
 
-def _search(
-    spaces: Sequence[Space], front: Front, always: Choice, judged: Judged, told: Told
-) -> None:
+def _search(spaces: Sequence[Space], front: Front, judged: Judged) -> None:
     own = spaces[0]
-    whole = own.cascade.predicted(own.table, always.order, {})
+    whole = own.cascade.predicted(own.table, own.given.order, {})
     unit_us = float(whole.time_us.mean()) / judged.price
     prices = (unit_us * np.geomspace(0.3, 3000.0, N_PRICES)).tolist()
-    jobs = []
     for space in spaces:
         alone = [
             float(space.cascade.predicted(space.table, (r,), {}).time_us.mean())
             for r in space.given.order
         ]
-        jobs += [(space, order) for order in orders_of(space.given.order, alone)]
-    for k, (space, order) in enumerate(jobs):
-        Search(space, front, prices).run([order])
-        told("weigh choices", k + 1, len(jobs))
-
-
-def _chosen(request: Request, spaces: Sequence[Space], front: Front, always: Choice) -> Choice:
-    """Return what is asked for: the cheapest as exact as the best the file has, if nothing else."""
-    by_time = request.most_us is not None
-    allowed = request.most_us if by_time else request.most_loss
-    if allowed is None:
-        allowed = min(_loss(spaces[0], c) for c in (spaces[0].given, always))
-    found = front.best(allowed) if by_time else front.cheapest(allowed)
-    if found is None:
-        raise UsageError(_out_of_reach(allowed, by_time, front.points))
-    choice = found.choice
-    return pruned(spaces[choice.variant], choice, allowed, by_time)
+        Search(space, front, prices).run(orders_of(space.given.order, alone))
 
 
 def _loss(space: Space, choice: Choice) -> float:
     found = space.cascade.predicted(space.table, choice.order, choice.chosen)
     return float(found.loss.mean())
-
-
-def _out_of_reach(allowed: float, by_time: bool, points: Sequence[Weighed]) -> str:
-    if by_time:
-        least = points[0].time_us
-        return f"--time-at-most {allowed:g}: the cheapest choice takes {least:.3g} µs a frame"
-    least = points[-1].loss
-    return f"--error-at-most {allowed:g}: the best choice has a mean error of {least:.3g}"

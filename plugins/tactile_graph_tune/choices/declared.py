@@ -268,5 +268,6 @@ def _leaves(value: Any) -> Iterator[str]:
 
 
 def words_in(texts: Iterable[str]) -> set[str]:
-    """Return the names at the root of the references in some texts."""
-    return {word for text in texts for word in re.findall(r"(?<![\w.])[A-Za-z_]\w*", text)}
+    """Return the names at the root of the references in some texts, quoted words left aside."""
+    bare = (re.sub(r"'[^']*'|\"[^\"]*\"", "", text) for text in texts)
+    return {word for text in bare for word in re.findall(r"(?<![\w.])[A-Za-z_]\w*", text)}

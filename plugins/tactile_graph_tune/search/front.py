@@ -61,11 +61,3 @@ class Front:
         if at and self.points[at - 1].time_us == time_us:
             at -= 1
         self.points[at:end] = [Weighed(time_us, loss, choice(k))]
-
-    def cheapest(self, most_loss: float) -> Weighed | None:
-        """Return the cheapest whose error is no greater; None without any."""
-        return next((p for p in self.points if p.loss <= most_loss), None)
-
-    def best(self, most_us: float) -> Weighed | None:
-        """Return the one of least error that takes no longer; None without any."""
-        return next((p for p in reversed(self.points) if p.time_us <= most_us), None)

@@ -32,13 +32,20 @@ class Judged(NamedTuple):
     price: float
 
 
+class Rounds(NamedTuple):
+    """How often everything runs, times being medians; the seed; and who is told how far it is."""
+
+    n: int
+    seed: int
+    told: Told
+
+
 def record(
     pipelines: Sequence[Pipeline],
+    also: Sequence[str],
     frames: Sequence[Frame],
     judged: Judged,
-    rounds: int,
-    seed: int,
-    told: Told,
+    rounds: Rounds,
 ) -> list[Table]:
     """Return the table of each pipeline; nodes they have in common run once.
 
@@ -46,12 +53,11 @@ def record(
     ----------
     pipelines : sequence of Pipeline
         Without the guards that are to be chosen.
+    also : sequence of str
+        Fields that are asked already, whatever they say.
     frames : sequence of Frame
     judged : Judged
-    rounds : int
-        How often everything runs: times are the medians.
-    seed : int
-    told : callable
+    rounds : Rounds
 
     Raises
     ------
@@ -61,17 +67,17 @@ def record(
     for pipeline in pipelines:
         _check(pipeline)
     merged = merge(pipelines, [tuple(p.nodes) for p in pipelines])
-    runner = merged.pipeline.runner(seed=seed)
+    runner = merged.pipeline.runner(seed=rounds.seed)
     for frame in frames[:WARM_FRAMES]:
         runner(frame)
-    rows = [_Rows(p, m, judged) for p, m in zip(pipelines, merged.members, strict=True)]
-    for k in range(rounds):
+    rows = [_Rows(p, m, also, judged) for p, m in zip(pipelines, merged.members, strict=True)]
+    for k in range(rounds.n):
         for i, frame in enumerate(frames):
             runner.forget()
             result = runner(frame)
             for its in rows:
                 its.add(result, first=k == 0)
-            told(k * len(frames) + i + 1, rounds * len(frames))
+            rounds.told(k * len(frames) + i + 1, rounds.n * len(frames))
     return [its.table(len(frames)) for its in rows]
 
 
@@ -100,11 +106,13 @@ class _Field:
 class _Rows:
     """What was recorded so far of one pipeline."""
 
-    def __init__(self, pipeline: Pipeline, member: Member, judged: Judged) -> None:
+    def __init__(
+        self, pipeline: Pipeline, member: Member, also: Sequence[str], judged: Judged
+    ) -> None:
         self._pipeline, self._member, self._judged = pipeline, member, judged
         self._states: dict[str, list[tuple[bool, bool, bool]]] = {n: [] for n in pipeline.nodes}
         self._times: list[list[float]] = []
-        parted = [(f, *f.split(".")) for f in guard_fields(pipeline)]
+        parted = [(f, *f.split(".")) for f in dict.fromkeys([*guard_fields(pipeline), *also])]
         self._fields = [_Field(f, node, tuple(path), []) for f, node, *path in parted]
         leaves = leaves_of(pipeline, pipeline.outputs[judged.answer])
         self._losses = {
