@@ -188,9 +188,11 @@ def told_of(worth: GuardWorth, tuning: Tuning) -> str:
     """Return what a guard saves and costs, in words."""
     unit = tuning.judged.unit
     saved, cost = worth.saved_us, worth.cost
+    low, high = sorted((abs(saved.low), abs(saved.high)))
+    share = f", {100 * worth.saved_share:.0f} %" if saved.mean > 0.0 else ""
+    took = "saves" if saved.mean > 0.0 else "takes"
     return (
-        f"saves {saved.mean:.3g} us a frame ({saved.low:.3g} to {saved.high:.3g}), "
-        f"{100 * worth.saved_share:.0f} %; costs {cost.mean:+.2g} {unit} of error "
-        f"({cost.low:+.2g} to {cost.high:+.2g}); does not hold in {worth.n_stopped} of "
-        f"{len(tuning.split.reporting)}"
+        f"{took} {abs(saved.mean):.3g} us a frame ({low:.3g} to {high:.3g}){share}; error "
+        f"{cost.mean:+.2g} {unit} ({cost.low:+.2g} to {cost.high:+.2g}); does not hold in "
+        f"{worth.n_stopped} of {len(tuning.split.reporting)} frames"
     ).replace("  ", " ")

@@ -29,8 +29,8 @@ def rerun(
     frames : sequence of Frame
     judged : Judged
     rounds : int
-        In each every pipeline has its turn with each frame; times are medians over them, of whole
-        frames: what lies between the steps counts too.
+        In each every pipeline has its turn with each frame; times are medians over them, processor
+        time of whole frames: what lies between the steps counts too.
     seed : int
     """
     runners = {k: p.runner(seed=seed) for k, p in pipelines.items()}
@@ -46,9 +46,9 @@ def rerun(
         for label, runner in runners.items():
             for i, frame in enumerate(frames):
                 runner.forget()
-                start = time.perf_counter()
+                start = time.process_time()
                 result = runner(frame)
-                taken[label][k, i] = time.perf_counter() - start
+                taken[label][k, i] = time.process_time() - start
                 if k == 0:
                     found[label][i] = losses[label](frame, result.outcome_at)
     # What cannot be held against the truth of a frame is no answer to it.

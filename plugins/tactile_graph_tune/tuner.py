@@ -29,7 +29,7 @@ from tactile_graph_tune.tuned import Tuned
 COSTLY = 0.1
 """Share of all time from which a step without a guard is offered one."""
 MOST_OFFERED = 3
-N_PRICES = 7
+N_PRICES = 5
 Told = Callable[[str, int, int], None]
 """Is told what is done, how far, and how far it goes."""
 

@@ -126,6 +126,7 @@ class Declared:
         """
         data = copy.deepcopy(self.data)
         data.update(head or {})
+        data = {k: data[k] for k in _in_order(data)}
         for place in self.places.values():
             if place.named:
                 data["conditions"][place.name] = " and ".join(
@@ -235,6 +236,12 @@ def _places(data: Mapping[str, Any]) -> tuple[dict[str, Place], dict[str, tuple[
             known = places.get(condition, Place(condition, (), its, named=True))
             places[condition] = replace(known, nodes=(*known.nodes, name))
     return places, fixed
+
+
+def _in_order(keys: Iterable[str]) -> list[str]:
+    """Return the entries of a file as files have them: what it is first."""
+    first = [k for k in ("pipeline", "about", "evolves") if k in keys]
+    return [*first, *(k for k in keys if k not in first)]
 
 
 def _drop_unused(data: dict[str, Any], kept: Collection[str]) -> None:

@@ -26,7 +26,7 @@ MOST_ASKED = 2
 """Comparisons at one place."""
 GAIN = 0.003
 """Share of the objective that one comparison more has to bring."""
-MOST_SWEEPS = 3
+MOST_SWEEPS = 2
 ALL_ORDERS = 3
 """Rungs up to which every order is tried; of more, only those from cheap to dear."""
 
