@@ -8,7 +8,8 @@ Each case is a ladder of ``benchmarks/ladders``: every way to one answer, guarde
 that people have today. It is tuned on frames of the project's simulator and of half the kinds of
 pad of `second_simulator`, which shares no code with it, and told on two sets that chose nothing:
 *unseen frames*, of the same pads with another seed, and *unseen pads*, of the other kinds. The case
-``stream`` holds 80 % empty frames, 15 % clean and 5 % hard ones.
+``stream`` holds 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` is half of it and half
+of ``circles``.
 
 What would refute the finding, said before it was measured: time at no greater error is more than
 half of today's, or less than 80 % of what an oracle saves (one that knows every frame's errors) is
@@ -143,6 +144,17 @@ RECTANGLES = (*COUNTED, "likely.centre_std_cm", "likely.angle_std_deg", "likely.
               "loaded.breadth_cm")  # fmt: skip
 NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distance",
             "near.margin", "likely.known", "likely.probability")  # fmt: skip
+
+
+def half_stream(n: int, seed: int) -> Frames:
+    """Half discs one after the other, half the stream: what a pipeline for all has to bear."""
+    return simulated("discs")(n // 2, seed) + streamed(n - n // 2, seed)
+
+
+def half_empty(kind: str, n: int, seed: int) -> Frames:
+    return benched("disc")(kind, n // 2, seed) + mostly_empty(kind, n - n // 2, seed)
+
+
 CASES = {
     "circles": Case("circle-ladder", "adaptive", simulated("discs"), benched("disc"), CIRCLES),
     "rectangles": Case(
@@ -152,6 +164,7 @@ CASES = {
     "identification": Case(
         "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
     ),
+    "mixture": Case("circle-ladder", "adaptive", half_stream, half_empty, CIRCLES),
     "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty, CIRCLES),
 }  # fmt: skip
 
