@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tactile_graph import Pipeline
+from tactile_graph.plugins.registry import installed
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.text import Notes
 from tactile_graph_tune.rerun import rerun
@@ -165,13 +165,10 @@ def _text(tuning: Tuning, worths: tuple[GuardWorth, ...]) -> str:
 
 
 def _parent(own: Pipeline) -> Mapping[str, str]:
-    """Return what the tuned file says it evolved from, if another file can name it."""
-    from tactile_graph.plugins.registry import installed
-
+    """Return what the tuned file says it evolved from: what it can name wherever it lies."""
     registry = own.registry or installed()
-    if registry.has("pipelines", own.name):
-        return {"evolves": own.name}
-    return {"evolves": Path(own.file).name} if own.file.endswith((".yaml", ".yml")) else {}
+    names = (own.name, own.evolves)
+    return {"evolves": next((n for n in names if n and registry.has("pipelines", n)), "")}
 
 
 def _head(tuning: Tuning) -> str:

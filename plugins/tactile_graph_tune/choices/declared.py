@@ -118,7 +118,7 @@ class Declared:
             The rungs, first first.
         chosen : mapping
         head : mapping, optional
-            Entries in place of the file's own: its name, what it is about.
+            Entries in place of the file's own: its name, what it is about; empty for none.
         notes : Notes, optional
             Comments by place.
         whole : bool
@@ -126,7 +126,7 @@ class Declared:
         """
         data = copy.deepcopy(self.data)
         data.update(head or {})
-        data = {k: data[k] for k in _in_order(data)}
+        data = {k: data[k] for k in _in_order(data) if data[k] != ""}
         for place in self.places.values():
             if place.named:
                 data["conditions"][place.name] = " and ".join(
