@@ -203,6 +203,10 @@ class Told(NamedTuple):
     share: float
     everything_us: float
     oracle_us: float
+    where_full: tuple[float, float]
+    """Mean error by hand and tuned where something truly lies."""
+    false: tuple[float, float]
+    """Share of the empty frames that are answered all the same, by hand and tuned."""
 
 
 def run(name: str, n: int, seed: int) -> tuple[dict[str, Told], Tuned]:
@@ -235,18 +239,23 @@ def _told(name: str, label: str, frames: Frames, tuning: Tuning, by_hand: Pipeli
     groups = tuning.split.groups[tuning.split.reporting]
     (hand_us, hand), (tuned_us, own) = ran["hand"], ran[CHOSEN]
     at = tuned.points[CHOSEN].weight.loss.mean
+    full = np.array([bool(f.truth) for f in frames])
     return Told(
         name, label, len(frames), float(hand_us.mean()), float(tuned_us.mean()),
         interval_of(tuned_us, groups, 0, hand_us), float(hand.mean()), float(own.mean()),
         interval_of(own - hand, groups, 0), tuned.share_of_saving(),
         tuned.everything_us, tuned.bound.time_at(at),
+        (float(hand[full].mean()), float(own[full].mean())),
+        (float((hand[~full] > 0.0).mean()), float((own[~full] > 0.0).mean()))
+        if not full.all() else (0.0, 0.0),
     )  # fmt: skip
 
 
 # -- the page ----------------------------------------------------------------------------------
 
 COLUMNS = ("case", "frames", "by hand, µs", "tuned, µs", "ratio", "error by hand", "tuned error",
-           "difference", "everything, µs", "oracle, µs", "of its saving")  # fmt: skip
+           "difference", "everything, µs", "oracle, µs", "of its saving",
+           "error where something lies", "false on empty")  # fmt: skip
 
 
 def row(told: Told) -> list[str]:
@@ -256,6 +265,8 @@ def row(told: Told) -> list[str]:
         f"{ratio.mean:.2f} ({ratio.low:.2f} to {ratio.high:.2f})", f"{told.hand:.3f}",
         f"{told.tuned:.3f}", f"{off.mean:+.3f} ({off.low:+.3f} to {off.high:+.3f})",
         f"{told.everything_us:.0f}", f"{told.oracle_us:.0f}", f"{100 * told.share:.0f} %",
+        "{:.3f} → {:.3f}".format(*told.where_full),
+        "{:.0f} % → {:.0f} %".format(*(100 * x for x in told.false)),
     ]  # fmt: skip
 
 
