@@ -40,10 +40,10 @@ from tactile_graph_tune import Request, Tuned
 from tactile_graph_tune.finish import finished
 from tactile_graph_tune.output.figure import write_figure
 from tactile_graph_tune.rerun import rerun
+from tactile_graph_tune.searching import Tuning, searched
 from tactile_graph_tune.split import Interval, interval_of
 from tactile_graph_tune.table.record import Judged
 from tactile_graph_tune.tuned import CHOSEN
-from tactile_graph_tune.tuner import Tuning, searched
 
 LADDERS = Path(__file__).parent / "ladders"
 NAMES = tuple(KINDS)

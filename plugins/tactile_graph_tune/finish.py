@@ -14,10 +14,10 @@ from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.text import Notes
 from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.search.front import Choice, Weighed
+from tactile_graph_tune.searching import Told, Tuning
 from tactile_graph_tune.split import Interval, interval_of
 from tactile_graph_tune.table.columns import Reals
 from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, GuardWorth, Point, Tuned, Weight
-from tactile_graph_tune.tuner import Told, Tuning
 
 MOST_ON_FRONT = 12
 MOST_RIVALS = 3

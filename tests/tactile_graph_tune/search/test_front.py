@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_graph_tune.search.front import Choice, Front
@@ -11,6 +11,7 @@ from tactile_graph_tune.search.front import Choice, Front
 POINTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=30)
 
 
+@settings(max_examples=30)
 @given(POINTS)
 def test_it_holds_all_that_is_not_beaten_and_nothing_else(points):
     front = Front()
