@@ -75,8 +75,8 @@ class LocateObjects:
     Notes
     -----
     What counts as touched follows from the noise in the frame itself. Gains and voids are those of
-    what the outlines cover whole, all objects together, beside what the pad says; the search is
-    made anew where they differ much. Readings at the end of their range count as loads.
+    what the outlines cover whole, all objects together, beside what the pad says; where they
+    differ much the search goes on from there. Readings at the end of their range count as loads.
     """
 
     stateless = True
@@ -142,7 +142,7 @@ class LocateObjects:
         noise, shared = said_by(problem, found, told)
         problem = problem._replace(noise=noise.vector(pitch))
         if is_other(told, noise, shared):
-            found = likeliest(problem, self._expected, shared)
+            found = likeliest(problem, self._expected, shared, found.outlines)
         return problem, found.under(problem.noise, shared)
 
 
