@@ -45,11 +45,11 @@ ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
 
-LIKELY, VAGUE, STRANGE = 0.5, 0.62, -6.0
+LIKELY, VAGUE, STRANGE = 0.5, 0.72, -6.0
 """Where an answer is flagged: the number's probability is no larger, the mean deviation of all
 centres is larger, in pitches, or the surprise is no larger."""
 
-FEW_ELEMENTS = 1.7
+FEW_ELEMENTS = 2.3
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
 own."""
 
