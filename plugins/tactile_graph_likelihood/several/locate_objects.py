@@ -142,7 +142,7 @@ class LocateObjects:
         noise, shared = said_by(problem, found, told)
         problem = problem._replace(noise=noise.vector(pitch))
         if is_other(told, noise, shared):
-            found = likeliest(problem, self._expected, shared, found.outlines)
+            found = likeliest(problem, self._expected, shared, found.outlines, anew=False)
         return problem, found.under(problem.noise, shared)
 
 

@@ -76,14 +76,17 @@ class Search(Ladder):
         self.every: list[Configuration] = []
         self.worths: dict[int, float] = {}
 
-    def divisions(self, room: int, begin: Configuration | None = None) -> dict[int, Configuration]:
+    def divisions(
+        self, room: int, begin: Configuration | None = None, anew: bool = True
+    ) -> dict[int, Configuration]:
         """Return the best outlines of each number that the search comes upon.
 
-        It may begin with some outlines, and then with no others where they explain what is read.
+        It may begin with some outlines, too; with no others, unless ``anew``, where they explain
+        what is read.
         """
         if begin is not None:
             self.noted(begin)
-        if begin is None or not self.explained(self.every[-1]):
+        if anew or begin is None or not self.explained(self.every[-1]):
             sketches = self.together(self.beginnings(room), 0)
             if not self.explained(self.noted(self.drawn(sketches.points, self.problem))):
                 self.draw_ladder(sketches, room)
