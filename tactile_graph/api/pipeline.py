@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from tactile_graph.api.result import Result
     from tactile_graph.api.results import Results
+    from tactile_graph.engine.block import Block
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
 
@@ -142,16 +143,41 @@ class Pipeline(Graph):
         runner = self.runner(only, seed)
         asked = tuple(only or self.outputs)
         given = self.frames(seed) if frames is None else frames
-        return Results(self, asked, self._results(runner, given))
+        return Results(self, asked, self.results(given, runner))
 
-    def _results(
-        self, runner: Runner[Result], frames: Iterable[Frame | NDArray[np.generic]]
+    def results(
+        self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]
     ) -> Iterator[Result]:
+        """Yield the results of the frames, each as it comes, by a runner of this pipeline."""
         for frame in frames:
             result = runner(_as_frame(frame))
             if self.promises.waiting:
                 self.promises.check(result)
             yield result
+
+    def blocks(
+        self, frames: Iterable[Frame], runner: Runner[Result] | None = None
+    ) -> Iterator[Result | Block[Result]]:
+        """Yield what `results` does, many frames at once where a step of the pipeline can.
+
+        Parameters
+        ----------
+        frames : iterable of Frame
+            Gathered as they come; what a slow source gives is not kept waiting.
+        runner : Runner, optional
+            Of this pipeline; for its outputs if not given.
+        """
+        from tactile_graph.engine.gathering import gathered
+
+        runner = runner or self.runner()
+        if not runner.in_blocks:
+            yield from self.results(frames, runner)
+            return
+        for stack in gathered(frames):
+            block = runner.block(stack)
+            for result in block.kinds() if self.promises.waiting else ():
+                self.promises.check(result)
+            yield block
 
     def runner(
         self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False

@@ -10,6 +10,7 @@ from annotated_types import Ge, Le
 from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
+from tactile_graph.wires.stacks import MaskStack
 
 
 @compiled_later
@@ -59,3 +60,18 @@ def subdivide(
     expand.call(mask.values, factor, out)
     x, y = mask.pitch_cm
     return Mask(out, (x / factor, y / factor), mask.origin_cm)
+
+
+def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:
+    """Return the masks of several frames cut as finely."""
+    if factor == 1:
+        return mask
+    n, rows, columns = mask.shape
+    out = np.empty((n * rows * factor, columns * factor), np.bool_)
+    expand.call(mask.values.reshape(n * rows, columns), factor, out)  # as one tall mask
+    x, y = mask.pitch_cm
+    values = out.reshape(n, rows * factor, columns * factor)
+    return MaskStack(values, (x / factor, y / factor), mask.origin_cm, mask.counts * factor**2)
+
+
+subdivide.stacked = subdivide_stacked  # type: ignore[attr-defined]

@@ -1,0 +1,40 @@
+"""Frames gathered into blocks while they come, without keeping one back that others wait for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+
+from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack, in_stacks
+
+MOST_FRAMES, MOST_BYTES = 512, 1 << 20
+"""Of a block: its arrays are to stay in the processor's cache."""
+SLOW_S, PATIENCE_S = 0.002, 0.02
+"""A frame that took longer to come is handed on at once, with all before it; so are all after a
+while, as a source that lives may fall silent."""
+
+
+def gathered(frames: Iterable[Frame]) -> Iterator[FrameStack]:
+    """Yield frames as stacks of such as are alike, in their order.
+
+    What came before an error of the source is handed on before it is raised.
+    """
+    waiting: list[Frame] = []
+    began = last = time.perf_counter()
+    most = 1
+    try:
+        for frame in frames:
+            now = time.perf_counter()
+            waiting.append(frame)
+            if len(waiting) >= most or now - last > SLOW_S or now - began > PATIENCE_S:
+                yield from in_stacks(waiting)
+                waiting = []
+                most = max(1, min(MOST_FRAMES, MOST_BYTES // max(frame.image.values.nbytes, 1)))
+                began = time.perf_counter()
+                now = began
+            last = now
+    except Exception:
+        yield from in_stacks(waiting)
+        raise
+    yield from in_stacks(waiting)
