@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tactile_graph.engine.block import Block
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
+    from tactile_graph.wires.frame_stack import FrameStack
 
 
 def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
@@ -156,22 +157,22 @@ class Pipeline(Graph):
             yield result
 
     def blocks(
-        self, frames: Iterable[Frame], runner: Runner[Result] | None = None
+        self, frames: Iterable[Frame | FrameStack], runner: Runner[Result] | None = None
     ) -> Iterator[Result | Block[Result]]:
         """Yield what `results` does, many frames at once where a step of the pipeline can.
 
         Parameters
         ----------
-        frames : iterable of Frame
+        frames : iterable of Frame or FrameStack
             Gathered as they come; what a slow source gives is not kept waiting.
         runner : Runner, optional
             Of this pipeline; for its outputs if not given.
         """
-        from tactile_graph.engine.gathering import gathered
+        from tactile_graph.engine.gathering import flat, gathered
 
         runner = runner or self.runner()
         if not runner.in_blocks:
-            yield from self.results(frames, runner)
+            yield from self.results(flat(frames), runner)
             return
         for stack in gathered(frames):
             block = runner.block(stack)
@@ -223,11 +224,20 @@ class Pipeline(Graph):
         DataError
             If the source raises what is not for people.
         """
+        return self._opened(seed, report, in_stacks=False)
+
+    def frames_in_stacks(
+        self, seed: int = 0, report: Report | None = None
+    ) -> Iterator[Frame | FrameStack]:
+        """Return the same frames, many at once where the source has them so; for `blocks`."""
+        return self._opened(seed, report, in_stacks=True)
+
+    def _opened(self, seed: int, report: Report | None, in_stacks: bool) -> Iterator[Any]:
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.sources import open_source
 
-        return open_source(self.source, seed, report or Report())
+        return open_source(self.source, seed, report or Report(), in_stacks)
 
     # -- variants ----------------------------------------------------------------------------
 

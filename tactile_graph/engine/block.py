@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -79,6 +79,17 @@ class Repeats(NamedTuple):
     before: Any = None
 
 
+class Constant(NamedTuple):
+    """A slot that depends on no frame, and was first needed by a frame of a block.
+
+    Frames after it have its value, whether they need it or not.
+    """
+
+    slot: int
+    first_row: int
+    value: Outcome
+
+
 class Block(Sequence[ResultT], Generic[ResultT]):
     """The results of several frames, each made when it is taken.
 
@@ -93,6 +104,7 @@ class Block(Sequence[ResultT], Generic[ResultT]):
     alone : mapping of int to state
         What the others came to, by their places.
     repeats : Repeats
+    constants : sequence of Constant
     """
 
     def __init__(
@@ -103,9 +115,10 @@ class Block(Sequence[ResultT], Generic[ResultT]):
         groups: Sequence[Group],
         alone: dict[int, State],
         repeats: Repeats,
+        constants: Sequence[Constant] = (),
     ) -> None:
         self.plan, self.frames, self.groups, self.alone = plan, frames, groups, alone
-        self.repeats = repeats
+        self.repeats, self._constants = repeats, constants
         self._result = result
         self._place = np.full(len(repeats.of), -1)
         self._group = np.full(len(repeats.of), -1)
@@ -129,11 +142,14 @@ class Block(Sequence[ResultT], Generic[ResultT]):
         return first.again(self.frames[i])
 
     def _own(self, i: int) -> ResultT:
-        if i in self.alone:
-            return self._result(self.plan, self.alone[i])
         if i not in self._made:
-            group = self.groups[self._group[i]]
-            state = group.frame_state(int(self._place[i]), self.plan.n_slots)
+            state = self.alone.get(i)
+            if state is None:
+                group = self.groups[self._group[i]]
+                state = group.frame_state(int(self._place[i]), self.plan.n_slots)
+            for slot, first_row, value in self._constants:
+                if i >= first_row and state[slot] is None:
+                    state[slot] = value
             self._made[i] = self._result(self.plan, state)
         return self._made[i]
 
@@ -163,3 +179,8 @@ class Block(Sequence[ResultT], Generic[ResultT]):
         of = np.where(own, self.repeats.of, 0)
         return np.flatnonzero(~own | (self._group[of] < 0))
 
+
+def first_settled(slot: int, groups: Sequence[Group], alone: Mapping[int, State]) -> int:
+    """Return the place of the first frame for which a slot is settled."""
+    rows = [int(g.rows[0]) for g in groups if g.state[slot] is not None]
+    return min([*rows, *(row for row, state in alone.items() if state[slot] is not None)])

@@ -6,16 +6,14 @@ import time
 from collections.abc import Iterable, Iterator
 
 from tactile_graph.wires.frame import Frame
-from tactile_graph.wires.frame_stack import FrameStack, in_stacks
+from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack, in_stacks
 
-MOST_FRAMES, MOST_BYTES = 512, 1 << 20
-"""Of a block: its arrays are to stay in the processor's cache."""
 SLOW_S, PATIENCE_S = 0.002, 0.02
 """A frame that took longer to come is handed on at once, with all before it; so are all after a
 while, as a source that lives may fall silent."""
 
 
-def gathered(frames: Iterable[Frame]) -> Iterator[FrameStack]:
+def gathered(frames: Iterable[Frame | FrameStack]) -> Iterator[FrameStack]:
     """Yield frames as stacks of such as are alike, in their order.
 
     What came before an error of the source is handed on before it is raised.
@@ -25,6 +23,11 @@ def gathered(frames: Iterable[Frame]) -> Iterator[FrameStack]:
     most = 1
     try:
         for frame in frames:
+            if isinstance(frame, FrameStack):
+                yield from in_stacks(waiting)
+                waiting = []
+                yield frame
+                continue
             now = time.perf_counter()
             waiting.append(frame)
             if len(waiting) >= most or now - last > SLOW_S or now - began > PATIENCE_S:
@@ -38,3 +41,12 @@ def gathered(frames: Iterable[Frame]) -> Iterator[FrameStack]:
         yield from in_stacks(waiting)
         raise
     yield from in_stacks(waiting)
+
+
+def flat(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame]:
+    """Yield frames one after the other, those of stacks too."""
+    for some in frames:
+        if isinstance(some, FrameStack):
+            yield from some
+        else:
+            yield some

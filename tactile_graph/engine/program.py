@@ -127,9 +127,11 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
     """Settle a slot that depends on no frame, and keep it for all frames to come."""
 
     def operation(state: State) -> None:
-        if state[slot] is None:
+        if state[slot] is None and blank[slot] is None:
             body(state)
             blank[slot] = state[slot]
+        elif state[slot] is None:  # frames of one block set out with the same blank
+            state[slot] = blank[slot]
 
     return operation
 

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.block import Block, Group, Repeats
+from tactile_graph.engine.block import Block, Constant, Group, Repeats, first_settled
 from tactile_graph.engine.blocks import Blocks, worth_blocks
 from tactile_graph.engine.calls import Call, make_call
 from tactile_graph.engine.context import Context, RunInner
@@ -176,11 +176,19 @@ class Runner(Generic[ResultT]):
         own = np.flatnonzero(of == np.arange(n))
         done: list[Group] = []
         states: dict[int, list[Any]] = {}
+        open_slots = [s for s in self._constant_slots if self._blank[s] is None]
         if len(own):
             its = frames if len(own) == n else frames.take(own)
             done, unfinished = self._blocks(its, own)
             states = self._one_by_one(unfinished)
-        block = Block(self.plan, self._result, frames, done, states, Repeats(of, before))
+        constants = [
+            Constant(slot, first_settled(slot, done, states), self._blank[slot])
+            for slot in open_slots
+            if self._blank[slot] is not None
+        ]
+        block = Block(
+            self.plan, self._result, frames, done, states, Repeats(of, before), constants
+        )
         if self._repeatable and len(own):
             result = block[int(own[-1])]
             self._last = result.frame.image.values.tobytes(), result
@@ -189,6 +197,10 @@ class Runner(Generic[ResultT]):
     @cached_property
     def _blocks(self) -> Blocks:
         return Blocks(self.plan, self._call, self._blank, self._show)
+
+    @cached_property
+    def _constant_slots(self) -> list[int]:
+        return [i.slot for i in self.plan.items if i.constant and i.node is not None]
 
     def _show(self, frame: Frame) -> None:
         self._context.frame = frame

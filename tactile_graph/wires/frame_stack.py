@@ -12,6 +12,10 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.stacks import Column, ImageStack, Rows, Stack
 
 
+MOST_FRAMES, MOST_BYTES = 512, 1 << 20
+"""Of a stack: its arrays are to stay in the processor's cache."""
+
+
 class FrameStack(Stack):
     """Frames alike in shape, grid, quantity and validity, as a source may give them at once.
 
@@ -62,6 +66,14 @@ class FrameStack(Stack):
     def field(self, name: str) -> Stack | None:
         """Return the images, or the frames' numbers."""
         return {"image": self.images, "index": Column(self.index)}.get(name)
+
+    def numbered(self, first: int) -> FrameStack:
+        """Return the same frames, numbered from ``first`` on."""
+        index = np.arange(first, first + len(self))
+        frames = self.frames
+        if frames is not None:
+            frames = [frame.with_index(i) for i, frame in enumerate(frames, first)]
+        return FrameStack(self.images, index, self.time_s, frames)
 
     @property
     def times_s(self) -> list[float | None]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -31,7 +32,7 @@ def _words(error: Exception) -> str:
     return text
 
 
-def read(reading: Reading) -> Iterator[Frame]:
+def read(reading: Reading) -> Iterator[Frame | FrameStack]:
     """Yield the matrices of the array, read from disk as they are asked for.
 
     Raises
@@ -54,8 +55,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         )
     values = stack_of(reading, array, "its array")
     reading.report.expect(len(values))
-    for matrix in values:
-        yield reading.frame(matrix)
+    yield from reading.frames(values)
 
 
 FORMAT = RecordingFormat("NumPy .npy", recognises, read)

@@ -178,19 +178,25 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        frames = self.span.of(self.pipeline.frames(self.seed, self.report))
-        for frame in frames:
+        from tactile_graph.engine.gathering import flat
+
+        in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
+        if in_blocks and self.span.is_all:
+            frames = self.pipeline.frames_in_stacks(self.seed, self.report)
+        else:
+            frames = self.span.of(self.pipeline.frames(self.seed, self.report))
+        for first in frames:
             break
         else:
             return
         expected = self.span.expected(self.report.n_expected)
         if expected is None or expected > LONG_RUN:
             self._warm_up(expected)
-        frames = chain([frame], frames)
-        if self.lines is not None and self.drawing is None and (expected or 0) >= WORTH_BLOCKS:
-            yield from self.pipeline.blocks(frames, self.runner)
+        given = chain([first], frames)
+        if in_blocks and (expected or 0) >= WORTH_BLOCKS:
+            yield from self.pipeline.blocks(given, self.runner)
         else:
-            yield from self.pipeline.results(frames, self.runner)
+            yield from self.pipeline.results(flat(given), self.runner)
 
     def _warm_up(self, expected: int | None) -> None:
         from tactile_graph.compiled import warm_up
