@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, Points
 from tactile_graph.wires.stacks import MaskStack, PointsStack
+from tactile_graph_hull.packed import scanned_words
 from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
@@ -43,7 +44,11 @@ def boundary_scan_stacked(mask: MaskStack) -> PointsStack:
     """Return the boundaries of several footprints."""
     n, rows, columns = mask.shape
     xy, starts = np.empty((2 * n * (rows + columns), 2)), np.empty(n + 1, np.int64)
-    scanned_each.call(mask.values, *mask.pitch_cm, *mask.origin_cm, xy, starts)
+    words, grid = mask.words, (*mask.pitch_cm, *mask.origin_cm)
+    if words is not None:
+        scanned_words.call(words, columns, *grid, xy, starts)
+    else:
+        scanned_each.call(mask.values, *grid, xy, starts)
     return PointsStack(xy[: starts[n]], starts)
 
 

@@ -176,8 +176,11 @@ class ImageStack(_OnGrid):
         return ImageStack(self.values[rows], *grid, valid, images)
 
 
-class MaskStack(_OnGrid):
+class MaskStack(Stack):
     """Masks of one shape and grid. Takes ownership: the arrays become read-only.
+
+    They are kept as cells, or with the cells of a row as the bits of one machine word, or both:
+    whichever is asked for is made of the other.
 
     Parameters
     ----------
@@ -189,6 +192,8 @@ class MaskStack(_OnGrid):
     """
 
     item = Mask
+    WIDEST = 64
+    """Columns that go into a word."""
 
     def __init__(
         self,
@@ -197,15 +202,72 @@ class MaskStack(_OnGrid):
         origin_cm: tuple[float, float],
         counts: NDArray[np.int64],
     ) -> None:
-        self.values, self.counts = _frozen(values), _frozen(counts)
+        n, rows, columns = values.shape
+        self._shape = (n, rows, columns)
+        self._values: NDArray[np.bool_] | None = _frozen(values)
+        self._words: NDArray[np.uint64] | None = None
+        self.counts = _frozen(counts)
         self.pitch_cm, self.origin_cm = pitch_cm, origin_cm
+
+    @classmethod
+    def packed(
+        cls,
+        words: NDArray[np.uint64],
+        columns: int,
+        pitch_cm: tuple[float, float],
+        origin_cm: tuple[float, float],
+        counts: NDArray[np.int64],
+    ) -> MaskStack:
+        """Return masks of at most 64 columns by `words`, shape (n, rows)."""
+        made = cls.__new__(cls)
+        made._shape = (*words.shape, columns)
+        made._values, made._words, made.counts = None, _frozen(words), _frozen(counts)
+        made.pitch_cm, made.origin_cm = pitch_cm, origin_cm
+        return made
+
+    def __len__(self) -> int:
+        return self._shape[0]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Frames, rows and columns."""
+        return self._shape
+
+    @property
+    def values(self) -> NDArray[np.bool_]:
+        """The cells, shape (n, rows, columns)."""
+        if self._values is None:
+            n, rows, columns = self._shape
+            raw = self._little(self._words).view(np.uint8).reshape(n, rows, 8)
+            bits = np.unpackbits(raw, axis=2, count=columns, bitorder="little")
+            self._values = _frozen(bits.view(np.bool_))
+        return self._values
+
+    @property
+    def words(self) -> NDArray[np.uint64] | None:
+        """The rows, shape (n, rows): bit c is column c; None where there are over 64 columns."""
+        if self._words is None and self._shape[2] <= self.WIDEST:
+            n, rows, columns = self._shape
+            raw = np.zeros((n, rows, 8), np.uint8)
+            cells = self.values if columns % 8 else self.values.reshape(-1)  # that is faster
+            bits = np.packbits(cells, axis=-1, bitorder="little").reshape(n, rows, -1)
+            raw[:, :, : bits.shape[2]] = bits
+            self._words = _frozen(self._little(raw.view("<u8").reshape(n, rows)).astype(np.uint64))
+        return self._words
+
+    @staticmethod
+    def _little(words: Any) -> NDArray[Any]:
+        return np.asarray(words).astype("<u8", copy=False)
 
     def __getitem__(self, i: int) -> Mask:
         return Mask(self.values[i], self.pitch_cm, self.origin_cm, int(self.counts[i]))
 
     def take(self, rows: Rows) -> MaskStack:
         """Return the masks of some of the frames."""
-        return MaskStack(self.values[rows], self.pitch_cm, self.origin_cm, self.counts[rows])
+        grid, counts = (self.pitch_cm, self.origin_cm), self.counts[rows]
+        if self._values is None and self._words is not None:
+            return MaskStack.packed(self._words[rows], self._shape[2], *grid, counts)
+        return MaskStack(self.values[rows], *grid, counts)
 
     def field(self, name: str) -> Stack | None:
         """Return the counts, and what follows from them."""

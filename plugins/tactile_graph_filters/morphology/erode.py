@@ -11,6 +11,7 @@ from tactile_graph.wires import Mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
 from tactile_graph_filters.morphology.erosion import make_plan, sweep, swept
+from tactile_graph_filters.morphology.packed import combined
 
 
 class Erode:
@@ -34,7 +35,8 @@ class Erode:
     stateless = True
 
     def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
-        self._plan = make_plan(parse_element(element), border=border)
+        self._element, self._border = parse_element(element), border
+        self._plan = make_plan(self._element, border=border)
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the eroded mask."""
@@ -44,4 +46,5 @@ class Erode:
 
     def stacked(self, mask: MaskStack) -> MaskStack:
         """Return the eroded masks of several frames."""
-        return swept(mask, self._plan)
+        packed = None if self._border else combined(mask, self._element, dilate=False)
+        return packed or swept(mask, self._plan)

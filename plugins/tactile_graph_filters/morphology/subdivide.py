@@ -11,6 +11,7 @@ from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
 from tactile_graph.wires.stacks import MaskStack
+from tactile_graph_filters.morphology.packed import doubled
 
 
 @compiled_later
@@ -67,11 +68,14 @@ def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:
     if factor == 1:
         return mask
     n, rows, columns = mask.shape
+    x, y = mask.pitch_cm
+    grid, counts = ((x / factor, y / factor), mask.origin_cm), mask.counts * factor**2
+    words = mask.words if factor == 2 and 2 * columns <= MaskStack.WIDEST else None
+    if words is not None:
+        return MaskStack.packed(np.repeat(doubled(words), 2, axis=1), 2 * columns, *grid, counts)
     out = np.empty((n * rows * factor, columns * factor), np.bool_)
     expand.call(mask.values.reshape(n * rows, columns), factor, out)  # as one tall mask
-    x, y = mask.pitch_cm
-    values = out.reshape(n, rows * factor, columns * factor)
-    return MaskStack(values, (x / factor, y / factor), mask.origin_cm, mask.counts * factor**2)
+    return MaskStack(out.reshape(n, rows * factor, columns * factor), *grid, counts)
 
 
 subdivide.stacked = subdivide_stacked  # type: ignore[attr-defined]
