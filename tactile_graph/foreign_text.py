@@ -49,7 +49,9 @@ def csv_line(cells: Iterable[Any]) -> str:
 def csv_lines(columns: Sequence[Sequence[Any]]) -> str:
     """Return lines of CSV by their columns, each line as `csv_line` gives it."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(zip(*map(_unharmed_column, columns), strict=True))
+    csv.writer(text, lineterminator="\n").writerows(
+        zip(*map(_unharmed_column, columns), strict=True)
+    )
     return text.getvalue()
 
 

@@ -17,9 +17,7 @@ def one_by_one(pipeline: Pipeline, frames: Sequence[Frame], **rest: Any) -> list
     return [runner(frame) for frame in frames]
 
 
-def in_blocks(
-    pipeline: Pipeline, frames: Sequence[Frame], size: int, **rest: Any
-) -> Iterator[Any]:
+def in_blocks(pipeline: Pipeline, frames: Sequence[Frame], size: int, **rest: Any) -> Iterator[Any]:
     runner = pipeline.runner(**rest)
     for start in range(0, len(frames), size):
         for stack in in_stacks(frames[start : start + size]):

@@ -59,7 +59,8 @@ def scanned_words(words, columns, pitch_x, pitch_y, x0, y0, xy, starts):  # type
             while left:
                 bit = left & (~left + _ONE)
                 c = _PLACE[(bit * _HASH) >> _TOP]
-                xy[place[c], 0], xy[place[c], 1] = x0 + (c + 0.5) * pitch_x, y0 + (r + 0.5) * pitch_y
+                xy[place[c], 0] = x0 + (c + 0.5) * pitch_x
+                xy[place[c], 1] = y0 + (r + 0.5) * pitch_y
                 place[c] += 1
                 left ^= bit
         starts[k + 1] = n

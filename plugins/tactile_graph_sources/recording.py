@@ -135,9 +135,7 @@ def recording_stacked(
     **placed: Any,
 ) -> Iterator[Frame | FrameStack]:
     """Frames of the same recordings, many in a stack where the file holds them as one array."""
-    columns = ColumnsTold(
-        frame_column, time_column, value_column, cells, time_unit, time_format
-    )
+    columns = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
     told = Told.of(columns, **placed)
     index = 0
     for one, label in _files(path):

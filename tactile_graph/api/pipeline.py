@@ -168,17 +168,19 @@ class Pipeline(Graph):
         runner : Runner, optional
             Of this pipeline; for its outputs if not given.
         """
-        from tactile_graph.engine.gathering import flat, gathered
+        from tactile_graph.engine.gathering import Share, flat, gathered
 
         runner = runner or self.runner()
         if not runner.in_blocks:
             yield from self.results(flat(frames), runner)
             return
+        share = Share()
         for stack in gathered(frames):
-            block = runner.block(stack)
-            for result in block.kinds() if self.promises.waiting else ():
-                self.promises.check(result)
-            yield block
+            for part in share.parts(stack):
+                block = runner.block(part)
+                for result in block.kinds() if self.promises.waiting else ():
+                    self.promises.check(result)
+                yield block
 
     def runner(
         self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False

@@ -104,7 +104,7 @@ class Cells:
 
     def __init__(self, keys: Sequence[str], n: int) -> None:
         self.n = n
-        self._columns: dict[str, Any] = {key: None for key in keys}
+        self._columns: dict[str, Any] = dict.fromkeys(keys)
 
     def put(self, key: str, rows: Rows, cells: Sequence[Any]) -> None:
         """Write cells of some rows; a key that is no column's is left out."""

@@ -65,7 +65,9 @@ class Blocks:
         self._operations = make_program(plan, self._stacked_call, blank, reading)
         self.resume = make_program(plan, call_of, blank, Reading(resumed=True))
 
-    def __call__(self, frames: FrameStack, rows: NDArray[np.intp]) -> tuple[list[Group], list[Group]]:
+    def __call__(
+        self, frames: FrameStack, rows: NDArray[np.intp]
+    ) -> tuple[list[Group], list[Group]]:
         """Return the groups that came to an end, and those whose frames go on alone.
 
         Parameters
@@ -98,7 +100,7 @@ class Blocks:
 
     def _stacked_call(self, node: Node) -> Call:
         call = self._call_of(node)
-        if node.name in self._constant or node.signature is None and node.inner is None:
+        if node.name in self._constant:
             return call
         slot = self.plan.refs[Ref(node.name)]
         return stacked_call(node, slot, call, lambda: self._frames, self._show)

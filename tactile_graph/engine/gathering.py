@@ -5,9 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator
 
+import numpy as np
+
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack, in_stacks
 
+FIRST, MOMENT_S = 16, 0.1
+"""Frames of the first block, and how long one may take: who waits sees that something happens."""
 SLOW_S, PATIENCE_S = 0.002, 0.02
 """A frame that took longer to come is handed on at once, with all before it; so are all after a
 while, as a source that lives may fall silent."""
@@ -50,3 +54,21 @@ def flat(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame]:
             yield from some
         else:
             yield some
+
+
+class Share:
+    """How many frames make a block that is done in a moment, by the time those before it took."""
+
+    def __init__(self) -> None:
+        self._n = FIRST
+
+    def parts(self, stack: FrameStack) -> Iterator[FrameStack]:
+        """Yield a stack in parts; the time until the next is asked for is that of a part."""
+        start = 0
+        while start < len(stack):
+            n = min(self._n, len(stack) - start)
+            began = time.perf_counter()
+            yield stack if n == len(stack) else stack.take(np.arange(start, start + n))
+            seconds = time.perf_counter() - began
+            self._n = max(1, min(2 * self._n, int(n * MOMENT_S / max(seconds, 1e-9))))
+            start += n

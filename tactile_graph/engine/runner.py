@@ -186,9 +186,7 @@ class Runner(Generic[ResultT]):
             for slot in open_slots
             if self._blank[slot] is not None
         ]
-        block = Block(
-            self.plan, self._result, frames, done, states, Repeats(of, before), constants
-        )
+        block = Block(self.plan, self._result, frames, done, states, Repeats(of, before), constants)
         if self._repeatable and len(own):
             result = block[int(own[-1])]
             self._last = result.frame.image.values.tobytes(), result

@@ -21,13 +21,13 @@ from tactile_graph.engine.outcome import NO_VALUE, Skipped
 from tactile_graph.errors import PluginError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
-from tactile_graph.steps.signature import Kind
+from tactile_graph.steps.signature import Kind, Signature
 from tactile_graph.wires.stacks import Answered, Column, Listed, Rows, Stack, field_of
 
 Call = Callable[..., Any]
 
 
-class Parted(BaseException):  # noqa: N818 -- no error: what catches those must let it pass
+class Parted(BaseException):  # no error: what catches those must let it pass
     """The frames of a group part ways at a slot.
 
     Attributes
@@ -84,6 +84,27 @@ def stacked_form(node: Node) -> StackedForm | None:
     signature = node.signature
     if node.kind is not NodeKind.STEP or signature is None or in_order(node) or signature.rng:
         return None
+    return form_of(signature, node.settings, node.bound)
+
+
+def form_of(
+    signature: Signature, settings: Mapping[str, Any], made: Callable[[], Any]
+) -> StackedForm | None:
+    """Return a step's form for stacks of frames; None where it offers none.
+
+    Parameters
+    ----------
+    signature : Signature
+    settings : mapping
+        Every setting of the step.
+    made : callable
+        Gives the step with its settings, where it is a class.
+
+    Raises
+    ------
+    PluginError
+        If the form is not annotated.
+    """
     form = getattr(signature.target, "stacked", None)
     if form is None:
         return None
@@ -94,8 +115,8 @@ def stacked_form(node: Node) -> StackedForm | None:
         told = f"step {signature.name!r}: its stacked form must annotate each port: {error}"
         raise PluginError(told) from None
     if signature.kind is Kind.CLASS:
-        return StackedForm(node.bound().stacked, kinds)  # type: ignore[attr-defined]
-    return StackedForm(partial(form, **signature.arguments(node.settings)), kinds)
+        return StackedForm(made().stacked, kinds)
+    return StackedForm(partial(form, **signature.arguments(settings)), kinds)
 
 
 def in_order(node: Node) -> bool:
@@ -106,7 +127,9 @@ def in_order(node: Node) -> bool:
     )  # fmt: skip
 
 
-def stacked_call(node: Node, slot: int, call: Call, frames: Callable[[], Stack], show: Call) -> Call:
+def stacked_call(
+    node: Node, slot: int, call: Call, frames: Callable[[], Stack], show: Call
+) -> Call:
     """Return a node's call of its ports' stacks.
 
     Parameters
@@ -169,9 +192,8 @@ def _by_form(
         got = f"{len(stack)} values" if isinstance(stack, Stack) else type(stack).__name__
         raise PluginError(f"node {node.name!r}: the stacked form of step {node.what!r} must give "
                           f"a stack of {n} values, got {got}")  # fmt: skip
-    if isinstance(found, Answered) and found.done.all():
-        return stack
-    return found
+    whole = found is stack or bool(found.done.all())
+    return stack if whole else found  # type: ignore[no-any-return]
 
 
 def _part(value: Stack, done: Any, slot: int, start: int) -> None:

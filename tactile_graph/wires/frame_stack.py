@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.stacks import Column, ImageStack, Rows, Stack
 
-
 MOST_FRAMES, MOST_BYTES = 512, 1 << 20
 """Of a stack: its arrays are to stay in the processor's cache."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -40,6 +41,11 @@ class Stack(ABC):
     def take(self, rows: Rows) -> Self:
         """Return the values of some of the frames."""
 
+    @classmethod
+    @abstractmethod
+    def of(cls, values: Sequence[Any]) -> Stack:
+        """Return values as a stack; they are alike in whatever they have in common."""
+
     def __iter__(self) -> Iterator[Any]:
         """Yield the value of each frame."""
         return (self[i] for i in range(len(self)))
@@ -70,6 +76,11 @@ class Listed(Stack):
     def __init__(self, values: Sequence[Any]) -> None:
         self.values = values
 
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> Listed:
+        """Return values as a stack."""
+        return cls(values)
+
     def __len__(self) -> int:
         return len(self.values)
 
@@ -92,6 +103,11 @@ class Column(Stack):
 
     def __init__(self, values: NDArray[Any]) -> None:
         self.values = _frozen(values)
+
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> Column:
+        """Return numbers of one type as a stack."""
+        return cls(np.array(values))
 
     def __len__(self) -> int:
         return len(self.values)
@@ -225,8 +241,15 @@ class MaskStack(Stack):
         made.pitch_cm, made.origin_cm = pitch_cm, origin_cm
         return made
 
+    @classmethod
+    def of(cls, values: Sequence[Mask]) -> MaskStack:
+        """Return masks of one shape and grid as a stack."""
+        counts = np.array([mask.count for mask in values])
+        cells = np.array([mask.values for mask in values])
+        return cls(cells, values[0].pitch_cm, values[0].origin_cm, counts)
+
     def __len__(self) -> int:
-        return self._shape[0]
+        return int(self._shape[0])
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -250,8 +273,9 @@ class MaskStack(Stack):
             n, rows, columns = self._shape
             raw = np.zeros((n, rows, 8), np.uint8)
             cells = self.values if columns % 8 else self.values.reshape(-1)  # that is faster
-            bits = np.packbits(cells, axis=-1, bitorder="little").reshape(n, rows, -1)
-            raw[:, :, : bits.shape[2]] = bits
+            bits = np.packbits(cells, axis=-1, bitorder="little")
+            width = -(-columns // 8)
+            raw[:, :, :width] = bits.reshape(n, rows, width)
             self._words = _frozen(self._little(raw.view("<u8").reshape(n, rows)).astype(np.uint64))
         return self._words
 
@@ -292,17 +316,22 @@ class PointsStack(Stack):
         Where in ``xy_cm`` each frame's points begin, and where the last one's end.
     """
 
-    item = Points
-    made: ClassVar[Callable[[NDArray[np.float64]], Any]] = Points
+    item: ClassVar[type] = Points
 
     def __init__(self, xy_cm: NDArray[np.float64], starts: NDArray[np.int64]) -> None:
         self.xy_cm, self.starts = _frozen(xy_cm), _frozen(starts)
+
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> Self:
+        """Return what has points or corners as a stack."""
+        starts = np.cumsum([0, *(value.count for value in values)])
+        return cls(np.concatenate([value.xy_cm for value in values]), starts)
 
     def __len__(self) -> int:
         return len(self.starts) - 1
 
     def __getitem__(self, i: int) -> Any:
-        return type(self).made(self.xy_cm[self.starts[i] : self.starts[i + 1]])
+        return type(self).item(self.xy_cm[self.starts[i] : self.starts[i + 1]])
 
     def take(self, rows: Rows) -> Self:
         """Return the points of some of the frames."""
@@ -320,7 +349,6 @@ class PolygonStack(PointsStack):
     """Polygons of several frames by their corners, as `PointsStack` has points."""
 
     item = Polygon
-    made = Polygon
 
     def field(self, name: str) -> Stack | None:
         """Return how many corners there are, or the corners as points."""
@@ -341,6 +369,13 @@ class RecordStack(Stack):
     def __init__(self, made: Callable[..., Any], columns: Mapping[str, NDArray[Any]]) -> None:
         self.made = made
         self.columns = {name: _frozen(column) for name, column in columns.items()}
+
+    @classmethod
+    def of(cls, values: Sequence[Any]) -> RecordStack:
+        """Return records of one dataclass as a stack."""
+        names = [field.name for field in fields(values[0])]
+        columns = {name: np.array([getattr(v, name) for v in values]) for name in names}
+        return cls(type(values[0]), columns)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))

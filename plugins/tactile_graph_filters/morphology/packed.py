@@ -84,5 +84,5 @@ def combined_each(words, offsets, dilate, within, out, counts):  # type: ignore[
             x = x - ((x >> _ONE) & _ODD)
             x = (x & _PAIRS) + ((x >> _TWO) & _PAIRS)
             x = (x + (x >> _FOUR)) & _NIBBLES
-            count += np.int64((x * _BYTES) >> _TOP)
+            count += int((x * _BYTES) >> _TOP)
         counts[k] = count

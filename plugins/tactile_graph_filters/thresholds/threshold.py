@@ -216,7 +216,6 @@ class Threshold:
         self._empty = None if mask.count or image.valid is not None else mask
         return mask
 
-
     def stacked(self, image: ImageStack) -> Answered:
         """Return the masks of several frames, at a level that is the same for all."""
         in_volts = self._level_v is not None and image.quantity == "volt"
@@ -224,7 +223,7 @@ class Threshold:
         known = in_volts or (self._other is not None and self._recorded is None)
         level = self._level_v if in_volts else self._other
         if level is None or not known or image.quantity not in takes or image.values.dtype != "f8":
-            return NotImplemented
+            return NotImplemented  # type: ignore[no-any-return]
         return footprints(image, level)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def circles_from(points: PointsStack, fit_each: Callable[..., None]) -> Answered
     n = len(points)
     numbers, counts = np.empty((n, 4)), np.empty((n, 3), np.int64)
     fit_each(points.xy_cm, points.starts, numbers, counts)
-    columns = {
+    columns: dict[str, NDArray[Any]] = {
         name: numbers[:, k] for k, name in enumerate(("x_cm", "y_cm", "radius_cm", "rms_cm"))
     }
     columns |= {"n_points": counts[:, 1], "iterations": counts[:, 2]}

@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph.wires import Frame
-from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
@@ -49,7 +47,7 @@ class Held(NamedTuple):
     times_name: str = ""
 
 
-def frames_of(reading: Reading, held: Held) -> Iterator[Frame | FrameStack]:
+def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
     """Yield the matrices of a stack; times that are not as many as the frames are left out."""
     frames = stack_of(reading, held.values, held.what)
     times, factor = held.times, 1.0

@@ -102,9 +102,8 @@ def _is_clean(film: _Film, now: FrameStack, after: Frame | FrameStack | None) ->
     values = now.images.values
     if len(values) <= NEIGHBOURS or (after is not None and following is None):
         return False
-    if following is not None:
-        if len(following) < NEIGHBOURS or following.shape[1:] != values.shape[1:]:
-            return False
+    if following is not None and following.shape != (NEIGHBOURS, *values.shape[1:]):
+        return False
     around = [f.image.values[None] for f, _ in film.behind]
     if around and around[-1].shape[1:] != values.shape[1:]:
         return False
@@ -131,7 +130,8 @@ def _jumps(changes: NDArray[np.float64], first: int, n: int) -> NDArray[np.intp]
     padded = np.concatenate([edge, changes, edge])
     at = np.arange(first, first + n) + NEIGHBOURS
     others = np.min([padded[at + k] for k in (-3, -2, -1, 2, 3)], axis=0)
-    return at[np.minimum(padded[at], padded[at + 1]) > 2.0 * others] - NEIGHBOURS
+    jumps = np.minimum(padded[at], padded[at + 1]) > 2.0 * others
+    return np.asarray(at[jumps] - NEIGHBOURS)
 
 
 @dataclass(slots=True)

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import unknown_quantity
-from tactile_graph.wires import Frame
-from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers import capcontact
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
@@ -46,7 +44,7 @@ def recognises(head: Head) -> bool:
     return head.raw.startswith((b"PK\x03\x04", b"PK\x05\x06"))
 
 
-def read(reading: Reading) -> Iterator[Frame | FrameStack]:
+def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of whichever kind of archive it is.
 
     Raises
@@ -217,7 +215,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
     return x, y
 
 
-def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame | FrameStack]:
+def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
     arrays.check_sizes([name for name in OURS if name in arrays.names])
     values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")

@@ -185,9 +185,8 @@ class _Run:
             frames = self.pipeline.frames_in_stacks(self.seed, self.report)
         else:
             frames = self.span.of(self.pipeline.frames(self.seed, self.report))
-        for first in frames:
-            break
-        else:
+        first = next(frames, None)
+        if first is None:
             return
         expected = self.span.expected(self.report.n_expected)
         if expected is None or expected > LONG_RUN:

@@ -67,11 +67,13 @@ class JsonLines:
         left = frames.says_more.copy()
         for part in parts_of(block, names):
             texts = [_json_outputs(part.outcomes[name]) for name in names]
-            told = zip(*texts, strict=True) if None not in texts else None
+            told = [text for text in texts if text is not None]
+            if len(told) < len(texts):
+                continue
             keys = [json.dumps(name, ensure_ascii=False) for name in names]
             form = ", ".join(f"{key.replace('%', '%%')}: %s" for key in keys)
-            for row in part.rows.tolist() if told is not None else ():
-                lines[row] = f'{heads[row]}"outputs": {{{form % next(told)}}}}}'
+            for row, outputs in zip(part.rows.tolist(), zip(*told, strict=True), strict=True):
+                lines[row] = f'{heads[row]}"outputs": {{{form % outputs}}}}}'
         for row, line in enumerate(lines):
             if left[row] or not line:
                 lines[row] = self.line(block[row])[:-1]
@@ -135,7 +137,7 @@ def _json_outputs(outcomes: Stack | list[Any]) -> list[str] | None:
 def _json_numbers(numbers: list[Any]) -> Iterable[str]:
     """Return numbers as JSON has them, one type throughout as a rule."""
     kinds = {number.__class__ for number in numbers}
-    if kinds == {float} and all(map(math.isfinite, numbers)) or kinds == {int}:
+    if kinds == {int} or (kinds == {float} and all(map(math.isfinite, numbers))):
         return map(repr, numbers)
     return map(_json_number, numbers)
 
