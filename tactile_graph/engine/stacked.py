@@ -193,7 +193,7 @@ def _by_form(
         raise PluginError(f"node {node.name!r}: the stacked form of step {node.what!r} must give "
                           f"a stack of {n} values, got {got}")  # fmt: skip
     whole = found is stack or bool(found.done.all())
-    return stack if whole else found  # type: ignore[no-any-return]
+    return stack if whole else found
 
 
 def _part(value: Stack, done: Any, slot: int, start: int) -> None:

@@ -53,11 +53,11 @@ def exactly_as_frame_by_frame(case: tuple[dict[str, Any], dict[str, Any]], folde
     assert_blocks_are_frames(pipeline, frames, size=13)
 
 
-@pytest.mark.parametrize("n_cases", [25, pytest.param(400, marks=pytest.mark.slow)])
-def test_random_graphs_come_to_the_same_in_blocks(n_cases: int, folder: Path) -> None:
+@pytest.mark.slow
+def test_random_graphs_come_to_the_same_in_blocks(folder: Path) -> None:
     check = given(cases())(exactly_as_frame_by_frame_in(folder))
     settings(
-        max_examples=n_cases,
+        max_examples=400,
         suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
     )(check)()
 
