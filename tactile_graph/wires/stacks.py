@@ -260,11 +260,14 @@ class MaskStack(Stack):
     def values(self) -> NDArray[np.bool_]:
         """The cells, shape (n, rows, columns)."""
         if self._values is None:
-            n, rows, columns = self._shape
-            raw = self._little(self._words).view(np.uint8).reshape(n, rows, 8)
-            bits = np.unpackbits(raw, axis=2, count=columns, bitorder="little")
-            self._values = _frozen(bits.view(np.bool_))
+            self._values = self._cells(self._words)
         return self._values
+
+    def _cells(self, words: Any) -> NDArray[np.bool_]:
+        """Return the cells of rows, a further axis of them."""
+        raw = self._little(words).view(np.uint8).reshape(*words.shape, 8)
+        bits = np.unpackbits(raw, axis=-1, count=self._shape[2], bitorder="little")
+        return _frozen(bits.view(np.bool_))
 
     @property
     def words(self) -> NDArray[np.uint64] | None:
@@ -284,7 +287,17 @@ class MaskStack(Stack):
         return np.asarray(words).astype("<u8", copy=False)
 
     def __getitem__(self, i: int) -> Mask:
-        return Mask(self.values[i], self.pitch_cm, self.origin_cm, int(self.counts[i]))
+        if self._values is None and self._words is not None:  # the others' may never be asked for
+            cells = self._cells(self._words[i])
+        else:
+            cells = self.values[i]
+        return Mask(cells, self.pitch_cm, self.origin_cm, int(self.counts[i]))
+
+    def __iter__(self) -> Iterator[Mask]:
+        """Yield the mask of each frame."""
+        grid = (self.pitch_cm, self.origin_cm)
+        for cells, count in zip(self.values, self.counts.tolist(), strict=True):
+            yield Mask(cells, *grid, count)
 
     def take(self, rows: Rows) -> MaskStack:
         """Return the masks of some of the frames."""

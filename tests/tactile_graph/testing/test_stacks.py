@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -66,3 +70,16 @@ def test_a_form_that_does_not_is_told(
     monkeypatch.setattr(largest, "stacked", form, raising=False)
     with pytest.raises(BrokenPromises, match=told):
         check_step(largest)
+
+
+def test_the_example_of_the_guide_keeps_its_promises() -> None:
+    page = Path(__file__).parents[3] / "docs" / "plugins.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.S)
+    (example,) = [b for b in blocks if "spread_stacked" in b]
+    names: dict[str, Any] = {}
+    exec(compile(example.replace("check_step(spread)", ""), str(page), "exec", 0, True), names)
+    report = check_step(names["spread"])
+    assert report.n_values > 10
+    values = np.array([[[0.0, 2.0]], [[5.0, np.nan]]])
+    found = names["spread_stacked"](ImageStack(values), factor=3.0)
+    assert [found.values[0], *found.done.tolist()] == [6.0, True, False]
