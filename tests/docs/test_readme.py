@@ -41,7 +41,7 @@ def test_the_second_command_sets_up_and_runs_the_tests() -> None:
     steps = block("sh test").strip().split(" && ")
     assert steps == [
         "python3 -m venv .venv",
-        ".venv/bin/pip install -q -e '.[test]'",
+        ".venv/bin/pip install -q --no-compile -e '.[test]'",
         ".venv/bin/pytest",
     ]
 

@@ -40,6 +40,7 @@ def test_what_acts_unseen_is_spelled_out(text: str, shown: str) -> None:
     assert visible(shown) == shown
 
 
+@pytest.mark.slow
 @given(st.text())
 def test_json_stays_what_it_is(text: str) -> None:
     assert json.loads(visible(json.dumps([text], ensure_ascii=False))) == [text]
@@ -74,6 +75,7 @@ def test_consoles_print_no_control_character_of_a_name(capsys: pytest.CaptureFix
     assert r"a\u001b[2J" in printed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["tactile_graph", "plugins"])
 def test_commands_print_by_the_one_function(folder: str) -> None:
     """``click.echo`` and ``print`` would hand on to the terminal whatever a name holds."""

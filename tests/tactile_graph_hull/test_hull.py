@@ -25,6 +25,7 @@ OTHERS = ALL_HULLS[1:]
 KERNELS = [chain_corners, graham_corners, beneath_beyond_corners]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_sets", [100, pytest.param(10_000, marks=pytest.mark.slow)])
 def test_all_hulls_agree_on_random_sets(n_sets):
     """Lattice and float sets, collinear and duplicate points, exact and thinned of rounding."""

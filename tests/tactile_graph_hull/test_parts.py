@@ -62,6 +62,7 @@ def test_one_answer_for_two_contacts_carries_a_notice(name: str, node: str) -> N
     assert pipeline.run(ONE).notices == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["objects", "contacts", "tracks"])
 def test_pipelines_that_tell_objects_apart_need_no_notice(name: str) -> None:
     assert load(name).run(TWO).notices == {}

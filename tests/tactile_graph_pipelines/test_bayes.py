@@ -50,6 +50,7 @@ def test_bayes_circle_is_nearer_than_circle_3_on_the_same_frames() -> None:
     assert radius < 0.6 * radius_3
 
 
+@pytest.mark.slow  # all kinds of moves are compiled
 def test_a_reading_in_another_unit_gives_the_same_circle() -> None:
     (frame,) = frames("discs", 1, seed=3)
     run = load("bayes-circle").runner()
@@ -61,6 +62,7 @@ def test_a_reading_in_another_unit_gives_the_same_circle() -> None:
     )
 
 
+@pytest.mark.slow
 def test_bayes_rectangle_finds_angle_and_sides() -> None:
     run = load("bayes-rectangle").runner()
     rows = []

@@ -56,12 +56,14 @@ def test_rectangle_3_errs_by_at_most_half_of_rectangle_2_in_every_column() -> No
     assert (third.mean(axis=0) <= 0.5 * second.mean(axis=0)).all()
 
 
+@pytest.mark.slow
 def test_rectangle_3_finds_the_angle_within_a_degree_and_the_sides_within_0_4_cm() -> None:
     found = errors("rectangle-3", 160, seed=1).mean(axis=0)
     assert found[0] < 1.0
     assert found[1:].max() < 0.4
 
 
+@pytest.mark.slow
 def test_read_at_1_cm_a_cell_the_second_evolution_errs_less_than_the_first_as_in_the_thesis() -> (
     None
 ):
@@ -171,6 +173,7 @@ def test_a_frame_full_of_nan_fails_in_words_and_the_run_goes_on(name: str) -> No
     assert second.ok
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rectangle-1", "rectangle-2", "rectangle-3"])
 def test_every_rectangle_is_in_pad_coordinates_whatever_was_done_to_the_image(name: str) -> None:
     source = load(name).with_source("simulate", scene="rectangle-1", frames=1, sigma=0.0, voids=0.0)
@@ -183,6 +186,7 @@ def test_every_rectangle_is_in_pad_coordinates_whatever_was_done_to_the_image(na
     assert there.angle_rad == pytest.approx(here.angle_rad, abs=1e-6)
 
 
+@pytest.mark.slow  # four fits are compiled
 def test_the_direct_ellipses_agree_with_each_other_on_an_even_pad() -> None:
     source = load("ellipse-direct").with_source(
         "simulate", scene="rectangle-1", frames=5, sigma=0.0, voids=0.0

@@ -90,6 +90,7 @@ def stream(pad: FakePad, frames: list[bytes]) -> None:
         pad.send(frame)
 
 
+@pytest.mark.slow
 def test_500_frames_a_second_unplugged_and_replugged(pad: FakePad, opened: threading.Event) -> None:
     """All frames of both halves come, in order, one gap is marked, memory stays flat."""
     n = 500
@@ -224,6 +225,7 @@ def test_the_device_time_stands_beside_the_hosts(pad: FakePad, opened: threading
     assert {f.image.quantity for f in got} == {"counts"}
 
 
+@pytest.mark.slow
 def test_a_link_without_frames_is_stalled_and_says_why(
     pad: FakePad, opened: threading.Event
 ) -> None:
@@ -242,6 +244,7 @@ def test_a_link_without_frames_is_stalled_and_says_why(
     assert report.counts["timeouts"] >= 1
 
 
+@pytest.mark.slow
 def test_silence_is_stalled_too(pad: FakePad) -> None:
     report = Report()
     source = source_of(pad, "m1616", report, timeout_s=0.2, give_up_s=0.6)
@@ -335,6 +338,7 @@ outputs: [circle]
 """
 
 
+@pytest.mark.slow
 def test_circle_3_follows_a_disc_on_a_live_pad_through_an_unplugging(
     pad: FakePad, opened: threading.Event
 ) -> None:

@@ -60,6 +60,7 @@ def test_an_exception_is_told_with_its_line(run: Run) -> None:
     assert "ZeroDivisionError" in told
 
 
+@pytest.mark.slow
 def test_a_named_file_is_written_and_checked(run: Run, tmp_path: Path) -> None:
     text = (
         "pipeline: p\nnodes:\n  m: {step: thershold, in: frame, with: {level: 1}}\noutputs: [m]\n"

@@ -26,6 +26,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return names
 
 
+@pytest.mark.slow
 def test_the_kernels_of_a_frame_are_compiled_but_for_the_first(made: list[str]) -> None:
     ahead.compile_ahead([load("circle-full")])
     assert "polish_all" in made

@@ -17,6 +17,7 @@ def command(*args: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_everything_that_ships_is_right():
     got = command("check")
     assert got.returncode == 0, got.stdout

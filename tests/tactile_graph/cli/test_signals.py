@@ -41,6 +41,7 @@ def test_a_run_that_a_signal_ends_leaves_whole_lines_and_says_so(tmp_path: Path,
     assert json.loads(Path(f"{out}.meta.json").read_text())["complete"] is False
 
 
+@pytest.mark.slow
 @posix
 def test_sigterm_keeps_what_was_compared_and_says_so(tmp_path: Path) -> None:
     pytest.importorskip("tactile_graph_compare")
@@ -67,6 +68,7 @@ def test_sigterm_keeps_what_was_compared_and_says_so(tmp_path: Path) -> None:
     assert (data["complete"], data["frames"]["n"]) == (False, 12)
 
 
+@pytest.mark.slow
 @posix
 def test_a_signal_that_is_ignored_stays_so(tmp_path: Path) -> None:
     """What nohup starts goes on when its terminal is closed."""
@@ -101,6 +103,7 @@ def test_a_closed_standard_output_is_refused_before_the_work(tmp_path: Path) -> 
     assert not (tmp_path / "a.csv").exists()
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("stream", ["2>&-", "<&-"])
 def test_other_streams_may_be_closed(tmp_path: Path, stream: str) -> None:

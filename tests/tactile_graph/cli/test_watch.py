@@ -101,6 +101,7 @@ def test_what_changes_during_a_look_is_looked_at_once_more(folder: Path) -> None
     assert n == 2
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_the_command_without_a_word_and_with_the_last_outcome(tmp_path: Path) -> None:
     path = tmp_path / "p.yaml"
     right = "pipeline: p\nnodes: {l: {step: load, in: frame}}\noutputs: [l]\n"

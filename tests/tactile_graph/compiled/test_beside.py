@@ -84,6 +84,7 @@ def test_the_line_says_that_another_helps(monkeypatch: pytest.MonkeyPatch) -> No
     assert said.getvalue().rstrip().endswith("; another process compiles what comes later")
 
 
+@pytest.mark.slow
 def test_the_process_runs_to_its_end() -> None:
     process: subprocess.Popen[bytes] = beside._process(Work(("contacts", "no such pipeline")))
     assert process.wait() == 0

@@ -44,6 +44,7 @@ def kept(folder: Path) -> set[str]:
     return {path.name.split("-")[0] for path in folder.rglob("*.nbc")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tried", [("0.0",), machine_code.TRIED])
 def test_machine_code_answers_as_plain_code_does(
     fresh: Any, monkeypatch: pytest.MonkeyPatch, tried: tuple[str, ...]
@@ -115,6 +116,7 @@ def test_a_change_beneath_outdates_what_was_kept(
         again(VALUES)
 
 
+@pytest.mark.slow
 def test_a_function_that_numba_alone_compiles_may_call_kernels(fresh: Any) -> None:
     kernels = fresh()
     summed = kernels.summed

@@ -150,6 +150,7 @@ def test_a_cycle_is_refused() -> None:
         layout({"a": (9.0, 9.0), "b": (9.0, 9.0)}, [Joint("a", "b"), Joint("b", "a")])
 
 
+@pytest.mark.slow
 def test_the_drawing_is_the_same_under_two_hash_seeds() -> None:
     code = (
         "from helpers_draw import branched; from tactile_graph.draw.svg import graph_svg; "

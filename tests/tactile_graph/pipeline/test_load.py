@@ -627,6 +627,7 @@ except Exception as error:
 """
 
 
+@pytest.mark.slow
 def test_the_order_is_the_same_under_two_hash_seeds() -> None:
     nodes = "\n".join(
         f"n{i}: {{step: add2, in: [v, n{(i * 7) % 13 + 20}], when: a and b or v > {i}}}"

@@ -77,6 +77,7 @@ def test_objects_are_learned_listed_described_and_forgotten(recordings):
     assert answer("objects") == (0, "tactile-objects.sqlite: no objects\n")
 
 
+@pytest.mark.slow
 def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(recordings):
     learned(recordings)
     code, text = answer("identify", recordings["large"], recordings["strange"], "--frames", "11:14")
@@ -215,6 +216,7 @@ def test_what_cannot_be_done_is_said_with_exit_code_2(args, message):
     assert message in " ".join(text.split())
 
 
+@pytest.mark.slow
 def test_names_that_are_not_known_come_with_the_nearest(recordings):
     learned(recordings)
     for command in (("forget", "smal"), ("objects", "smal")):
@@ -223,6 +225,7 @@ def test_names_that_are_not_known_come_with_the_nearest(recordings):
         assert "no object named 'smal'; did you mean 'small'?" in text
 
 
+@pytest.mark.slow
 def test_a_pipeline_that_does_not_identify_is_refused(recordings):
     learned(recordings)
     code, text = call("identify", recordings["small"], "--pipeline", "features")
@@ -240,6 +243,7 @@ def test_learning_says_how_well_the_objects_are_told_apart(recordings):
     assert "named right" not in answer("forget", "large")[1]
 
 
+@pytest.mark.slow
 def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recordings):
     learned(recordings)
     Path("raw.csv").write_text(

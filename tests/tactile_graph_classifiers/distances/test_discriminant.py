@@ -116,6 +116,7 @@ def test_features_that_say_nothing_or_never_vary_do_no_harm():
     assert one(Measurements(names, np.array([505.0, 41.0, 0.0, 7.0, 0.1]), "gram")).name == "light"
 
 
+@pytest.mark.slow
 def test_features_that_never_vary_but_for_rounding_make_nobody_a_stranger():
     names = ("weight", *(f"size_{k}" for k in range(2, 200)))
     rows = np.tile([500.0, *np.sqrt(np.arange(2.0, 200.0))], (7, 1))

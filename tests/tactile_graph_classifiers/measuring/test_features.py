@@ -135,6 +135,7 @@ def test_image_and_mask_of_different_shape_are_refused():
         features(image, mask)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(arrays(np.bool_, st.tuples(st.integers(1, 7), st.integers(1, 7))), st.integers(0, 99))
 def test_the_twins_agree(on, seed):

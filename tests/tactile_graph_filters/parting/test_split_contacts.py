@@ -61,6 +61,7 @@ def even(mask):
     return image_of(mask.values.astype(float))
 
 
+@pytest.mark.slow
 def test_two_discs_joined_by_a_neck_are_two_contacts_of_half_the_cells_each():
     found = SPLIT(even(NARROW), NARROW)
     assert found.count == 2
@@ -70,6 +71,7 @@ def test_two_discs_joined_by_a_neck_are_two_contacts_of_half_the_cells_each():
     assert left.y_cm == pytest.approx(right.y_cm)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "mask",
     [WIDE, TORN, BAR],

@@ -99,6 +99,7 @@ def test_what_bears_no_even_disc_says_so(kind):
         assert kind in ("ring", "two")
 
 
+@pytest.mark.slow
 def test_invalid_elements_say_nothing():
     rng = np.random.default_rng(4)
     truth = Circle(10.0, 9.0, 5.0)
@@ -108,6 +109,7 @@ def test_invalid_elements_say_nothing():
     assert found.n_cells < FitCircleLoad()(loaded(truth)).n_cells
 
 
+@pytest.mark.slow
 def test_a_disc_half_beyond_the_rim_is_found():
     truth = Circle(10.0, 1.0, 4.0)
     assert off(FitCircleLoad()(loaded(truth)), truth) < 2e-3

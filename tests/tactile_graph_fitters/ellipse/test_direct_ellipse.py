@@ -118,6 +118,7 @@ def test_the_multiplier_is_a_root_and_leaves_an_ellipse(on, off):
         assert off == 0.0 or on[0] == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["parabola", "parallel lines"])
 def test_what_is_on_the_edge_of_the_ellipses_is_none(kind):
     """Rounding decided: half of them came out as ellipses of kilometres."""

@@ -16,6 +16,7 @@ from tactile_graph_fitters.orientation.orientation import Orientation
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds)
 def test_truth_to_points_to_truth(seed):
@@ -27,6 +28,7 @@ def test_truth_to_points_to_truth(seed):
     assert got.semi_minor_cm == pytest.approx(truth.semi_minor_cm, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_straight_to_the_axes_that_the_simplex_finds():
     found = 0
     for seed in range(40):

@@ -177,6 +177,7 @@ def test_the_length_scatters_as_its_deviation_says() -> None:
     assert np.std([f.semi_major_cm for f in found]) == pytest.approx(np.median(told), rel=0.3)
 
 
+@pytest.mark.slow
 def test_an_outline_whose_length_its_strays_leave_open_is_none() -> None:
     """A broken footprint of 15 x 5 cm: the nearest ellipses were up to 4 m long."""
     rng = np.random.default_rng(7)

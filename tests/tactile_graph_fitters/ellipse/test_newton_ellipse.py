@@ -192,6 +192,7 @@ def test_a_leap_keeps_the_end_at_the_points_and_its_curvature(p):
     assert max(trial[2:4]) == 2.0 * max(p[2:4])
 
 
+@pytest.mark.slow
 def test_where_a_parabola_fits_as_well_it_gives_up_soon():
     """Points between two branches: each step led on by little, for 200 rounds."""
     rng = np.random.default_rng(0)

@@ -37,6 +37,7 @@ def test_truth_to_points_to_truth(seed):
     assert got.misfit < 1e-8
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds, dx=st.floats(-1e3, 1e3), dy=st.floats(-1e3, 1e3))
 def test_moved_points_move_the_rectangle(seed, dx, dy):
@@ -46,6 +47,7 @@ def test_moved_points_move_the_rectangle(seed, dx, dy):
     assert off_rad(there.angle_rad, here.angle_rad) < 1e-3
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds, angle=st.floats(-3.0, 3.0))
 def test_turned_points_turn_the_rectangle(seed, angle):

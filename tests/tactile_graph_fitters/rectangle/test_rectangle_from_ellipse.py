@@ -41,6 +41,7 @@ def test_corrected_sides_are_those_of_the_rectangle_the_ellipse_was_fitted_to(se
     assert got.breadth_cm > 1.14 * truth.breadth_cm
 
 
+@pytest.mark.slow
 def test_the_table_is_what_fits_to_rectangles_give():
     for ratio in (0.05, 0.2, 0.5, 0.8, 1.0):
         ellipse = fitted(Rectangle(0.0, 0.0, 2.0, 2.0 * ratio, 0.0), 8000)

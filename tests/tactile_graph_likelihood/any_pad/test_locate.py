@@ -79,6 +79,7 @@ def test_a_disc_is_found_on_more_pads_that_nobody_described(kind, centre_cm, rad
     check_a_disc_is_found(kind, centre_cm, radius_cm)
 
 
+@pytest.mark.slow
 @plain
 def test_an_object_over_the_edge_is_found():
     off, sized, held, _ = looked_at(KINDS["over the edge"])

@@ -52,6 +52,7 @@ def test_bounds_are_those_of_the_drawn_outline(shape):
         np.testing.assert_allclose(by(bounds)(kind, corners, p), expected, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_disc_is_an_ellipse_at_half_the_cost():
     rng = np.random.default_rng(1)
     for _ in range(300):

@@ -16,6 +16,7 @@ def prior(whole, turn=0.3, smallest=0.5, largest=4.0):
     return np.array([*PAD, smallest, largest, whole, turn, 0.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("whole", [0.0, 0.9, 1.0])
 @pytest.mark.parametrize(
     ("kind", "corners", "sizes", "turns"),

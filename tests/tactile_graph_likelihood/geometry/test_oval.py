@@ -23,6 +23,7 @@ def ovals(n):
         yield np.array([*rng.uniform(5, 15, 2), *rng.uniform(1, 6, 2), rng.uniform(-2, 2), 4.0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", [plainly, compiled])
 def test_an_oval_is_the_ellipse_it_was_made_of(by):
     for ellipse in ovals(20):

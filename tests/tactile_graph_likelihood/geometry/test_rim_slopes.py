@@ -28,6 +28,7 @@ def found_and_differenced(kind, p, soft, step=1e-6):
     return slopes, np.array(differences)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("soft", [0.0, 0.05])
 @pytest.mark.parametrize("kind", [DISC, RECTANGLE])
 def test_slopes_are_those_of_differences(kind, soft):

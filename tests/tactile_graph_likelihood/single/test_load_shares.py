@@ -104,6 +104,7 @@ def test_a_falling_pressure_has_the_mean_of_an_even_one(fall):
     assert found == pytest.approx(even, rel=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
 def test_plain_and_compiled_agree(shape):
     kind, corners, p = packed(shape)

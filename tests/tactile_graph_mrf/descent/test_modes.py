@@ -12,6 +12,7 @@ from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.state import State
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("label", range(4))
 def test_a_label_that_costs_no_more_than_others_stays(label):
     """Between 0 and 3 all labels cost the same, if the cell itself has no datum."""
@@ -22,6 +23,7 @@ def test_a_label_that_costs_no_more_than_others_stays(label):
     assert state.labels.tolist() == [[0, label, 3]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("on", [False, True])
 def test_a_line_that_costs_nothing_stays(on):
     model = Model(n_levels=4, lambda_d=0.0, lambda_l=0.0)

@@ -187,6 +187,7 @@ def test_more_effort_is_allowed_and_stays_near():
     assert max(reached) <= 1.002 * min(reached)
 
 
+@pytest.mark.slow
 def test_without_rounds_the_graduation_is_given():
     restored = restore(square(), model=Model(lines="marginal"), n_rounds=0)
     assert restored.sweeps == 1

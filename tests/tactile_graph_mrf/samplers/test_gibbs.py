@@ -42,6 +42,7 @@ MODELS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_the_energy_given_is_the_energy_of_what_is_given(model):
     image = picture()
@@ -60,6 +61,7 @@ def test_defaults_are_the_thesis():
     assert Model().n_levels == 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_same_seed_same_bits_compiled_or_not(model):
     pytest.importorskip("numba")

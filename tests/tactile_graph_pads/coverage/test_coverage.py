@@ -52,6 +52,7 @@ def test_an_ellipse_covers_what_triangles_and_sectors_add_up_to(x, y, a, b, angl
         np.testing.assert_allclose(got, expected, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 @given(convex_polygons())
 @settings(max_examples=40, deadline=None)
 def test_a_convex_polygon_covers_what_cutting_it_leaves(corners):

@@ -67,6 +67,7 @@ def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
     assert max(sensor["n_contacts"]) >= 2
 
 
+@pytest.mark.slow
 def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_rests(
     tmp_path: Path,
 ) -> None:
@@ -107,6 +108,7 @@ def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
         assert result.exit_code == 0, result.output
 
 
+@pytest.mark.slow
 def test_pipelines_that_cannot_take_it_are_named_with_the_reason(mat: Path) -> None:
     assert "takes volt, got a frame of counts" in run(mat)
 
@@ -129,6 +131,7 @@ def test_one_frame_has_contacts_and_no_noise(tmp_path: Path) -> None:
     assert sensor["n_contacts"] == [2]
 
 
+@pytest.mark.slow
 def test_a_file_that_is_none_is_an_error_and_costs_the_others_nothing(
     tmp_path: Path, mat: Path
 ) -> None:

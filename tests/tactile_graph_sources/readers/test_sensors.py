@@ -137,6 +137,7 @@ def test_one_sensor_is_not_taken_for_several(names: list[str]) -> None:
     assert sensors_of(names).columns == {}
 
 
+@pytest.mark.slow
 def test_every_command_that_reads_names_the_sensors_and_takes_the_choice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

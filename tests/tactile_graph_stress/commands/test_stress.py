@@ -50,6 +50,7 @@ def test_the_report_says_where_and_with_what_words_a_step_gives_up(tmp_path):
     assert {c["outcome"] for c in made["cases"]} <= {o.value for o in Outcome}
 
 
+@pytest.mark.slow
 def test_full_has_more_cases_than_quick(tmp_path):
     for mode in ("quick", "full"):
         run("hull_graham", f"--{mode}", "-o", tmp_path / f"{mode}.json")

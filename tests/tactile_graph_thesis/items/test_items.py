@@ -114,6 +114,7 @@ def test_the_comparison_is_tried_on_a_footprint_that_has_noise_points(work: Work
     np.testing.assert_array_equal(frame.image.values[on], read[on])
 
 
+@pytest.mark.slow
 def test_the_seed_decides_everything() -> None:
     def rows(seed: int) -> object:
         (outcome,) = outcomes(chosen(("table-4.5",)), Work(seed, 20))

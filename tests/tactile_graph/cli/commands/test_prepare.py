@@ -59,6 +59,7 @@ def test_a_pipeline_that_fails_is_told(hand_made: Path) -> None:
     assert "did you mean 'pressed'" in prepared(str(wrong))
 
 
+@pytest.mark.slow
 def test_the_command_prepares_in_other_processes(tmp_path: Path) -> None:
     path = written(tmp_path, PLAIN)
     done = CliRunner().invoke(cli, ["prepare", path, "--jobs", "2"])

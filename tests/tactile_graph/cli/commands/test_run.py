@@ -461,6 +461,7 @@ def test_ctrl_c_keeps_whole_lines_tells_what_was_done_and_exits_with_130(tmp_pat
     assert json.loads(Path(f"{out}.meta.json").read_text())["complete"] is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("to", [[], ["-o", "-"]])
 def test_a_reader_that_goes_away_ends_the_run_quietly(to):
     with process(*ENDLESS, *to, stdout=subprocess.PIPE) as running:
