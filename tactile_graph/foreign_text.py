@@ -56,12 +56,12 @@ def csv_lines(columns: Sequence[Sequence[Any]]) -> str:
 
 
 def _unharmed_column(cells: Sequence[Any]) -> Sequence[Any]:
-    texts = {cell: _unharmed(cell) for cell in set(filter(_is_text, cells))}
-    return [texts[c] if c.__class__ is str else c for c in cells] if texts else cells
-
-
-def _is_text(cell: Any) -> bool:
-    return isinstance(cell, str)
+    if str not in set(map(type, cells)):
+        return cells
+    texts = {cell: _unharmed(cell) for cell in set(cells) if isinstance(cell, str)}
+    if all(cell == text for cell, text in texts.items()):
+        return cells
+    return [texts[c] if isinstance(c, str) else c for c in cells]
 
 
 def _unharmed(cell: str) -> str:

@@ -76,6 +76,15 @@ def fields_shown(values: Stack, output: str) -> dict[str, list[Any]] | None:
     return {f"{output}.{name}": list(field_of(values, (name,))) for name in shown}
 
 
+def known_finite(values: Stack) -> bool:
+    """Return whether arrays tell that no number shown of any value is NaN or infinite."""
+    if isinstance(values, Column):
+        return bool(np.isfinite(values.values).all())
+    shown = getattr(values[0], "columns_shown", ())
+    columns = [field_of(values, (name,)) for name in shown]
+    return bool(columns) and all(isinstance(c, Column) and known_finite(c) for c in columns)
+
+
 def plain_fields(values: Stack) -> tuple[str, dict[str, list[Any]]] | None:
     """Return the kind and the fields of records that are plain data; None where they are not.
 

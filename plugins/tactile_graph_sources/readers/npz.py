@@ -124,9 +124,10 @@ class Archive:
         """
         self.check_sizes([name])
         try:
-            if (
-                self.names[name].file_size > SMALL
-            ):  # what is damaged is refused before it fills the memory
+            info = self.names[name]
+            stored = info.compress_type == zipfile.ZIP_STORED and info.file_size <= self._size
+            if info.file_size > SMALL and not stored:
+                # What is damaged is refused before it fills the memory.
                 with self._file.open(self.names[name]) as member:
                     while member.read(1 << 20):
                         pass

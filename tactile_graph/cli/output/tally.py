@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from rich.text import Text
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.live_table import shown
 from tactile_graph.engine.block import Block
-from tactile_graph.engine.block_columns import Part, fields_shown, parts_of
+from tactile_graph.engine.block_columns import Part, known_finite, parts_of
 from tactile_graph.engine.columns import OutputColumns, values_of
 from tactile_graph.engine.notices import notices
 from tactile_graph.engine.outcome import Failed, Skipped, item_words
@@ -161,8 +160,7 @@ class Tally:
         for output in self.outputs:
             outcomes = part.outcomes[output.output]
             if isinstance(outcomes, Stack):
-                shown = fields_shown(outcomes, output.output)
-                if shown is None or not all(map(_finite, chain(*shown.values()))):
+                if not known_finite(outcomes):
                     return False
         return True
 

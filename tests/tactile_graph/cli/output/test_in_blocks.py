@@ -112,7 +112,7 @@ def test_columns_become_the_lines_that_rows_become() -> None:
     columns: list[list[Any]] = [[1, 2], [None, -0.0], ["=1+1", 'a"b\x1b'], [True, 1e-300]]
     lines = csv_lines(columns)
     assert lines == "".join(csv_line(row) for row in zip(*columns, strict=True))
-    assert [*csv.reader(lines.splitlines())][0] == ["1", "", "'=1+1", "True"]
+    assert next(csv.reader(lines.splitlines())) == ["1", "", "'=1+1", "True"]
 
 
 def test_blocks_of_a_whole_file_come_to_its_frames(plain_kernels: None) -> None:
