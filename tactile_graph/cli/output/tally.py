@@ -159,9 +159,8 @@ class Tally:
         """Return whether frames of a block are known to be good or skipped, by arrays."""
         for output in self.outputs:
             outcomes = part.outcomes[output.output]
-            if isinstance(outcomes, Stack):
-                if not known_finite(outcomes):
-                    return False
+            if isinstance(outcomes, Stack) and not known_finite(outcomes):
+                return False
         return True
 
     def _add_alike(self, outcomes: dict[str, Any], frames: NDArray[np.int64]) -> None:
