@@ -35,6 +35,7 @@ MOST_MEMBERS = 1000
 MOST_TIMES = 200
 SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
+_UNPACK = "unpack it, and give those that are recordings"
 OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
         "pitch_cm", "origin_cm", "truth")  # fmt: skip
 
@@ -77,6 +78,7 @@ class Archive:
         if document:
             raise DataError(where, document)
         arrays = [m for m in members if m.filename.endswith(".npy")]
+        self.held = [m.filename for m in members]
         self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
 
     def outline(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
@@ -201,6 +203,8 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     if stacks:
         told = f"several arrays could be it ({shapes}); name one with sensor"
         raise SeveralSensorsError(where, told, stacks)
+    if not outlines and arrays.held:
+        raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")

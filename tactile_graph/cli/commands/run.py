@@ -55,9 +55,9 @@ STALLED_S = 1.0
     "-o",
     "--output",
     metavar="FILE",
-    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; or stacks of the "
-    "images and masks asked for (--only): out.h5, out.zarr. How it was made is written beside it, "
-    "as FILE.meta.json.",
+    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; results/ for a "
+    "Parquet data set with a part for each recording; or stacks of the images and masks asked for "
+    "(--only): out.h5, out.zarr. How it was made is written beside it, as FILE.meta.json.",
 )
 @click.option(
     "--format",
