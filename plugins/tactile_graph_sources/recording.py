@@ -197,9 +197,12 @@ def opened(
     reading = Reading(head, told, report, 0, label)
     reading.in_stacks = in_stacks
     frames = islice(_frames(reading, found), told.skip, None)
-    timed = stacks_with_leaps_told if in_stacks else with_leaps_told
-    left = stacks_without_garbage if in_stacks else without_garbage
-    whole = left(timed(frames, report, str(path)), report, str(path))
+    where = str(path)
+    whole: Iterator[Any]
+    if in_stacks:
+        whole = stacks_without_garbage(stacks_with_leaps_told(frames, report, where), report, where)
+    else:
+        whole = without_garbage(with_leaps_told(frames, report, where), report, where)
     return Opened(found.name, lambda: reading.why or "by its first lines", whole)
 
 
