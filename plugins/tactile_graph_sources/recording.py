@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt
 
@@ -15,10 +15,11 @@ from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
-from tactile_graph_sources.readers.garbage import without_garbage
+from tactile_graph_sources.readers.garbage import stacks_without_garbage, without_garbage
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.leaps import with_leaps_told
+from tactile_graph_sources.readers.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
@@ -101,11 +102,6 @@ def recording(
     DataError
         If a file is missing, of no known format, or without a single whole frame.
     """
-    paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
-    if not paths:
-        raise ValueError("path is an empty list; give at least one file")
-    for one in paths:
-        _check_file(one)
     told = Told.of(
         ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format),
         rows=rows,
@@ -120,11 +116,45 @@ def recording(
         skip=skip,
     )
     index = 0
-    labels = labels_of(paths) if len(paths) > 1 else [""]
-    for one, label in zip(paths, labels, strict=True):
+    for one, label in _files(path):
         for frame in opened(one, told, report, label).frames:
             yield frame if frame.index == index else frame.with_index(index)
             index += 1
+
+
+def recording_stacked(
+    *,
+    path: Path | list[Path],
+    frame_column: str,
+    time_column: str,
+    value_column: str,
+    cells: str,
+    time_unit: Any,
+    time_format: str,
+    report: Report,
+    **placed: Any,
+) -> Iterator[Frame | FrameStack]:
+    """Frames of the same recordings, many in a stack where the file holds them as one array."""
+    columns = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
+    told = Told.of(columns, **placed)
+    index = 0
+    for one, label in _files(path):
+        for some in opened(one, told, report, label, in_stacks=not told.skip).frames:
+            yield some.with_index(index) if isinstance(some, Frame) else some.numbered(index)
+            index += 1 if isinstance(some, Frame) else len(some)
+
+
+recording.stacked = recording_stacked  # type: ignore[attr-defined]
+
+
+def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
+    """Return the files, each with what its frames' labels begin with."""
+    paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
+    if not paths:
+        raise ValueError("path is an empty list; give at least one file")
+    for one in paths:
+        _check_file(one)
+    return [*zip(paths, labels_of(paths) if len(paths) > 1 else [""], strict=True)]
 
 
 def labels_of(paths: list[Path]) -> list[str]:
@@ -146,11 +176,13 @@ class Opened(NamedTuple):
 
     format: str
     why: Callable[[], str]
-    frames: Iterator[Frame]
+    frames: Iterator[Any]
 
 
-def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
-    """Return one recording, recognised.
+def opened(
+    path: Path, told: Told, report: Report, label: str = "", in_stacks: bool = False
+) -> Opened:
+    """Return one recording, recognised; with ``in_stacks`` frames may come as a `FrameStack`.
 
     Raises
     ------
@@ -163,8 +195,14 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     reading = Reading(head, told, report, 0, label)
+    reading.in_stacks = in_stacks
     frames = islice(_frames(reading, found), told.skip, None)
-    whole = without_garbage(with_leaps_told(frames, report, str(path)), report, str(path))
+    where = str(path)
+    whole: Iterator[Any]
+    if in_stacks:
+        whole = stacks_without_garbage(stacks_with_leaps_told(frames, report, where), report, where)
+    else:
+        whole = without_garbage(with_leaps_told(frames, report, where), report, where)
     return Opened(found.name, lambda: reading.why or "by its first lines", whole)
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from statistics import median
 
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 
 LEAP = 20.0
 """Times the usual step from frame to frame, from which on a step is a leap."""
@@ -34,7 +36,39 @@ class _Clock:
     steps_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT))
 
 
-def with_leaps_told(frames: Iterator[Frame], report: Report, where: str) -> Iterator[Frame]:
+def stacks_with_leaps_told(
+    frames: Iterator[Frame | FrameStack], report: Report, where: str
+) -> Iterator[Frame | FrameStack]:
+    """Yield what `with_leaps_told` does, as stacks up to the first whose times may leap."""
+    clock = _Clock()
+    for some in frames:
+        if not isinstance(some, FrameStack) or not _goes_on(clock, some):
+            rest = chain([some], frames)
+            flat = (f for s in rest for f in (s if isinstance(s, FrameStack) else (s,)))
+            yield from with_leaps_told(flat, report, where, clock)
+            return
+        yield some
+
+
+def _goes_on(clock: _Clock, stack: FrameStack) -> bool:
+    """Return whether no time of a stack can be a leap; if so, take its steps in."""
+    if stack.time_s is None:
+        return True
+    times = stack.time_s.tolist()
+    lasts = [times[0] if clock.last_s is None else clock.last_s, *times[:-1]]
+    steps = [time_s - last_s for time_s, last_s in zip(times, lasts, strict=True)]
+    every = [*clock.steps_s, *steps]
+    least = min((step for step in every if step > 0.0), default=0.0)
+    if min(steps) < 0.0 or max(every) > LEAP * least:
+        return False
+    clock.last_s = times[-1]
+    clock.steps_s.extend(steps)
+    return True
+
+
+def with_leaps_told(
+    frames: Iterator[Frame], report: Report, where: str, begun: _Clock | None = None
+) -> Iterator[Frame]:
     """Yield the frames; leaps in time are counted.
 
     A frame whose time goes back is told, and marked as following a gap: recordings were joined or
@@ -47,8 +81,10 @@ def with_leaps_told(frames: Iterator[Frame], report: Report, where: str) -> Iter
     report : Report
     where : str
         The file, for the report.
+    begun : _Clock, optional
+        That of frames without a label, where some came before.
     """
-    clocks: dict[str, _Clock] = {}
+    clocks: dict[str, _Clock] = {} if begun is None else {"": begun}
     for frame in frames:
         time_s = frame.time_s
         clock = clocks.setdefault(frame.label, _Clock())
