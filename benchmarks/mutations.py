@@ -3,18 +3,20 @@
     python benchmarks/mutations.py thesis mrf filters fitters --mutants 60 -o found.json
     python benchmarks/mutations.py --again found.json -o found.json     # survivors once more
     python benchmarks/mutations.py --again found.json --compiled ...    # by machine code
-    python benchmarks/mutations.py --table found.json                   # for docs/mutations.md
+    python benchmarks/mutations.py --table found.json ...               # for docs/mutations.md
 
 A mutant is a module with one comparison, operator, number, flag, condition or returned value
 changed, or a shipped pipeline with one setting changed. It is never written into the tree: a
-process of its own imports the changed code, and runs first the tests of files that name the
-module, then the others of the folder that mirrors its own. Kernels are answered by their plain
-loops, so that no machine code of yesterday answers for them; ``--compiled`` lets tests that are
-too slow for that judge the survivors, each with a copy of the machine code on disk. A sample is
-drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
+process of its own imports the changed code, and runs first the family's tests of files that name
+the module, then all others that call into it, those marked slow among them. Kernels are answered
+by their plain loops, so that no machine code of yesterday answers for them; those of families
+that call a mutant's (``BY_MACHINE_CODE``) are not changed, and are compiled. ``--compiled`` lets
+tests that are too slow for that judge the survivors, each with a copy of the machine code on disk.
+A sample is drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
-Left out: annotations, texts, what only draws, prints or writes, and tests that take longer than
-``SLOW_S`` seconds each in plain loops (their number is told).
+Left out: annotations, texts, what only draws, prints or writes, flags that only refuse what no
+right code does (``strict`` of a zip, ``frozen``), and tests that take more processor time than
+``SLOW_S`` each by plain loops, ``COMPILED_SLOW_S`` by machine code (their number is told).
 """
 
 from __future__ import annotations
@@ -32,27 +34,42 @@ import shutil
 import signal
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
-from types import CodeType
+from types import CodeType, FrameType
 from typing import Any, NamedTuple
+
+import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 FAMILIES = ("thesis", "mrf", "filters", "fitters")
 PRESENTING = ("drawing", "book", "commands", "__init__.py")
 """Rooms and files that only present; what draws within others goes by `DRAWS`."""
 DRAWS = re.compile(r"\baxes\b|\bfigure\b|\bpanels\(|_FIGURE\b")
+GUARDS = ("strict", "frozen")
+"""Flags that refuse what no right code does: lists of two lengths in a zip, a changed record."""
 THESIS_WAYS = ("circle-1", "circle-2", "circle-3", "rectangle-1", "rectangle-2", "identify")
 UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
-SLOW_S = 4.0
-MUTANT_S = 30
-"""After which a test of a mutant is stopped, which is a failure."""
-LEAST_TIMEOUT_S = 60.0
-COMPILED_S = 150.0
+BY_MACHINE_CODE = ("thesis", "pipelines")
+"""Families without kernels of their own."""
+SLOW_S, COMPILED_SLOW_S = 1.0, 3.0
+"""Of a test, in plain loops and by machine code."""
+MUTANT_S = 20
+"""Processor time after which a test of a mutant is stopped, which is a failure."""
+LEAST_TIMEOUT_S = 120.0
+COMPILED_S = 600.0
+EVERY = ("test_defaults", "test_constants")
+"""Tests of what every module is imported with; they name none."""
+POLL_S = 0.05
+NO_SUCH_TEST = 4
+"""Exit code of pytest."""
+TESTS_AT_ONCE_S = 5.0
+"""Of tests that take about as long together, one process after the other runs as many."""
 PLAIN = "TACTILE_GRAPH_KERNELS"
 COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
     ast.Lt: (ast.LtE, ast.GtE),
@@ -234,9 +251,11 @@ def _defaults(tree: ast.Module) -> set[int]:
 
 
 def _left_out(tree: ast.Module) -> set[int]:
-    """Return the nodes of annotations, texts, and functions that draw."""
+    """Return the nodes of annotations, texts, mere guards, and functions that draw."""
     roots: list[ast.AST] = []
     for node in ast.walk(tree):
+        if isinstance(node, ast.keyword) and node.arg in GUARDS:
+            roots.append(node)
         roots += [v for n in ("annotation", "returns") if (v := getattr(node, n, None))]
         if isinstance(node, (ast.JoinedStr, ast.Subscript)) and _only_words(node):
             roots.append(node)
@@ -382,34 +401,58 @@ def _read_instead(path: Path, text: str) -> None:
 
 
 class Watch:
-    """Notes how long each test takes and which ones fail, and stops those that never end.
+    """Notes each test's processor time, what it calls and whether it fails, and stops endless ones.
 
     Parameters
     ----------
-    limit_s : int
-        Of a test.
+    limit_s : float
+        Of a test's processor time: what else the machine does is not counted.
+    family : str, optional
+        Whose files are noted where a test calls into them.
     """
 
-    def __init__(self, limit_s: int) -> None:
+    def __init__(self, limit_s: float, family: str = "") -> None:
         self.seconds: dict[str, float] = {}
         self.failed: list[str] = []
-        self._limit_s = limit_s
-        signal.signal(signal.SIGALRM, self._over)
+        self.called: dict[str, list[str]] = {}
+        self._limit_s, self._start = limit_s, 0.0
+        self._home = str(ROOT / "plugins" / f"tactile_graph_{family}") if family else ""
+        self._codes: set[CodeType] = set()
+        signal.signal(signal.SIGPROF, self._over)
 
     @staticmethod
     def _over(*_: object) -> None:
         raise TimeoutError("takes too long")
 
+    def _note(self, frame: FrameType, _: str, __: Any) -> None:
+        self._codes.add(frame.f_code)
+
     def pytest_runtest_setup(self) -> None:
-        """Begin to count a test's time."""
-        signal.alarm(self._limit_s)
+        """Begin to count a test's time and to note what it calls."""
+        self._start = time.process_time()
+        signal.setitimer(signal.ITIMER_PROF, self._limit_s)
+        if self._home:
+            self._codes.clear()
+            threading.settrace(self._note)
+            sys.settrace(self._note)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """Add a test's time; keep its name if it fails."""
-        signal.alarm(0 if report.when == "teardown" else self._limit_s)
-        self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
+        """Keep a test's name if it fails, and at its end its time and the files it called into."""
         if report.failed:
             self.failed.append(report.nodeid)
+        if report.when != "teardown":
+            return
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        sys.settrace(None)
+        self.seconds[report.nodeid] = time.process_time() - self._start
+        files = {code.co_filename for code in self._codes}
+        self.called[report.nodeid] = (
+            sorted(
+                str(Path(name).relative_to(ROOT)) for name in files if name.startswith(self._home)
+            )
+            if self._home
+            else []
+        )
 
 
 def in_a_child(
@@ -419,6 +462,7 @@ def in_a_child(
     stop: bool,
     loops: bool = False,
     cache: str = "",
+    noted: str = "",
 ) -> dict[str, Any]:
     """Run tests in a process of its own; return exit code, times and failures.
 
@@ -436,6 +480,8 @@ def in_a_child(
         Whether kernels with a reference answer by their loops.
     cache : str
         Folder of machine code; kernels are compiled, and all in plain loops if not given.
+    noted : str
+        Family whose files are noted where a test calls into them.
     """
     with tempfile.TemporaryDirectory() as folder:
         answer = Path(folder) / "answer.json"
@@ -444,18 +490,17 @@ def in_a_child(
             os.environ |= {"NUMBA_CACHE_DIR": cache} if cache else {PLAIN: "plain"}
             if loops:
                 _loops_answer()
-            _child(tests, mutant, stop, answer)
-        start = time.monotonic()
-        while time.monotonic() - start < limit_s:
+            _child(tests, mutant, stop, answer, noted)
+        for _ in range(math.ceil(limit_s / POLL_S)):  # no clock: it goes on while all is stopped
             if os.waitpid(pid, os.WNOHANG)[0]:
                 return json.loads(answer.read_text()) if answer.exists() else {"code": -1}
-            time.sleep(0.05)
+            time.sleep(POLL_S)
         os.killpg(pid, signal.SIGKILL)
         os.waitpid(pid, 0)
         return {"code": -9}
 
 
-def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path) -> None:
+def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path, noted: str) -> None:
     """Run the tests and write what came of it; never returns."""
     import pytest
 
@@ -463,16 +508,18 @@ def _child(tests: list[str], mutant: Mutant | None, stop: bool, answer: Path) ->
     nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
         os.dup2(nowhere, stream)
-    limit_s = math.ceil(2 * SLOW_S) if mutant is None else MUTANT_S
-    watch = Watch(limit_s if PLAIN in os.environ else math.ceil(COMPILED_S))
-    told = ["-n0", "-p", "no:cacheprovider", "-m", "not slow", "--no-header", "--tb=no", *UNWARNED]
+    limit_s = slow_s(noted) if mutant is None else MUTANT_S
+    compiles = PLAIN not in os.environ and mutant and mutant.family not in BY_MACHINE_CODE
+    watch = Watch(COMPILED_S if compiles else limit_s, noted)
+    told = ["-n0", "-p", "no:cacheprovider", "-m", "", "--no-header", "--tb=no", *UNWARNED]
     try:
         if mutant is not None:
             install(mutant)
         code = int(pytest.main([*told, *(["-x"] if stop else []), *tests], plugins=[watch]))
     except BaseException:
         code = 1
-    answer.write_text(json.dumps({"code": code, "seconds": watch.seconds, "failed": watch.failed}))
+    found = {name: getattr(watch, name) for name in ("seconds", "failed", "called")}
+    answer.write_text(json.dumps({"code": code, **found}))
     os._exit(0)
 
 
@@ -480,7 +527,7 @@ def _loops_answer() -> None:
     """Let every kernel of this process run its loops, also where a reference stands beside them."""
     from tactile_graph.compiled.kernel import Kernel
 
-    beside = Kernel._plain
+    beside = Kernel.plain
 
     def plain(self: Any, *args: Any) -> Any:
         reference, self.reference = self.reference, self.loops
@@ -489,7 +536,7 @@ def _loops_answer() -> None:
         finally:
             self.reference = reference
 
-    Kernel._plain = plain  # type: ignore[method-assign]
+    Kernel.plain = plain  # type: ignore[method-assign]
 
 
 # -- what tests there are ----------------------------------------------------------------------
@@ -508,8 +555,23 @@ def homes(family: str) -> list[Path]:
     return [tests / f"tactile_graph_{family}"]
 
 
-def quick_tests(family: str, kept: Path) -> dict[str, float]:
-    """Return the tests that pass in plain loops and are quick, with their seconds.
+class Tests(NamedTuple):
+    """What is known of a family's tests that pass and are quick.
+
+    Attributes
+    ----------
+    seconds : dict
+        Name -> processor time.
+    called : dict
+        Name -> the family's files that it calls into.
+    """
+
+    seconds: dict[str, float]
+    called: dict[str, list[str]]
+
+
+def quick_tests(family: str, kept: Path) -> Tests:
+    """Return the tests that pass and are quick.
 
     Parameters
     ----------
@@ -518,54 +580,97 @@ def quick_tests(family: str, kept: Path) -> dict[str, float]:
         Where they are kept for the next time.
     """
     if kept.exists():
-        return dict(json.loads(kept.read_text()))
+        return Tests(**json.loads(kept.read_text()))
     files = sorted(p for home in homes(family) for p in home.rglob("test_*.py"))
-    seconds: dict[str, float] = {}
+    tests = Tests({}, {})
     left = 0
     for path in files:
-        found = in_a_child([str(path)], None, 240.0, stop=False)
-        good = {
-            name: s
-            for name, s in found.get("seconds", {}).items()
-            if name not in found["failed"] and s <= SLOW_S
-        }
-        left += len(found.get("seconds", {})) - len(good)
-        seconds |= good
-    print(f"{family}: {len(seconds)} quick tests, {sum(seconds.values()):.0f} s; {left} left out")
-    kept.write_text(json.dumps(seconds))
-    return seconds
+        found = in_a_child(
+            [str(path)], None, 900.0, False, cache=machine_code(family), noted=family
+        )
+        took = found.get("seconds", {})
+        good = {n: s for n, s in took.items() if n not in found["failed"] and s <= slow_s(family)}
+        left += len(took) - len(good)
+        tests.seconds.update(good)
+        tests.called.update({n: found["called"][n] for n in good})
+    took_s = sum(tests.seconds.values())
+    print(
+        f"{family}: {len(tests.seconds)} quick tests, {took_s:.0f} s; {left} left out", flush=True
+    )
+    kept.write_text(json.dumps(tests._asdict()))
+    return tests
 
 
-def in_stages(mutant: Mutant, tests: dict[str, float]) -> list[list[str]]:
-    """Return first the tests of files that name the module, then the others of its room.
+def slow_s(family: str) -> float:
+    """Return the processor time from which a family's tests are left out.
+
+    Parameters
+    ----------
+    family : str
+    """
+    return COMPILED_SLOW_S if family in BY_MACHINE_CODE else SLOW_S
+
+
+def machine_code(family: str) -> str:
+    """Return the folder of machine code that a family's tests are run with; none for plain loops.
+
+    Parameters
+    ----------
+    family : str
+    """
+    return os.environ["NUMBA_CACHE_DIR"] if family in BY_MACHINE_CODE else ""
+
+
+def in_stages(mutant: Mutant, tests: Tests) -> list[list[str]]:
+    """Return first the tests of files that name the module, then the others that call into it.
 
     Parameters
     ----------
     mutant : Mutant
-    tests : dict
+    tests : Tests
     """
-    stem = Path(mutant.path).stem
-    names = re.compile(rf"\b{re.escape(stem)}\b")
+    names = re.compile(rf"\b{re.escape(Path(mutant.path).stem)}\b")
     near = {
         file
-        for file in {name.partition("::")[0] for name in tests}
-        if Path(file).stem == f"test_{stem}" or names.search((ROOT / file).read_text())
+        for file in {name.partition("::")[0] for name in tests.seconds}
+        if names.search((ROOT / file).read_text()) or names.search(Path(file).stem)
     }
-    room = {str(home / _room(mutant)) for home in homes(mutant.family)}
-    stages: list[list[str]] = [[], []]
-    for name in tests:
-        file = name.partition("::")[0]
-        if file in near:
-            stages[0].append(name)
-        elif str((ROOT / file).parent) in room:
-            stages[1].append(name)
-    return [stage for stage in stages if stage]
+    if _on_import(mutant):
+        near |= {f for f in (n.partition("::")[0] for n in tests.seconds) if Path(f).stem in EVERY}
+    reached = {mutant.path}
+    if _on_import(mutant):
+        family = python_files(mutant.family)
+        reached |= {str(p.relative_to(ROOT)) for p in family if names.search(p.read_text())}
+    by_name = [n for n in tests.seconds if n.partition("::")[0] in near]
+    others = [n for n in tests.seconds if n.partition("::")[0] not in near]
+    if mutant.family != "pipelines":
+        others = [n for n in others if reached & set(tests.called[n])]
+    return [
+        stage
+        for some in (by_name, others)
+        for stage in _about_as_long(sorted(some, key=tests.seconds.__getitem__), tests)
+    ]
 
 
-def _room(mutant: Mutant) -> str:
-    """Return the folder of the module within its family; pipelines have none."""
-    parts = Path(mutant.path).parent.parts
-    return "" if mutant.family == "pipelines" else "/".join(parts[2:])
+def _about_as_long(names: list[str], tests: Tests) -> Iterator[list[str]]:
+    """Yield tests, quick ones first, a few seconds' worth at a time."""
+    stage: list[str] = []
+    for name in names:
+        stage.append(name)
+        if sum(tests.seconds[n] for n in stage) > TESTS_AT_ONCE_S:
+            yield stage
+            stage = []
+    if stage:
+        yield stage
+
+
+def _on_import(mutant: Mutant) -> bool:
+    """Return whether what is changed runs when the module is imported, not when called."""
+    if mutant.kind == "setting":
+        return False
+    tree = ast.parse((ROOT / mutant.path).read_text())
+    bodies = [n.body for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)]
+    return not any(b[0].lineno <= mutant.line <= (b[-1].end_lineno or 0) for b in bodies)
 
 
 def killer_compiled(mutant: Mutant) -> str:
@@ -577,36 +682,37 @@ def killer_compiled(mutant: Mutant) -> str:
     """
     files = sorted(p for home in homes(mutant.family) for p in home.rglob("test_*.py"))
     every = {str(path.relative_to(ROOT)): 0.0 for path in files}
-    for stage in in_stages(mutant, every):
+    for stage in in_stages(mutant, Tests(every, {n: [mutant.path] for n in every})):
         with tempfile.TemporaryDirectory() as folder:
             copied = Path(folder) / "cache"
             shutil.copytree(os.environ["NUMBA_CACHE_DIR"], copied)
             found = in_a_child(stage, mutant, COMPILED_S, stop=True, cache=str(copied))
         if found["code"] > 0:
-            return (found.get("failed") or ["import"])[0]
+            return str((found.get("failed") or ["import"])[0])
         if found["code"] < 0:
             return ""
     return ""
 
 
-def killer(mutant: Mutant, tests: dict[str, float]) -> str:
+def killer(mutant: Mutant, tests: Tests) -> str:
     """Return the test that fails on a mutant, ``time`` if one never ends, nothing if it survives.
 
     Parameters
     ----------
     mutant : Mutant
-    tests : dict
-        Name -> seconds.
+    tests : Tests
     """
-    stages = in_stages(mutant, tests)
+    stages, cache = in_stages(mutant, tests), machine_code(mutant.family)
     for stage in stages:
-        limit_s = LEAST_TIMEOUT_S + 4.0 * sum(tests[name] for name in stage)
-        found = in_a_child(stage, mutant, limit_s, stop=True)
+        limit_s = LEAST_TIMEOUT_S + 20.0 * sum(tests.seconds[name] for name in stage)
+        found = in_a_child(stage, mutant, limit_s, stop=True, cache=cache)
         if found["code"] == -9:
             return "time"
+        if found["code"] == NO_SUCH_TEST:
+            raise SystemExit("tests have changed; take away what --kept holds of them")
         if found["code"]:
-            return (found.get("failed") or ["import"])[0]
-    if "compiled_twin_of" in (ROOT / mutant.path).read_text():
+            return str((found.get("failed") or ["import"])[0])
+    if stages and "compiled_twin_of" in (ROOT / mutant.path).read_text():
         return _killer_of_loops(mutant, stages[0])
     return ""
 
@@ -617,7 +723,7 @@ def _killer_of_loops(mutant: Mutant, tests: list[str]) -> str:
     That is slow, so what takes too long tells nothing.
     """
     found = in_a_child(tests, mutant, LEAST_TIMEOUT_S, stop=True, loops=True)
-    return (found.get("failed") or [""])[0] if found["code"] > 0 else ""
+    return str((found.get("failed") or [""])[0]) if found["code"] > 0 else ""
 
 
 # -- the run -----------------------------------------------------------------------------------
@@ -637,19 +743,30 @@ def wilson(k: int, n: int) -> tuple[float, float]:
     return middle - half, middle + half
 
 
-def preload() -> None:
-    """Import what every child needs and no mutant changes, once."""
-    for name in ("numpy", "scipy.optimize", "scipy.ndimage", "scipy.stats", "networkx", "pytest"):
+UNCHANGED = ("hypothesis", "matplotlib.figure", "matplotlib.backends.backend_agg", "networkx",
+             "numba", "numpy", "pydantic", "pytest", "rich.table", "scipy.ndimage",
+             "scipy.optimize", "scipy.stats", "skimage.measure", "tactile_graph",
+             "yaml")  # fmt: skip
+BENEATH_THESIS = ("classifiers", "compare", "filters", "fitters", "hull", "likelihood", "mrf",
+                  "pads", "sources", "tracking")  # fmt: skip
+"""Families that do not import the thesis'."""
+
+
+def preload(families: list[str]) -> None:
+    """Import what every child needs and no mutant changes, once.
+
+    Parameters
+    ----------
+    families : list of str
+        That mutants are of.
+    """
+    for name in UNCHANGED:
         importlib.import_module(name)
-    for name in (
-        "hypothesis",
-        "pydantic",
-        "yaml",
-        "skimage.measure",
-        "tactile_graph",
-        "rich.table",
-    ):
-        importlib.import_module(name)
+    if set(families) <= set(BY_MACHINE_CODE):
+        for family in BENEATH_THESIS:
+            for path in python_files(family):
+                parts = path.relative_to(ROOT / "plugins").with_suffix("").parts
+                importlib.import_module(".".join(parts))
 
 
 def run(
@@ -674,7 +791,7 @@ def run(
         if kept is None:
             by = killer_compiled(mutant)
         else:
-            by = killer(mutant, quick_tests(mutant.family, kept / f"{mutant.family}.json"))
+            by = killer(mutant, quick_tests(mutant.family, kept / f"{mutant.family}.tests.json"))
         found[f"{mutant.path}:{mutant.place}"] = asdict(mutant) | {"killed_by": by}
         out.write_text(json.dumps(list(found.values()), indent=1))
         told = by or "SURVIVES"
@@ -682,28 +799,47 @@ def run(
         print(f"{k}/{len(chosen)} {time.monotonic() - start:.0f} s {what}: {told}", flush=True)
 
 
+REASONS = Path(__file__).with_name("mutations.yaml")
+"""Why survivors live: ``path: before -> after`` and the reason, written by hand."""
+
+
 def table(found: list[dict[str, Any]]) -> str:
-    """Return what came out as Markdown.
+    """Return what came out as Markdown: shares, and survivors with the reasons of `REASONS`.
 
     Parameters
     ----------
     found : list of dict
     """
-    lines = ["| family | mutants | killed | share | 95 % interval |", "|---|---|---|---|---|"]
+    why: dict[str, str] = yaml.safe_load(REASONS.read_text()) or {}
+    head = "| family | places | mutants | killed | 95 % interval | change nothing | of the others |"
+    lines = [head, "|---|---|---|---|---|---|---|"]
     for family in dict.fromkeys(one["family"] for one in found):
-        told = [bool(one["killed_by"]) for one in found if one["family"] == family]
-        low, high = wilson(sum(told), len(told))
-        share = sum(told) / len(told)
-        lines.append(
-            f"| {family} | {len(told)} | {sum(told)} | {share:.0%} | {low:.0%} to {high:.0%} |"
-        )
-    lines += ["", "Survivors:", ""]
-    lines += [
-        f"- `{one['path']}:{one['line']}` `{one['before']}` -> `{one['after']}`"
-        for one in found
-        if not one["killed_by"]
-    ]
+        of = [one for one in found if one["family"] == family]
+        killed = sum(bool(one["killed_by"]) for one in of)
+        same = sum(why.get(_key(one), "").startswith("same:") for one in of)
+        low, high = wilson(killed, len(of))
+        shown = f"{killed} ({killed / len(of):.0%}) | {100 * low:.0f} to {100 * high:.0f} %"
+        others = f"{killed / max(len(of) - same, 1):.0%}"
+        places = len(mutants_of(family))
+        lines.append(f"| {family} | {places} | {len(of)} | {shown} | {same} | {others} |")
+    left = sorted((o for o in found if not o["killed_by"]), key=lambda o: (o["path"], o["line"]))
+    lines += ["", "| survivor | change | why |", "|---|---|---|"]
+    for one in left:
+        told = [f"`{_cell(one[name])}`" for name in ("before", "after")]
+        reason = why.get(_key(one), "not noticed by any test").replace("same:", "no difference:")
+        where = f"`{one['path'].partition('tactile_graph_')[2]}` {one['line']}"
+        lines.append(f"| {where} | {' to '.join(told)} | {reason} |")
     return "\n".join(lines)
+
+
+def _key(one: dict[str, Any]) -> str:
+    return f"{one['path']}: {one['before']} -> {one['after']}"
+
+
+def _cell(text: str) -> str:
+    """Return code as it fits a cell of a table."""
+    shown = text if len(text) <= 60 else f"{text[:57]}…"
+    return shown.replace("|", "\\|")
 
 
 def main() -> None:
@@ -714,17 +850,17 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--again", type=Path, help="try these survivors once more")
     parser.add_argument("--compiled", action="store_true", help="with --again: by machine code")
-    parser.add_argument("--table", type=Path)
+    parser.add_argument("--table", type=Path, nargs="+", help="for docs/mutations.md")
     parser.add_argument("--kept", type=Path, default=Path(tempfile.gettempdir()))
     parser.add_argument("-o", "--output", type=Path, default=Path("mutations.json"))
     given = parser.parse_args()
     if given.table:
-        print(table(json.loads(given.table.read_text())))
+        print(table([one for path in given.table for one in json.loads(path.read_text())]))
         return
     given.kept.mkdir(parents=True, exist_ok=True)
     os.chdir(ROOT)
-    preload()
     earlier = json.loads(given.again.read_text()) if given.again else []
+    preload(given.families or [one["family"] for one in earlier])
     found = {f"{one['path']}:{one['place']}": one for one in earlier}
     if given.again:
         fields = Mutant.__dataclass_fields__

@@ -10,6 +10,7 @@ from tactile_graph.files import check_target
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph.engine.block import Block
     from tactile_graph.engine.table import Table
 
 
@@ -24,6 +25,22 @@ class Writer(Protocol):
 
     def close(self) -> None:
         """Write what is left."""
+
+
+def write_block(writer: Writer, block: Block[Result]) -> None:
+    """Have several frames written: at once by a writer that has a method ``write_block``.
+
+    Raises
+    ------
+    UsageError
+        As of `Writer.write`.
+    """
+    at_once = getattr(writer, "write_block", None)
+    if at_once is not None:
+        at_once(block)
+        return
+    for result in block:
+        writer.write(result)
 
 
 class Export(NamedTuple):

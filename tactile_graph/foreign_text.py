@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 _HIDDEN = re.compile(
@@ -44,6 +44,24 @@ def csv_line(cells: Iterable[Any]) -> str:
         _unharmed(c) if isinstance(c, str) else c for c in cells
     )
     return text.getvalue()
+
+
+def csv_lines(columns: Sequence[Sequence[Any]]) -> str:
+    """Return lines of CSV by their columns, each line as `csv_line` gives it."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(
+        zip(*map(_unharmed_column, columns), strict=True)
+    )
+    return text.getvalue()
+
+
+def _unharmed_column(cells: Sequence[Any]) -> Sequence[Any]:
+    if str not in set(map(type, cells)):
+        return cells
+    texts = {cell: _unharmed(cell) for cell in set(cells) if isinstance(cell, str)}
+    if all(cell == text for cell, text in texts.items()):
+        return cells
+    return [texts[c] if isinstance(c, str) else c for c in cells]
 
 
 def _unharmed(cell: str) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from helpers_dialects import Array, Dialect, film, npy, npz, picture
+from helpers_dialects import Array, Dialect, film, npy, npz, picture, zipped
 
 SQUARE, OBLONG, TALL = film(20, 8, 8, 1), film(14, 5, 7, 1), film(12, 7, 9, 1)
 MAT, LARGE = film(10, 16, 16, 1), 7.0 * film(9, 6, 5, 1)
@@ -286,6 +286,69 @@ def _slow(n: int, rows: int, columns: int) -> Array:
     return np.array([np.round(900.0 * np.exp(-((y - a) ** 2 + (x - b) ** 2) / 3.0)) for a, b in at])
 
 
+def _newcomers() -> Iterator[Dialect]:
+    """As found on the disks of people who had never heard of the readers."""
+    cells = _names("Z{}S{} [kPa]", OBLONG[0], ";", 1)
+    lines = (f"{_german(0.05 * k, 3)};{_line(f, ';')}\n" for k, f in enumerate(OBLONG))
+    yield _text("German, unit behind each cell's name, time 'in s'",
+                f"Bediener: M\u00fcller;;;\n;;;\nZeit in s;{cells}\n" + "".join(lines), OBLONG,
+                times_s=T[14], quantity="kilopascal")  # fmt: skip
+    rows = [[f"Zeile {i + 1};" + ";".join(map(_german, r)) for i, r in enumerate(f)]
+            for f in OBLONG]  # fmt: skip
+    head = ";" + ";".join(f"Spalte {c + 1}" for c in range(7))
+    yield _text("German, rows and columns named",
+                "".join(f"Bild {k + 1}\n{head}\n" + "\n".join(r) + "\n\n"
+                        for k, r in enumerate(rows)), OBLONG)  # fmt: skip
+    labview = ("LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\nChannels\t64\n"
+               "Samples\t" + "\t".join(["20"] * 64) + "\n***End_of_Header***\nX_Value\t"
+               + "\t".join(f"Voltage_{k}" for k in range(64)) + "\tComment\n")  # fmt: skip
+    yield _text(
+        "LabVIEW",
+        labview
+        + "".join(f"{0.05 * k:.6f}\t{_line(f, chr(9), '{:.6f}')}\n" for k, f in enumerate(SQUARE)),
+        SQUARE,
+    )
+    flat = [{"t_us": 50000 * k, "shape": [5, 7], "values": f.ravel().tolist()}
+            for k, f in enumerate(OBLONG)]  # fmt: skip
+    yield _text("JSON, the shape in each line", "\n".join(map(json.dumps, flat)), OBLONG,
+                times_s=T[14])  # fmt: skip
+    named = [{"ms": 50 * k, "cells": {f"r{r}c{c}": v for (r, c), v in np.ndenumerate(f)}}
+             for k, f in enumerate(OBLONG)]  # fmt: skip
+    yield _text("JSON, a key a cell", json.dumps(named), OBLONG, times_s=T[14])
+    yield _text("lists of rows, a frame a line", "".join(f"{f.tolist()}\n" for f in OBLONG), OBLONG)
+    yield _refused("lists of rows behind words",
+                   "".join(f"frame {k}: {f.tolist()}\n" for k, f in enumerate(OBLONG)),
+                   "leave them out")  # fmt: skip
+    events = (
+        f"{1700000000000 + 50 * k},{c},{r},{v:.0f}\n" for (k, r, c), v in np.ndenumerate(OBLONG)
+    )
+    since_1970 = "epoch_ms,x,y,force_N\n" + "".join(events)
+    yield _text("a cell a line, time since 1970", since_1970, OBLONG, times_s=T[14])
+    columns = "cell," + ",".join(f"t={0.1 * k:.1f}s" for k in range(14)) + "\n"
+    across = (f"cell{n},{_line(r)}\n" for n, r in enumerate(OBLONG.reshape(14, 35).T))
+    yield _refused("a frame a column, named as times", columns + "".join(across), "transposed")
+    noise = np.random.default_rng(1).normal(0.0, 5.0, (12, 10, 7))
+    yield _refused("NumPy, noisy frames along the last axis",
+                   npy(np.moveaxis(_slow(12, 10, 7) + noise, 0, -1)), "along the last axis",
+                   values=_slow(12, 10, 7) + noise, told={"rows": 10, "columns": 7})  # fmt: skip
+    yield _refused("ROS, a value a line", "".join(
+        "header:\n  frame_id: palm\ndata:\n" + "".join(f"- {v:.3f}\n" for v in f.ravel()) + "---\n"
+        for f in OBLONG), "on one line")  # fmt: skip
+    tables = {f"f{k}.csv": _block(f).encode() for k, f in enumerate(OBLONG)}
+    yield _refused("a zip of tables", zipped(tables), "unpack it")
+    yield _refused("HTML", f"<table><tr><td>{_line(SQUARE[0], '</td><td>')}</td></tr></table>",
+                   "spreadsheet")  # fmt: skip
+    yield _refused(
+        "hexadecimal without 0x",
+        "".join(" ".join(f"{int(v) % 256:02X}" for v in f.ravel()) + "\n" for f in SQUARE),
+        "decimal",
+    )
+    yield _refused("a header alone", "time,c0,c1,c2,c3\n", "line for each frame is missing")
+    yield _refused("Influx", "".join(
+        f"mat,dev=a {','.join(f'c{n}={v:.0f}' for n, v in enumerate(f.ravel()))} 17\n"
+        for f in SQUARE), "separated by commas")  # fmt: skip
+
+
 def _hdf5() -> Iterator[Dialect]:
     """As other laboratories keep HDF5."""
     import h5py
@@ -322,5 +385,6 @@ def _pictures() -> Iterator[Dialect]:
 
 def more_dialects(hdf5: bool = True) -> list[Dialect]:
     """Return all files; those of HDF5 take h5py, those of pictures imageio."""
-    parts = [_sheets, _logs, _instruments, _stacks, _pictures, *([_hdf5] if hdf5 else [])]
+    texts = [_sheets, _logs, _instruments, _stacks, _newcomers]
+    parts = [*texts, _pictures, *([_hdf5] if hdf5 else [])]
     return [d for part in parts for d in part()]

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, Points
+from tactile_graph.wires.stacks import MaskStack, PointsStack
+from tactile_graph_hull.packed import scanned_words
 from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
@@ -38,7 +40,20 @@ def boundary_scan(mask: Mask) -> Points:
     return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
 
 
+def boundary_scan_stacked(mask: MaskStack) -> PointsStack:
+    """Return the boundaries of several footprints."""
+    n, rows, columns = mask.shape
+    xy, starts = np.empty((2 * n * (rows + columns), 2)), np.empty(n + 1, np.int64)
+    words, grid = mask.words, (*mask.pitch_cm, *mask.origin_cm)
+    if words is not None:
+        scanned_words.call(words, columns, *grid, xy, starts)
+    else:
+        scanned_each.call(mask.values, *grid, xy, starts)
+    return PointsStack(xy[: starts[n]], starts)
+
+
 boundary_scan.notice = several_parts  # type: ignore[attr-defined]
+boundary_scan.stacked = boundary_scan_stacked  # type: ignore[attr-defined]
 
 
 def seen_cells(mask: NDArray[np.bool_], scans: tuple[str, ...]) -> NDArray[np.bool_]:
@@ -123,3 +138,16 @@ def _first_on(row: NDArray[np.bool_]) -> int:
     while start < row.shape[0] and not row[start]:
         start += 1
     return start
+
+
+@compiled_later
+def scanned_each(masks, pitch_x, pitch_y, x0, y0, xy, starts):  # type: ignore[no-untyped-def]
+    """Write the boundaries of several masks one behind the other, and where each starts."""
+    n = 0
+    starts[0] = 0
+    for k in range(masks.shape[0]):
+        centres = scanned_centres(masks[k], pitch_x, pitch_y, x0, y0)
+        for i in range(centres.shape[0]):
+            xy[n, 0], xy[n, 1] = centres[i, 0], centres[i, 1]
+            n += 1
+        starts[k + 1] = n

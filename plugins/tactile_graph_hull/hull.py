@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Points, Polygon
+from tactile_graph.wires.stacks import Answered, PointsStack, PolygonStack
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
 
@@ -45,6 +46,16 @@ def hull(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Pol
     10.1016/0020-0190(79)90072-3; thesis 3.1.4.
     """
     return hull_polygon(points.xy_cm, chain_corners.call, rounding_ulps)
+
+
+def hull_stacked(points: PointsStack, *, rounding_ulps: float) -> Answered:
+    """Return the hulls of several frames' points; those without, or out of range, are not done."""
+    xy, starts = np.empty(points.xy_cm.shape), np.empty(len(points.starts), np.int64)
+    corners_each.call(points.xy_cm, points.starts, rounding_ulps, xy, starts)
+    return Answered(PolygonStack(xy[: starts[-1]], starts), np.diff(starts) > 0)
+
+
+hull.stacked = hull_stacked  # type: ignore[attr-defined]
 
 
 def _chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
@@ -139,3 +150,16 @@ def _add_chain(
         chain[size, 0], chain[size, 1] = x, y
         size += 1
     return size
+
+
+@compiled_later
+def corners_each(xy, starts, ulps, out, out_starts):  # type: ignore[no-untyped-def]
+    """Write the corners of several frames' hulls one behind the other, and where each starts."""
+    n = 0
+    out_starts[0] = 0
+    for k in range(starts.shape[0] - 1):
+        corners = chain_corners(xy[starts[k] : starts[k + 1]], ulps)
+        for i in range(corners.shape[0]):
+            out[n, 0], out[n, 1] = corners[i, 0], corners[i, 1]
+            n += 1
+        out_starts[k + 1] = n

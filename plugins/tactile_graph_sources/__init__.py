@@ -26,6 +26,7 @@ _FORMATS = {
     "table-of-frames": "tables.flat:FORMAT",
     "node-images": "node_images:STORE",
     "picture-folder": "pictures:FOLDER",
+    "recording-store": "stored_frames:STORE",
 }
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt
 
@@ -14,16 +15,17 @@ from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
-from tactile_graph_sources.readers.garbage import without_garbage
+from tactile_graph_sources.readers.garbage import stacks_without_garbage, without_garbage
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.labels import labels_of
+from tactile_graph_sources.readers.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
-from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores.in_ranges import ranges_of_stores
-from tactile_graph_sources.stores.layout import is_store
 
 Length = Annotated[float, Gt(0)]
 
@@ -102,11 +104,6 @@ def recording(
     DataError
         If a file is missing, of no known format, or without a single whole frame.
     """
-    paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
-    if not paths:
-        raise ValueError("path is an empty list; give at least one file")
-    for one in paths:
-        _check_file(one)
     told = Told.of(
         ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format),
         rows=rows,
@@ -121,14 +118,46 @@ def recording(
         skip=skip,
     )
     index = 0
-    for one in paths:
-        label = one.name if len(paths) > 1 else ""
+    for one, label in _files(path):
         for frame in opened(one, told, report, label).frames:
             yield frame if frame.index == index else frame.with_index(index)
             index += 1
 
 
+def recording_stacked(
+    *,
+    path: Path | list[Path],
+    frame_column: str,
+    time_column: str,
+    value_column: str,
+    cells: str,
+    time_unit: Any,
+    time_format: str,
+    report: Report,
+    **placed: Any,
+) -> Iterator[Frame | FrameStack]:
+    """Frames of the same recordings, many in a stack where the file holds them as one array."""
+    columns = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
+    told = Told.of(columns, **placed)
+    index = 0
+    for one, label in _files(path):
+        for some in opened(one, told, report, label, in_stacks=not told.skip).frames:
+            yield some.with_index(index) if isinstance(some, Frame) else some.numbered(index)
+            index += 1 if isinstance(some, Frame) else len(some)
+
+
+recording.stacked = recording_stacked  # type: ignore[attr-defined]
 recording.ranges = ranges_of_stores  # type: ignore[attr-defined]
+
+
+def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
+    """Return the files, each with what its frames' labels begin with."""
+    paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
+    if not paths:
+        raise ValueError("path is an empty list; give at least one file")
+    for one in paths:
+        _check_file(one)
+    return [*zip(paths, labels_of(paths) if len(paths) > 1 else [""], strict=True)]
 
 
 class Opened(NamedTuple):
@@ -139,11 +168,13 @@ class Opened(NamedTuple):
 
     format: str
     why: Callable[[], str]
-    frames: Iterator[Frame]
+    frames: Iterator[Any]
 
 
-def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
-    """Return one recording, recognised.
+def opened(
+    path: Path, told: Told, report: Report, label: str = "", in_stacks: bool = False
+) -> Opened:
+    """Return one recording, recognised; with ``in_stacks`` frames may come as a `FrameStack`.
 
     Raises
     ------
@@ -151,63 +182,69 @@ def opened(path: Path, told: Told, report: Report, label: str = "") -> Opened:
         If it is missing or of no known format.
     """
     _check_file(path)
-    folder = format_of_folder(path, told) if path.is_dir() else None
-    if folder is not None:
-        return _folder(path, told, report, label, folder)
-    if is_store(path):
-        name, why = "Zarr store of ours", "by the files in it, zarr.json or frames.journal"
-        frames, start = read_store(path, report), told.skip
-        kept = without_garbage(islice(frames, start, None), report, str(path))
-        return Opened(name, lambda: why, kept)
     try:
-        with path.open("rb") as file:
-            report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
-        head = Head.of(path, told)
-        found = format_of(head)
+        head, found = _recognised(path, told, report)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     reading = Reading(head, told, report, 0, label)
+    reading.in_stacks = in_stacks
     frames = islice(_frames(reading, found), told.skip, None)
-    whole = without_garbage(frames, report, str(path))
+    where = str(path)
+    whole: Iterator[Any]
+    if in_stacks:
+        whole = stacks_without_garbage(stacks_with_leaps_told(frames, report, where), report, where)
+    else:
+        whole = without_garbage(with_leaps_told(frames, report, where), report, where)
     return Opened(found.name, lambda: reading.why or "by its first lines", whole)
 
 
-def _folder(
-    path: Path,
-    told: Told,
-    report: Report,
-    label: str,
-    of: RecordingFormat,
-) -> Opened:
-    """Return a folder that is a recording."""
-    reading = Reading(Head(path, b"", told), told, report, 0, label)
-    found = islice(_frames(reading, of), told.skip, None)
-    return Opened(of.name, lambda: reading.why, without_garbage(found, report, str(path)))
+def _recognised(path: Path, told: Told, report: Report) -> tuple[Head, RecordingFormat]:
+    """Return the start of a file, or a folder, and its format; a file's digest is noted."""
+    if path.is_dir():
+        found = format_of_folder(path, told)
+        if found is None:
+            raise _no_recording(path)
+        return Head(path, b"", told), found
+    with path.open("rb") as file:
+        report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
+    head = Head.of(path, told)
+    return head, format_of(head)
 
 
 def _check_file(path: Path) -> None:
-    if path.is_file() or is_store(path):
-        return
-    if path.is_dir() and format_of_folder(path, Told()) is not None:
+    if path.is_file():
         return
     if path.is_dir():
-        held = one_of((p.name for p in path.iterdir() if p.is_file()), most=5)
-        raise DataError(str(path), f"is a directory; give a file in it ({held})")
+        if format_of_folder(path, Told()) is None:
+            raise _no_recording(path)
+        return
     if path.exists():
         raise DataError(str(path), "is no plain file; save what it gives as a file first")
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
 
+def _no_recording(folder: Path) -> DataError:
+    held = sorted(p.name for p in folder.iterdir() if p.is_file())
+    if not held:
+        return DataError(str(folder), "is a directory without a file in it; give a file")
+    told = f"is a directory; give a file in it ({one_of(held, most=5)})"
+    several = f", or all of them: {shlex.quote(str(folder))}/*" if len(held) > 1 else ""
+    return DataError(str(folder), told + several)
+
+
 def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
     """Yield the frames of one file; a file without any is an error."""
     path, told, report = reading.path, reading.told, reading.report
     report.count(f"recordings read as {of.name}")
+    n_frames = 0
     try:
-        yield from of.read(reading)
+        for frame in of.read(reading):
+            n_frames += 1
+            yield frame
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
-    if reading.index > reading.start:
+    if n_frames:
         return
     if told.sensor and reading.sensors:
         near = did_you_mean(told.sensor, reading.sensors)

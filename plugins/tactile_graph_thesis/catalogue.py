@@ -11,6 +11,7 @@ from tactile_graph_thesis.item import Item
 CONTENTS = {
     "chapter_2": (
         "figure_2_2_force_law",
+        "section_2_1_2_hysteresis",
         "section_2_2_current",
         "section_2_2_2_converter",
         "section_2_2_3_samples",
@@ -52,6 +53,7 @@ CONTENTS = {
     ),
     "chapter_6": (
         "section_6_1_2_finer_pad",
+        "section_6_1_2_heavier_smaller",
         "section_6_1_3_subdivision",
         "section_6_1_3_noise_on_localisers",
         "section_6_1_3_noise_before_blocks",

@@ -10,7 +10,7 @@ from annotated_types import Gt
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Frame
-from tactile_graph_tracking.pairing import paired
+from tactile_graph_tracking.pairing import paired_places
 from tactile_graph_tracking.places import places_cm
 
 
@@ -68,12 +68,10 @@ def score_objects(
         raise Degenerate("the frame has no truth to score against")
     true = places_cm([t.shape for t in frame.truth], "truth")
     got = places_cm([f for f in found if f is not None], "score_objects")
-    off = np.hypot(*(true[:, None] - got[None]).transpose(2, 0, 1))
     # A pair more is worth any detour: that is what makes their number the first concern.
     alone = gate_cm * (2.0 + len(true))
-    pairs = paired(np.where(off <= gate_cm, off, np.inf), alone)
-    found_pairs = tuple((i, j, float(off[i, j])) for i, j in pairs)
-    errors = [error for _, _, error in found_pairs] or [0.0]
+    pairs = tuple(paired_places(true, got, gate_cm, alone))
+    errors = [error for _, _, error in pairs] or [0.0]
     return ObjectScore(
         len(true),
         len(got),
@@ -83,5 +81,5 @@ def score_objects(
         len(got) - len(pairs),
         float(np.mean(errors)),
         max(errors),
-        found_pairs,
+        pairs,
     )

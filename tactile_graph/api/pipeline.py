@@ -26,8 +26,10 @@ if TYPE_CHECKING:
 
     from tactile_graph.api.result import Result
     from tactile_graph.api.results import Results
+    from tactile_graph.engine.block import Block
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
+    from tactile_graph.wires.frame_stack import FrameStack
 
 
 def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
@@ -142,16 +144,43 @@ class Pipeline(Graph):
         runner = self.runner(only, seed)
         asked = tuple(only or self.outputs)
         given = self.frames(seed) if frames is None else frames
-        return Results(self, asked, self._results(runner, given))
+        return Results(self, asked, self.results(given, runner))
 
-    def _results(
-        self, runner: Runner[Result], frames: Iterable[Frame | NDArray[np.generic]]
+    def results(
+        self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]
     ) -> Iterator[Result]:
+        """Yield the results of the frames, each as it comes, by a runner of this pipeline."""
         for frame in frames:
             result = runner(_as_frame(frame))
             if self.promises.waiting:
                 self.promises.check(result)
             yield result
+
+    def blocks(
+        self, frames: Iterable[Frame | FrameStack], runner: Runner[Result] | None = None
+    ) -> Iterator[Result | Block[Result]]:
+        """Yield what `results` does, many frames at once where a step of the pipeline can.
+
+        Parameters
+        ----------
+        frames : iterable of Frame or FrameStack
+            Gathered as they come; what a slow source gives is not kept waiting.
+        runner : Runner, optional
+            Of this pipeline; for its outputs if not given.
+        """
+        from tactile_graph.engine.gathering import Share, flat, gathered
+
+        runner = runner or self.runner()
+        if not runner.in_blocks:
+            yield from self.results(flat(frames), runner)
+            return
+        share = Share()
+        for stack in gathered(frames):
+            for part in share.parts(stack):
+                block = runner.block(part)
+                for result in block.kinds() if self.promises.waiting else ():
+                    self.promises.check(result)
+                yield block
 
     def runner(
         self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False
@@ -197,11 +226,20 @@ class Pipeline(Graph):
         DataError
             If the source raises what is not for people.
         """
+        return self._opened(seed, report, in_stacks=False)
+
+    def frames_in_stacks(
+        self, seed: int = 0, report: Report | None = None
+    ) -> Iterator[Frame | FrameStack]:
+        """Return the same frames, many at once where the source has them so; for `blocks`."""
+        return self._opened(seed, report, in_stacks=True)
+
+    def _opened(self, seed: int, report: Report | None, in_stacks: bool) -> Iterator[Any]:
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.sources import open_source
 
-        return open_source(self.source, seed, report or Report())
+        return open_source(self.source, seed, report or Report(), in_stacks)
 
     # -- variants ----------------------------------------------------------------------------
 

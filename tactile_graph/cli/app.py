@@ -20,6 +20,7 @@ COMMANDS = {
     "run": "Run a pipeline over recordings or another source.",
     "check": "Report all that is wrong with files of pipelines, pads and the like.",
     "explain": "Say for one frame what each node did, and why.",
+    "summary": "Say what results of runs come to, by recording and in all.",
     "prepare": "Compile the kernels of pipelines now, so that no first frame waits.",
     "graph": "Draw a pipeline's graph: SVG, mermaid or dot.",
     "pipelines": "List the pipelines, search them, or print one of them.",

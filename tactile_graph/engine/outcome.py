@@ -42,6 +42,13 @@ class Skipped:
         """Return the same as the outcome of a list's item."""
         return Skipped(self.origin, self._reason, self._values, (i, *self.item))
 
+    def told_by(self, change: Callable[[Any], Any]) -> Skipped:
+        """Return the same with each value that its reason tells changed; itself if it has none."""
+        if not self._values:
+            return self
+        values = tuple([change(value) for value in self._values])
+        return Skipped(self.origin, self._reason, values, self.item)
+
     def __repr__(self) -> str:
         return f"<skipped at {self.origin!r}: {self.reason}>"
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
@@ -17,14 +18,37 @@ from tactile_graph.engine.guards import guarded
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
+from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
 
 FieldOf = Callable[[Ref], Callable[[Any], Any]]
 
 
+@dataclass(frozen=True)
+class Reading:
+    """How a program's values are read, where they are not those of a frame that begins anew.
+
+    Attributes
+    ----------
+    field_of : callable
+        Gives what makes a field of a node's value.
+    guard_of : callable
+        Gives the guard that stands for one of the file.
+    resumed : bool
+        Whether a state may come with slots that are settled already: these stay as they are.
+    """
+
+    field_of: FieldOf = field_getter
+    guard_of: Callable[[Guard], Guard] = lambda guard: guard
+    resumed: bool = False
+
+
+AS_THEY_ARE = Reading()
+
+
 def make_program(
-    plan: Plan, call_of: Callable[[Node], Call], blank: State, field_of: FieldOf = field_getter
+    plan: Plan, call_of: Callable[[Node], Call], blank: State, reading: Reading = AS_THEY_ARE
 ) -> list[Operation]:
     """Return the operations of a plan's main part.
 
@@ -35,17 +59,17 @@ def make_program(
         Gives each step node's callable of its ports; stateful ones get their instance here.
     blank : list
         The state every frame starts from; outcomes that depend on no frame are kept in it.
-    field_of : callable, optional
-        Gives what makes a field of a node's value; taken from the value if not given.
+    reading : Reading, optional
+        A frame's own values, from the beginning, if not given.
     """
     operations: list[Operation] = [_nothing] * plan.n_slots
     times_placed = _times_placed(plan)
     for item in plan.items[1:]:
         if item.view is not None:
-            operation = _view(item, field_of(item.view))
+            operation = _view(item, reading.field_of(item.view))
         else:
-            operation = _operation(item, plan, call_of, operations, blank)
-        if times_placed[item.slot] > 1:
+            operation = _operation(item, plan, call_of, operations, blank, reading.guard_of)
+        if times_placed[item.slot] > 1 or reading.resumed:
             operation = _unless_settled(item.slot, operation)
         operations[item.slot] = operation
     return [operations[slot] for slot in plan.main]
@@ -76,6 +100,7 @@ def _operation(
     call_of: Callable[[Node], Call],
     operations: list[Operation],
     blank: State,
+    guard_of: Callable[[Guard], Guard],
 ) -> Operation:
     node = item.node
     assert node is not None
@@ -92,7 +117,7 @@ def _operation(
     if node.guard is not None:
         own = _guard_fields(item, plan)
         reads = [operations[s] if s in own else itemgetter(s) for s in item.guard]
-        body = guarded(item, node.guard, reads, body)
+        body = guarded(item, guard_of(node.guard), reads, body)
     if item.constant:
         return _once(item.slot, time, body, blank)
     return body
@@ -102,9 +127,11 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
     """Settle a slot that depends on no frame, and keep it for all frames to come."""
 
     def operation(state: State) -> None:
-        if state[slot] is None:
+        if state[slot] is None and blank[slot] is None:
             body(state)
             blank[slot] = state[slot]
+        elif state[slot] is None:  # frames of one block set out with the same blank
+            state[slot] = blank[slot]
 
     return operation
 

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from tactile_graph.engine.outcome import Failed, Skipped, gaps
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, REUSED, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan
-from tactile_graph.engine.program import make_program
+from tactile_graph.engine.program import Reading, make_program
 from tactile_graph.pipeline.graph import FRAME, Node
 from tactile_graph.pipeline.wiring import Ref
 
@@ -45,7 +45,8 @@ class Replay:
         self._blank = blank_state(plan.n_slots)
         # What depends on no frame is settled anew in each: it counts only where it is needed.
         forgotten = self._blank.copy()
-        self._operations = make_program(plan, self._call_of, forgotten, self._field_of)
+        reading = Reading(self._field_of)
+        self._operations = make_program(plan, self._call_of, forgotten, reading)
 
     def __call__(self, result: AnyOutcomes) -> AnyOutcomes:
         """Return what the plan came to in the frame of a recorded result."""

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import sys
-from typing import Generic, TypeVar
+from functools import cached_property
+from typing import Any, Generic, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.engine.block import Block, Constant, Group, Repeats, first_settled
+from tactile_graph.engine.blocks import Blocks, worth_blocks
 from tactile_graph.engine.calls import Call, make_call
 from tactile_graph.engine.context import Context, RunInner
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.engine.step_operation import step_label
+from tactile_graph.engine.step_operation import Operation, step_label
 from tactile_graph.engine.watched import watched
 from tactile_graph.errors import RuleError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.image import Image
+from tactile_graph.wires.stacks import ImageStack
 
 ResultT = TypeVar("ResultT", bound=Outcomes)
 
@@ -50,6 +58,7 @@ class Runner(Generic[ResultT]):
         self._context = Context(seed, self._embedded)
         self._blank = blank_state(self.plan.n_slots)
         self._verify = verify
+        self._calls: dict[str, Call] = {}
         self._operations = make_program(self.plan, self._call, self._blank)
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
@@ -79,9 +88,16 @@ class Runner(Generic[ResultT]):
         """Forget the last frame: the next one is computed, whatever it holds."""
         self._last = None
 
+    @cached_property
+    def in_blocks(self) -> bool:
+        """Whether some of its steps answer many frames at once, so that `block` is worth while."""
+        return not self._verify and worth_blocks(self.plan)
+
     def _call(self, node: Node) -> Call:
-        call = make_call(node, self._context)
-        return watched(call, step_label(node)) if self._verify else call
+        if node.name not in self._calls:
+            call = make_call(node, self._context)
+            self._calls[node.name] = watched(call, step_label(node)) if self._verify else call
+        return self._calls[node.name]
 
     def _embedded(self, pipeline: Graph) -> RunInner:
         """Return what runs a pipeline that a node of this one runs over a list."""
@@ -104,19 +120,29 @@ class Runner(Generic[ResultT]):
         image = frame.image
         values = image.values
         if values.shape != self._shape or image.quantity != self._quantity or self._rules:
-            check_frame(image, self.plan)
-            self._shape, self._quantity = values.shape, image.quantity
+            self._check(image)
         if self._repeatable:
             content = values.tobytes()
             last = self._last
             if last is not None and content == last[0] and _alike(image, last[1].frame.image):
                 return last[1].again(frame)
-        context = self._context
-        context.frame = frame
         state = self._blank.copy()
         state[self._image] = image  # where nothing reads it, the frame takes its place
         state[0] = frame
-        for settle in self._operations:
+        self._settle(state, self._operations)
+        result = self._result(self.plan, state)
+        if self._repeatable:
+            self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
+        return result
+
+    def _check(self, image: Image) -> None:
+        check_frame(image, self.plan)
+        self._shape, self._quantity = image.values.shape, image.quantity
+
+    def _settle(self, state: list[Any], operations: list[Operation]) -> None:
+        context = self._context
+        context.frame = state[0]
+        for settle in operations:
             settle(state)
         if context.inner_results:
             state[INNER] = context.inner_results
@@ -124,10 +150,83 @@ class Runner(Generic[ResultT]):
         if context.item_failures:
             state[ITEM_FAILURES] = context.item_failures
             context.item_failures = []
-        result = self._result(self.plan, state)
+
+    # -- many frames at once -------------------------------------------------------------------
+
+    def block(self, frames: FrameStack) -> Block[ResultT]:
+        """Return the results of several frames, those that each would give one after the other.
+
+        Raises
+        ------
+        RuleError
+            As of a call; of frames that are alike it is the first that breaks a rule.
+        """
+        images = frames.images
+        n = len(frames)
+        if images.shape[1:] != self._shape or images.quantity != self._quantity or self._rules:
+            self._check(images[0])
+        last = self._last
+        of, before = np.arange(n), None
         if self._repeatable:
-            self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
-        return result
+            again = equal_to_last(images)
+            if last is not None:
+                before = last[1]
+                again[0] = self.repeats(frames[0])
+            of = np.maximum.accumulate(np.where(again, -1, of))
+        own = np.flatnonzero(of == np.arange(n))
+        done: list[Group] = []
+        states: dict[int, list[Any]] = {}
+        open_slots = [s for s in self._constant_slots if self._blank[s] is None]
+        if len(own):
+            its = frames if len(own) == n else frames.take(own)
+            done, unfinished = self._blocks(its, own)
+            states = self._one_by_one(unfinished)
+        constants = [
+            Constant(slot, first_settled(slot, done, states), self._blank[slot])
+            for slot in open_slots
+            if self._blank[slot] is not None
+        ]
+        block = Block(self.plan, self._result, frames, done, states, Repeats(of, before), constants)
+        if self._repeatable and len(own):
+            result = block[int(own[-1])]
+            self._last = result.frame.image.values.tobytes(), result
+        return block
+
+    @cached_property
+    def _blocks(self) -> Blocks:
+        return Blocks(self.plan, self._call, self._blank, self._show)
+
+    @cached_property
+    def _constant_slots(self) -> list[int]:
+        return [i.slot for i in self.plan.items if i.constant and i.node is not None]
+
+    def _show(self, frame: Frame) -> None:
+        self._context.frame = frame
+
+    def _one_by_one(self, groups: list[Group]) -> dict[int, list[Any]]:
+        """Settle what is left of groups, in the order of the frames."""
+        waiting = sorted(
+            (int(row), group, place)
+            for group in groups
+            for place, row in enumerate(group.rows.tolist())
+        )
+        states = {}
+        for row, group, place in waiting:
+            state = states[row] = group.frame_state(place, self.plan.n_slots)
+            self._settle(state, self._blocks.resume)
+        return states
+
+
+def equal_to_last(images: ImageStack) -> NDArray[np.bool_]:
+    """Return for each image of a stack whether it equals the one before, bit for bit."""
+    n = len(images)
+    raw = images.values.reshape(n, -1)
+    wide = raw.view(np.int64) if raw.itemsize == 8 else raw.view(np.uint8)
+    again = np.zeros(n, np.bool_)
+    again[1:] = (wide[1:] == wide[:-1]).all(axis=1)
+    if images.valid is not None:
+        again[1:] &= (images.valid[1:] == images.valid[:-1]).all(axis=(1, 2))
+    return again
 
 
 def _alike(image: Image, last: Image) -> bool:

@@ -12,9 +12,12 @@ from tactile_graph.errors import DataError, TactileGraphError, text_of
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 
 
-def open_source(source: Source, seed: int, report: Report) -> Iterator[Frame]:
+def open_source(
+    source: Source, seed: int, report: Report, in_stacks: bool = False
+) -> Iterator[Any]:
     """Yield the frames of a source.
 
     Parameters
@@ -25,6 +28,8 @@ def open_source(source: Source, seed: int, report: Report) -> Iterator[Frame]:
         Seeds the source's generator, if it takes one.
     report : Report
         Receives the source's counters and troubles.
+    in_stacks : bool
+        Whether it may yield a `FrameStack` for many frames, where its step has such a form.
 
     Raises
     ------
@@ -33,7 +38,7 @@ def open_source(source: Source, seed: int, report: Report) -> Iterator[Frame]:
         which source, what, and where in its code.
     """
     try:
-        yield from _frames(source, seed, report)
+        yield from _frames(source, seed, report, in_stacks)
     except TactileGraphError:
         raise
     except (Exception, SystemExit) as error:  # a source may raise anything
@@ -43,16 +48,22 @@ def open_source(source: Source, seed: int, report: Report) -> Iterator[Frame]:
         raise DataError(f"source {source.name!r}", f"{text} ({raised_at(error)})") from error
 
 
-def _frames(source: Source, seed: int, report: Report) -> Iterator[Frame]:
+def _frames(source: Source, seed: int, report: Report, in_stacks: bool) -> Iterator[Any]:
     signature = source.signature
+    form = getattr(signature.target, "stacked", None) if in_stacks else None
+    target = signature.target if form is None else form
     injected: dict[str, Any] = {}
     if signature.rng:
         injected[signature.rng] = np.random.default_rng(seed)
     if signature.report:
         injected[signature.report] = report
-    frames = signature.target(**signature.arguments(source.settings), **injected)
+    frames = target(**signature.arguments(source.settings), **injected)
     try:
         for frame in frames:
+            if form is not None and isinstance(frame, FrameStack):
+                report.counts["frames"] += len(frame)
+                yield frame
+                continue
             if not isinstance(frame, Frame):
                 raise DataError(
                     f"source {source.name!r}",

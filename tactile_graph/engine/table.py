@@ -8,6 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from tactile_graph.engine.block import Block
+from tactile_graph.engine.block_columns import Cells, Part, fields_shown, lead_cells, parts_of
 from tactile_graph.engine.columns import (
     Column,
     OutputColumns,
@@ -23,6 +25,7 @@ from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.quantities import unit_of
 from tactile_graph.steps.signature import list_item
+from tactile_graph.wires.stacks import Stack
 
 Row = dict[str, Any]
 LEAD = (
@@ -41,6 +44,9 @@ class Table(Protocol):
 
     def rows(self, result: Outcomes) -> Iterator[Row]:
         """Yield the rows of a frame, cells by the keys of their columns; an absent one is empty."""
+
+    def of_block(self, block: Block[Any]) -> dict[str, list[Any]]:
+        """Return the rows of several frames by columns, None in empty cells."""
 
 
 def units_of(table: Table, quantity: str) -> dict[str, str]:
@@ -91,6 +97,35 @@ class FrameTable:
             row[f"{output.output}.outcome"] = outcome_word(result.outcome(output.output))
             row.update(values_of(result, output))
         yield row
+
+    def of_block(self, block: Block[Any]) -> dict[str, list[Any]]:
+        """Return the rows of several frames by columns, None in empty cells."""
+        cells = Cells([column.key for column in self.columns], len(block))
+        left = np.ones(len(block), np.bool_)
+        more = lead_cells(block, cells)
+        for part in parts_of(block, [o.output for o in self._outputs]):
+            left[part.rows] = not self._put_part(part, cells)
+        for row in np.flatnonzero(left | more).tolist():
+            cells.put_row(row, next(self.rows(block[row])))
+        return cells.columns()
+
+    @staticmethod
+    def _put_part(part: Part, cells: Cells) -> bool:
+        """Write the cells of frames whose outputs are stacks; return whether all could be."""
+        found: dict[str, Sequence[Any]] = {}
+        for name, outcomes in part.outcomes.items():
+            if isinstance(outcomes, Stack):
+                shown = fields_shown(outcomes, name)
+                if shown is None:
+                    return False
+                found |= shown
+                found[f"{name}.outcome"] = ["ok"] * len(part.rows)
+            else:
+                words = {o: outcome_word(o) for o in set(outcomes)}
+                found[f"{name}.outcome"] = [words[o] for o in outcomes]
+        for key, column in found.items():
+            cells.put(key, part.rows, column)
+        return True
 
 
 @dataclass(frozen=True)
@@ -145,6 +180,11 @@ class ObjectTable:
                 continue
             for part in parts:
                 yield from self._of_part(part, outcome, result)
+
+    def of_block(self, block: Block[Any]) -> dict[str, list[Any]]:
+        """Return the rows of several frames by columns, None in empty cells."""
+        rows = [row for result in block for row in self.rows(result)]
+        return {c.key: [row.get(c.key) for row in rows] for c in self.columns}
 
     def _of_part(self, part: _Part, value: Any, result: Outcomes) -> Iterator[Row]:
         lead = {**_lead(result), "output": part.name}

@@ -13,6 +13,9 @@ from tactile_graph.steps.rules import Grid, GridFact, Quantity
 from tactile_graph.steps.signature import Signature
 from tactile_graph.vocabulary import QUANTITIES
 
+UNSAID = "raw"
+"""The quantity of frames of which nobody said what their values mean."""
+
 FactTable = Mapping[str, Facts]
 
 
@@ -242,6 +245,8 @@ def quantity_trouble(rule: FrameRule, got: str, frame: str = "") -> str:
     step = f"step {rule.step!r}"
     who = f"setting {rule.setting!r} of {step}" if rule.setting else step
     hint = f"; {rule.hint}" if rule.hint else ""
+    if not hint and frame == got == UNSAID:
+        hint = f"; if its values are {names[0]}, say so: --with quantity={names[0]}"
     return f"{who} takes {' or '.join(names)} at port {rule.port!r}, got {came}{hint}"
 
 

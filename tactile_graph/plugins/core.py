@@ -44,6 +44,7 @@ def tactile_graph_exporters() -> Mapping[str, str]:
         ".ndjson": "writers:JSON_LINES",
         ".csv": "writers:CSV",
         ".parquet": "parquet:PARQUET",
+        ".dataset": "data_set:DATA_SET",
         ".h5": "node_images:HDF5",
         ".hdf5": "node_images:HDF5",
         ".zarr": "node_images:ZARR",

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from tactile_graph.engine.stacked import StackedForm, form_of
 from tactile_graph.engine.watched import Kept
 from tactile_graph.errors import Skip, text_of
 from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
@@ -17,6 +18,7 @@ from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
 from tactile_graph.testing.same import same
 from tactile_graph.testing.shown import unshown
+from tactile_graph.testing.stacks import mixed, stack_trouble
 from tactile_graph.testing.subject import Bound, Subject
 from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
 
@@ -89,6 +91,7 @@ class Examination:
         self.limit_s = max(LEAST_S, TIMES * first.seconds)
         comparable = self._look_at_copies(usual, first)
         seen = {pickle.dumps(self._inputs(usual))}
+        self.look_at_stack(usual, self._inputs(usual))
         for case in others:
             try:
                 inputs = self._inputs(case)
@@ -98,6 +101,7 @@ class Examination:
             if mark not in seen:
                 seen.add(mark)
                 self.look_at(case, inputs)
+                self.look_at_stack(case, inputs)
         again = self._try(self._call(), self._inputs(usual))
         if kept.changed():
             self._tell(ORDINARY, WRITES_BEFORE)
@@ -118,6 +122,19 @@ class Examination:
             if before.changed():
                 self._tell(case.name, WRITES_BEFORE)
         return trial
+
+    def look_at_stack(self, case: Case, inputs: Inputs) -> None:
+        """Try a step's form for many frames on the case among others, where it has one."""
+        if self._form is None:
+            return
+        for rows in mixed(inputs, self._inputs(ordinary())):
+            self._tell(case.name, stack_trouble(self._form, rows, self._one))
+
+    @cached_property
+    def _form(self) -> StackedForm | None:
+        signature = self.subject.signature
+        made = self.subject.call().target
+        return form_of(signature, self.subject.settings, lambda: made)
 
     def _watched(self, case: Case, call: Bound, inputs: Inputs) -> Trial:
         kept = Kept(inputs)

@@ -125,8 +125,14 @@ def test_missing_files_and_directories_are_named(tmp_path: Path) -> None:
     write(tmp_path, b"1,2", "walk.csv")
     with pytest.raises(DataError, match=r"there is no such file; did you mean 'walk.csv'\?"):
         frames_of(tmp_path / "walks.csv")
-    with pytest.raises(DataError, match=r"is a directory; give a file in it \(walk.csv\)"):
+    with pytest.raises(DataError, match=r"is a directory; give a file in it \(walk.csv\)$"):
         frames_of(tmp_path)
+    write(tmp_path, b"1,2", "wander.csv")
+    with pytest.raises(DataError, match=r"\(walk.csv, wander.csv\), or all of them: \S+/\*$"):
+        frames_of(tmp_path)
+    (tmp_path / "bare").mkdir()
+    with pytest.raises(DataError, match="is a directory without a file in it; give a file"):
+        frames_of(tmp_path / "bare")
     with pytest.raises(ValueError, match="path is an empty list"):
         frames_of([])
 

@@ -27,7 +27,7 @@ TEXT = ("coupling-directions", "morphology", "broken-image", "line-patterns", "f
 CLAIMS = (
     *("current-limit", "stack-order", "boundary-operators", "variable-threshold"),
     *("residual-voltages", "erased-discs", "rotation-order", "one-pad", "erased-rectangles"),
-    *("noisy-rectangles", "heavier-side", "site-isolation"),
+    *("noisy-rectangles", "heavier-side", "site-isolation", "hysteresis", "heavier-smaller"),
 )
 RESTORED = ("restoration-filters", "noise-models", "load-prior")
 STUDIES = ("converter", "samples", *TEXT, *SCHEDULE, *CLAIMS, *WISHES, *RESTORED)
@@ -49,7 +49,7 @@ def test_the_order_is_that_of_the_thesis() -> None:
         ("table-5.2", "figure-5.13", "figure-5.14"),
     ):
         assert ids.index(before) < ids.index(table) < ids.index(after)
-    assert tuple(ids[:4]) == ("figure-2.2", "current-limit", "converter", "samples")
+    assert tuple(ids[:4]) == ("hysteresis", "figure-2.2", "current-limit", "converter")
     last = (*WISHES, *RESTORED)
     assert tuple(ids[-len(last) :]) == last
 

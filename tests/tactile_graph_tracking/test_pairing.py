@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tactile_graph_tracking.pairing import paired
+from tactile_graph_tracking.pairing import FEW_PAIRS, paired, paired_places
 
 LIMIT = 2.0
 
@@ -47,3 +47,18 @@ def test_a_conflict_is_solved_for_the_sum_not_for_the_first():
 @pytest.mark.parametrize("shape", [(0, 0), (0, 3), (3, 0)])
 def test_nobody_or_nothing_makes_no_pairs(shape):
     assert paired(np.zeros(shape), LIMIT) == []
+
+
+@pytest.mark.parametrize("gate", [0.3, 2.0, 100.0])
+def test_many_places_are_paired_as_well_as_all_at_once(gate):
+    rng = np.random.default_rng(4)
+    true, got = rng.uniform(0, 40, (90, 2)), rng.uniform(0, 40, (80, 2))
+    got[:60] = true[10:70] + rng.normal(0, 0.2, (60, 2))
+    assert len(true) * len(got) > FEW_PAIRS
+    alone = gate * (2.0 + len(true))
+    off = np.hypot(*(true[:, None] - got[None]).transpose(2, 0, 1))
+    at_once = paired(np.where(off <= gate, off, np.inf), alone)
+    found = paired_places(true, got, gate, alone)
+    assert found == sorted(found)
+    assert [(i, j) for i, j, _ in found] == at_once
+    assert [error for *_, error in found] == [off[pair] for pair in at_once]

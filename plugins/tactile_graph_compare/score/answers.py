@@ -181,5 +181,7 @@ def _is_number(kind: Any) -> bool:
 
 
 def _is_identity(kind: Any) -> bool:
-    fields = public_fields(kind)
-    return fields.get("name") is str and fields.get("known") is bool
+    return all(
+        fields.get("name") is str and fields.get("known") is bool
+        for fields in map(public_fields, arms(kind))
+    )

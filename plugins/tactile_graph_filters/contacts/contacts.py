@@ -15,7 +15,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.contacts.labels import label
-from tactile_graph_filters.images.crop import Box, cut_image, cut_mask, widened
+from tactile_graph_filters.images.crop import Box, cut_image, origin_of, widened
 from tactile_graph_filters.nan import refuse_unbounded
 
 
@@ -71,7 +71,9 @@ class Contact:
     @property
     def mask(self) -> Mask:
         """Its cells within its box, in their place on the pad."""
-        return cut_mask(self._whole.mask(self._labels == self.number), self.box)
+        top, bottom, left, right = self.box
+        own = self._labels[top:bottom, left:right] == self.number
+        return Mask(own, self._whole.pitch_cm, origin_of(self.box, self._whole))
 
     @property
     def image(self) -> Image:

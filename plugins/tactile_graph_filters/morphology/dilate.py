@@ -8,8 +8,10 @@ import numpy as np
 
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
+from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
-from tactile_graph_filters.morphology.erosion import make_plan, sweep
+from tactile_graph_filters.morphology.erosion import make_plan, sweep, swept
+from tactile_graph_filters.morphology.packed import combined
 
 
 class Dilate:
@@ -32,10 +34,16 @@ class Dilate:
     stateless = True
 
     def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
-        self._plan = make_plan(parse_element(element), dilate=True, border=border)
+        self._element, self._border = parse_element(element), border
+        self._plan = make_plan(self._element, dilate=True, border=border)
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the dilated mask."""
         out = np.empty(mask.values.shape, np.bool_)
         count = sweep.call(mask.values, self._plan, out)
         return Mask(out, mask.pitch_cm, mask.origin_cm, count)
+
+    def stacked(self, mask: MaskStack) -> MaskStack:
+        """Return the dilated masks of several frames."""
+        packed = None if self._border else combined(mask, self._element, dilate=True)
+        return packed or swept(mask, self._plan)

@@ -19,7 +19,8 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import Element
 
 Plan = NDArray[np.int64]
@@ -164,6 +165,13 @@ def _sweep_plain(values: NDArray[np.bool_], plan: Plan, out: NDArray[np.bool_]) 
     return int(np.count_nonzero(out))
 
 
+def swept(masks: MaskStack, plan: Plan) -> MaskStack:
+    """Return what ``plan`` makes of several masks."""
+    out, counts = np.empty(masks.values.shape, np.bool_), np.empty(len(masks), np.int64)
+    sweep_each.call(masks.values, plan, out, counts)
+    return MaskStack(out, masks.pitch_cm, masks.origin_cm, counts)
+
+
 @compiled_twin_of(_sweep_plain)
 def sweep(values, plan, out):  # type: ignore[no-untyped-def]
     """Write into ``out`` what ``plan`` makes of ``values``; return how many cells are on."""
@@ -206,3 +214,10 @@ def sweep(values, plan, out):  # type: ignore[no-untyped-def]
             wanted[j] = (row[j] ^ flip) != 0
             count += (row[j] ^ flip) != 0
     return count
+
+
+@compiled_later
+def sweep_each(values, plan, out, counts):  # type: ignore[no-untyped-def]
+    """Write into ``out`` what ``plan`` makes of each of several masks, and how many are on."""
+    for k in range(values.shape[0]):
+        counts[k] = sweep(values[k], plan, out[k])

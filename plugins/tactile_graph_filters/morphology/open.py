@@ -8,8 +8,9 @@ import numpy as np
 
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
+from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
-from tactile_graph_filters.morphology.erosion import make_plan, sweep
+from tactile_graph_filters.morphology.erosion import make_plan, sweep, swept
 
 
 class Open:
@@ -40,3 +41,7 @@ class Open:
         out = np.empty(mask.values.shape, np.bool_)
         count = sweep.call(mask.values, self._plan, out)
         return Mask(out, mask.pitch_cm, mask.origin_cm, count)
+
+    def stacked(self, mask: MaskStack) -> MaskStack:
+        """Return the opened masks of several frames."""
+        return swept(mask, self._plan)

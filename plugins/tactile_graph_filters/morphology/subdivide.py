@@ -10,6 +10,8 @@ from annotated_types import Ge, Le
 from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
+from tactile_graph.wires.stacks import MaskStack
+from tactile_graph_filters.morphology.packed import doubled
 
 
 @compiled_later
@@ -59,3 +61,21 @@ def subdivide(
     expand.call(mask.values, factor, out)
     x, y = mask.pitch_cm
     return Mask(out, (x / factor, y / factor), mask.origin_cm)
+
+
+def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:
+    """Return the masks of several frames cut as finely."""
+    if factor == 1:
+        return mask
+    n, rows, columns = mask.shape
+    x, y = mask.pitch_cm
+    grid, counts = ((x / factor, y / factor), mask.origin_cm), mask.counts * factor**2
+    words = mask.words if factor == 2 and 2 * columns <= MaskStack.WIDEST else None
+    if words is not None:
+        return MaskStack.packed(np.repeat(doubled(words), 2, axis=1), 2 * columns, *grid, counts)
+    out = np.empty((n * rows * factor, columns * factor), np.bool_)
+    expand.call(mask.values.reshape(n * rows, columns), factor, out)  # as one tall mask
+    return MaskStack(out.reshape(n, rows * factor, columns * factor), *grid, counts)
+
+
+subdivide.stacked = subdivide_stacked  # type: ignore[attr-defined]

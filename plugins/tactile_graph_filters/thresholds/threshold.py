@@ -14,6 +14,7 @@ from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask
+from tactile_graph.wires.stacks import Answered, ImageStack, MaskStack
 from tactile_graph_filters.nan import refuse_nan
 from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
@@ -30,6 +31,20 @@ def at_least(values, level, out):  # type: ignore[no-untyped-def]
             count += row[j] >= level
             numbers += row[j] == row[j]
     return count if numbers == values.size else -1
+
+
+@compiled_later
+def at_least_each(values, level, out, counts):  # type: ignore[no-untyped-def]
+    """Do what `at_least` does to each of several frames; ``counts`` takes what it returns."""
+    for k in range(values.shape[0]):
+        count = numbers = 0
+        for i in range(values.shape[1]):
+            row, wanted = values[k, i], out[k, i]
+            for j in range(values.shape[2]):
+                wanted[j] = row[j] >= level
+                count += row[j] >= level
+                numbers += row[j] == row[j]
+        counts[k] = count if numbers == values.shape[1] * values.shape[2] else -1
 
 
 @compiled_later
@@ -73,6 +88,19 @@ def footprint(image: Image, level: float) -> Mask:
     if count == -1:
         refuse_nan(image)
     return Mask(out, image.pitch_cm, image.origin_cm, count if valid is None else None)
+
+
+def footprints(images: ImageStack, level: float) -> Answered:
+    """Return the footprints of several frames; those of which `footprint` raises are not done."""
+    out = np.empty(images.values.shape, np.bool_)
+    counts = np.empty(len(images), np.int64)
+    at_least_each.call(images.values, level, out, counts)
+    done = counts >= 0
+    if images.valid is not None:
+        np.logical_and(out, images.valid, out=out)
+        done &= images.valid.any(axis=(1, 2))
+        counts = out.sum(axis=(1, 2))
+    return Answered(MaskStack(out, images.pitch_cm, images.origin_cm, counts), done)
 
 
 def levelled(image: Image) -> LevelledMask:
@@ -187,6 +215,16 @@ class Threshold:
             mask = with_level(mask, self._recorded)
         self._empty = None if mask.count or image.valid is not None else mask
         return mask
+
+    def stacked(self, image: ImageStack) -> Answered:
+        """Return the masks of several frames, at a level that is the same for all."""
+        in_volts = self._level_v is not None and image.quantity == "volt"
+        takes = self.takes.get("image", (image.quantity,))
+        known = in_volts or (self._other is not None and self._recorded is None)
+        level = self._level_v if in_volts else self._other
+        if level is None or not known or image.quantity not in takes or image.values.dtype != "f8":
+            return NotImplemented  # type: ignore[no-any-return]
+        return footprints(image, level)
 
 
 def _on_one_grid(image: Image, mask: Mask) -> bool:

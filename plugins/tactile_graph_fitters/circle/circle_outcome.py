@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
+from tactile_graph.wires.stacks import Answered, PointsStack, RecordStack
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
@@ -39,6 +40,20 @@ def circle_from(
             raise Degenerate(why(xy, status, radius, iterations))
         return _rescaled(xy, fit, *settings)
     return FittedCircle.quickly(x, y, radius, rms, len(xy), iterations)
+
+
+def circles_from(points: PointsStack, fit_each: Callable[..., None]) -> Answered:
+    """Return the circles of several frames' points; frames for which ``fit_each`` finds none are
+    not done.
+    """
+    n = len(points)
+    numbers, counts = np.empty((n, 4)), np.empty((n, 3), np.int64)
+    fit_each(points.xy_cm, points.starts, numbers, counts)
+    columns: dict[str, NDArray[Any]] = {
+        name: numbers[:, k] for k, name in enumerate(("x_cm", "y_cm", "radius_cm", "rms_cm"))
+    }
+    columns |= {"n_points": counts[:, 1], "iterations": counts[:, 2]}
+    return Answered(RecordStack(FittedCircle.quickly, columns), counts[:, 0] == 0)
 
 
 def _rescaled(xy: NDArray[np.float64], fit: Callable[..., Found], *settings: float) -> FittedCircle:

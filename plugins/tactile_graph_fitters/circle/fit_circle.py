@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from tactile_graph.wires import Points
-from tactile_graph_fitters.circle.circle_outcome import circle_from
+from tactile_graph.wires.stacks import Answered, PointsStack
+from tactile_graph_fitters.circle.circle_outcome import circle_from, circles_from
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
-from tactile_graph_fitters.circle.geometric import geometric_fit
+from tactile_graph_fitters.circle.geometric import geometric_fit, geometric_fit_each
 
 
 def fit_circle(points: Points) -> FittedCircle:
@@ -41,3 +42,11 @@ def fit_circle(points: Points) -> FittedCircle:
     circle.
     """
     return circle_from(points.xy_cm, geometric_fit.call)
+
+
+def fit_circle_stacked(points: PointsStack) -> Answered:
+    """Return the circles of several frames' points; where there is none the frame is not done."""
+    return circles_from(points, geometric_fit_each.call)
+
+
+fit_circle.stacked = fit_circle_stacked  # type: ignore[attr-defined]

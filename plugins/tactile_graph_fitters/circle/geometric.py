@@ -155,3 +155,12 @@ def geometric_fit(xy: NDArray[np.float64]) -> tuple[int, float, float, float, fl
     status, a, b, radius, rms, rounds = refined(uv, a, b)
     x, y, radius, rms = back(frame, a, b, radius, rms)
     return status, x, y, radius, rms, rounds
+
+
+@compiled_later
+def geometric_fit_each(xy, starts, numbers, counts):  # type: ignore[no-untyped-def]
+    """Fit several frames' points; write centre, radius and rms, and status, points, iterations."""
+    for k in range(starts.shape[0] - 1):
+        status, x, y, radius, rms, rounds = geometric_fit(xy[starts[k] : starts[k + 1]])
+        numbers[k, 0], numbers[k, 1], numbers[k, 2], numbers[k, 3] = x, y, radius, rms
+        counts[k, 0], counts[k, 1], counts[k, 2] = status, starts[k + 1] - starts[k], rounds

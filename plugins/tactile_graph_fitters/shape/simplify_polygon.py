@@ -89,26 +89,57 @@ def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: flo
     """Take out of the first ``count`` of ``kept`` the corners that go; return how many are left.
 
     With a tolerance of 0 or more only corners no further than that from the line between their
-    neighbours go.
+    neighbours go. A tree of the smaller of every two triangles finds the next corner, so that the
+    time grows with the corners as sorting them would.
     """
-    while count > least:
-        smallest, at = np.inf, -1
-        for k in range(count):
-            a, b, c = kept[k - 1 if k else count - 1], kept[k], kept[(k + 1) % count]
-            dx, dy = xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
-            twice = abs(dx * (xy[b, 1] - xy[a, 1]) - dy * (xy[b, 0] - xy[a, 0]))
-            if tolerance_cm >= 0.0:
-                size = math.hypot(dx, dy)
-                if size > 0.0 and twice / size > tolerance_cm:
-                    continue
-            if twice < smallest:
-                smallest, at = twice, k
-        if at < 0:
-            break
-        count -= 1
-        for k in range(at, count):
-            kept[k] = kept[k + 1]
-    return count
+    leaves = 1
+    while leaves < count:
+        leaves *= 2
+    tree = np.empty(2 * leaves)
+    ring = np.empty((2, count), np.int64)  # the corner before and the one after; -1 once it is gone
+    for k in range(leaves):
+        tree[leaves + k] = np.inf
+    for k in range(count):
+        ring[0, k], ring[1, k] = (k - 1 if k else count - 1), (k + 1) % count
+    for k in range(count):
+        tree[leaves + k] = triangle(xy, kept, ring, k, tolerance_cm)
+    for node in range(leaves - 1, 0, -1):
+        tree[node] = min(tree[2 * node], tree[2 * node + 1])
+    left = count
+    while left > least and tree[1] < np.inf:
+        node = 1
+        while node < leaves:  # of equal ones the first
+            node = 2 * node if tree[2 * node] <= tree[2 * node + 1] else 2 * node + 1
+        gone = node - leaves
+        before, after = ring[0, gone], ring[1, gone]
+        ring[1, before], ring[0, after], ring[0, gone] = after, before, -1
+        left -= 1
+        for turn in range(3):
+            k = before if turn == 0 else after if turn == 1 else gone
+            node = leaves + k
+            tree[node] = np.inf if k == gone else triangle(xy, kept, ring, k, tolerance_cm)
+            while node > 1:
+                node //= 2
+                tree[node] = min(tree[2 * node], tree[2 * node + 1])
+    n = 0
+    for k in range(count):
+        if ring[0, k] >= 0:
+            kept[n] = kept[k]
+            n += 1
+    return n
+
+
+@compiled_later
+def triangle(xy: Values, kept: Indices, ring: Indices, k: int, tolerance_cm: float) -> float:
+    """Return twice the area of a corner's triangle with its neighbours; inf if it must not go."""
+    a, b, c = kept[ring[0, k]], kept[k], kept[ring[1, k]]
+    dx, dy = xy[c, 0] - xy[a, 0], xy[c, 1] - xy[a, 1]
+    twice = abs(dx * (xy[b, 1] - xy[a, 1]) - dy * (xy[b, 0] - xy[a, 0]))
+    if tolerance_cm >= 0.0:
+        size = math.hypot(dx, dy)
+        if size > 0.0 and twice / size > tolerance_cm:
+            return math.inf
+    return twice if twice < math.inf else math.inf  # a NaN, of corners beyond all numbers, stays
 
 
 @compiled_later

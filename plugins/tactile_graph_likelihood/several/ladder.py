@@ -1,8 +1,8 @@
 """Sketches of a part of a pad, of each number that may lie there: where a search begins.
 
-From one sketch for each connected piece, the sketch whose parting gains most is parted, neighbours
-are cut anew until none gains, and so on, even where a further sketch gains nothing yet: two moves
-may be needed. Then neighbours are joined on the way back down.
+From a sketch for each connected piece, cut where it is empty, the sketch whose parting gains most
+is parted, neighbours are cut anew until none gains, and so on, even where a further sketch gains
+nothing yet: two moves may be needed. Then neighbours are joined on the way back down.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from tactile_graph_likelihood.several.alike import alikeness
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.partings import across, components, partings, sketch_of
 from tactile_graph_likelihood.several.scene import Scene
+from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
 from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
 from tactile_graph_likelihood.single.problem import Places
@@ -38,12 +39,23 @@ DRAWN = 2.0
 ODD = 2.0
 """Half the squared residual, in sigmas, from which on a reading counts as not explained."""
 
+USUAL = 0.1307
+"""Mean of what a reading leaves unexplained, were the model true."""
+
 UNEXPLAINED = 4.0
 """What may be left unexplained, in nats, for a sketch not to be parted, nor two cut anew."""
 
 GIVE_UP, GAIN = 8.0, 0.1
 """How much less log probability than the best a number may have for a larger one to be tried; what
 a move must bring."""
+
+LOCALLY = 2.0
+"""How much less evidence two neighbours cut anew may have beside the others as they are, for all to
+be brought to their joint mode."""
+
+HOPELESS = 15.0
+"""How much less log probability than the best a number may have for none of its neighbours to be
+joined."""
 
 
 class Sketches(NamedTuple):
@@ -62,16 +74,19 @@ class Ladder(Scene):
         self.cut: set[bytes] = set()
         self.halves: dict[bytes, list[tuple[float, Values]]] = {}
 
-    def ladder(self, room: int) -> dict[int, Sketches]:
-        """Return the best sketches of each number that is come upon."""
-        now = self.recut(self.together(self.pieces(room), 0))
+    def ladder(self, begin: Sketches, room: int) -> dict[int, Sketches]:
+        """Return the best sketches of each number that is come upon from some."""
+        now = self.recut(begin)
         best = {len(now.points): now}
         while len(now.points) < room and (more := self.parted_once(now)):
             now = self.recut(more)
             best[len(now.points)] = now
             if now.rank < max(it.rank for it in best.values()) - GIVE_UP:
                 break
+        top = max(it.rank for it in best.values())
         for n in range(max(best), 1, -1):
+            if n in best and best[n].rank < top - HOPELESS:
+                break
             fewer = self.joined_once(best[n]) if n in best else None
             if fewer and (n - 1 not in best or fewer.rank > best[n - 1].rank + GAIN):
                 best[n - 1] = self.recut(fewer)
@@ -89,13 +104,14 @@ class Ladder(Scene):
         log = settle_sketches.call(beside, points, first, SKETCHED)
         return log / self.shared + len(points) * self.each
 
-    def pieces(self, room: int) -> Values:
-        """Return a sketch of each connected piece, the largest ones if there are too many."""
+    def beginnings(self, room: int) -> Values:
+        """Return a sketch of each connected piece, cut where it is empty; the largest ones only."""
         labels = components.call(self.on, 1)
         counts = np.bincount(labels.ravel())[1:]
         order = np.argsort(-counts, kind="stable")
         large = [k + 1 for k in order if counts[k] >= LEAST_PIECE][:room] or [int(order[0]) + 1]
-        return np.concatenate([self.sketch_of(labels == k) for k in large])
+        masks = seeds([labels == k for k in large], room, LEAST_PIECE)
+        return np.concatenate([self.sketch_of(mask) for mask in masks])
 
     def parted_once(self, now: Sketches) -> Sketches | None:
         """Return them with that one parted which gains most by itself, None if none can be."""
@@ -140,12 +156,15 @@ class Ladder(Scene):
         """Yield what is likelier by two neighbours cut anew."""
         own, unexplained = self.shares(now.points)
         for pair, mask, left in neighbours(own, unexplained, len(now.points)):
-            key = bytes([len(now.points)]) + mask.tobytes()
+            key = mask.tobytes()
             if left < UNEXPLAINED or key in self.cut:
                 continue
             self.cut.add(key)
             beside, rest = self.beside_sketches(now.points, *pair)
-            for _, two in self.parted(mask, beside, 1):
+            before = self.sketched(now.points[list(pair)], beside, SKETCHED - 1)
+            for worth, two in self.parted(mask, beside, 1):
+                if worth < before - LOCALLY:
+                    continue
                 new = self.together(np.concatenate([rest, two]))
                 if new.rank > now.rank + GAIN:
                     yield new
@@ -196,6 +215,14 @@ class Ladder(Scene):
         point = np.zeros((1, WIDTH))
         sketch_of.call(np.array(sums, dtype=np.float64), self.problem.grid, point[0])
         return point
+
+    def surplus(self, load: Values) -> float:
+        """Return how much more is left unexplained than were the model true, in nats."""
+        noise = self.problem.noise
+        mu = np.log(np.maximum(load, 1e-9))
+        shows = (1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA])
+        usual = shows * USUAL - (1.0 - shows) * np.log1p(-shows)
+        return float(self.unexplained(load).sum() - usual[self.problem.states != UNKNOWN].sum())
 
     def unexplained(self, load: Values) -> Values:
         """Return how much likelier each element's reading would be, were it explained wholly."""

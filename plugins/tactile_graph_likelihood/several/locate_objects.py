@@ -45,11 +45,11 @@ ANEW = np.array([0.4, 1.0, 0.3])
 """Change of ln sigma, of the voids' log odds and of ln shared from which on the search is made
 anew."""
 
-LIKELY, VAGUE, STRANGE = 0.5, 0.62, -6.0
+LIKELY, VAGUE, STRANGE = 0.5, 0.72, -6.0
 """Where an answer is flagged: the number's probability is no larger, the mean deviation of all
 centres is larger, in pitches, or the surprise is no larger."""
 
-FEW_ELEMENTS = 1.7
+FEW_ELEMENTS = 2.3
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
 own."""
 
@@ -75,8 +75,8 @@ class LocateObjects:
     Notes
     -----
     What counts as touched follows from the noise in the frame itself. Gains and voids are those of
-    what the outlines cover whole, all objects together, beside what the pad says; the search is
-    made anew where they differ much. Readings at the end of their range count as loads.
+    what the outlines cover whole, all objects together, beside what the pad says; where they
+    differ much the search goes on from there. Readings at the end of their range count as loads.
     """
 
     stateless = True
@@ -142,7 +142,7 @@ class LocateObjects:
         noise, shared = said_by(problem, found, told)
         problem = problem._replace(noise=noise.vector(pitch))
         if is_other(told, noise, shared):
-            found = likeliest(problem, self._expected, shared)
+            found = likeliest(problem, self._expected, shared, found.outlines, anew=False)
         return problem, found.under(problem.noise, shared)
 
 

@@ -183,6 +183,7 @@ def likeliest(
     expected: Expected,
     shared: float = 1.0,
     starts: Configuration | None = None,
+    anew: bool = True,
 ) -> OnPad:
     """Return the outlines on a pad of the most evidence.
 
@@ -195,6 +196,8 @@ def likeliest(
         As in `Scene`.
     starts : Configuration, optional
         Where the search may begin, too.
+    anew : bool
+        Whether it begins elsewhere even where these explain what is read.
 
     Raises
     ------
@@ -203,7 +206,7 @@ def likeliest(
     """
     scenes = parts_of(problem, expected, shared)
     begins = split(starts, scenes) if starts else [None] * len(scenes)
-    every = [s.divisions(expected.most, b) for s, b in zip(scenes, begins, strict=True)]
+    every = [s.divisions(expected.most, b, anew) for s, b in zip(scenes, begins, strict=True)]
     worths = [
         {n: scene.of_number(found) for n, found in divisions.items()}
         for scene, divisions in zip(scenes, every, strict=True)

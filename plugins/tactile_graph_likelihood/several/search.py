@@ -17,6 +17,7 @@ from tactile_graph_likelihood.several.ladder import (
     SKETCHED,
     Ladder,
     Mask,
+    Sketches,
     dilated,
     neighbours,
 )
@@ -34,9 +35,13 @@ that is drawn of each."""
 TRIES = 24
 """Other starts of an outline that is drawn by itself."""
 
-HOPE, WORSE = 20.0, 6.0
-"""How much less log probability than one sketch of all, and than the best pair, a pair may have to
-be drawn."""
+CHANGED, SAME_NUMBER, WORSE = 10.0, 20.0, 6.0
+"""How much less log probability sketches may have to be drawn: than what they replace, where they
+are one more or less or as many; than the best pair."""
+
+SURPLUS = 4.0
+"""What may be left unexplained beyond what is usual, in nats, for outlines not to be looked for in
+any other way."""
 
 SPLIT, RECUT = 8.0, 6.0
 """What may be left unexplained, in nats, for an outline not to be parted, for two not to be parted
@@ -71,25 +76,36 @@ class Search(Ladder):
         self.every: list[Configuration] = []
         self.worths: dict[int, float] = {}
 
-    def divisions(self, room: int, begin: Configuration | None = None) -> dict[int, Configuration]:
+    def divisions(
+        self, room: int, begin: Configuration | None = None, anew: bool = True
+    ) -> dict[int, Configuration]:
         """Return the best outlines of each number that the search comes upon.
 
-        It may begin with some outlines, too.
+        It may begin with some outlines, too; with no others, unless ``anew``, where they explain
+        what is read.
         """
-        self.noted(self.drawn(self.together(self.pieces(room), 0).points, self.problem))
-        _, unexplained = self.owners(self.every[-1])
-        if unexplained.sum() > SPLIT:
-            rungs = self.ladder(room).values()
-            top = max(it.rank for it in rungs)
-            for sketches in rungs:
-                if sketches.rank > top - NEAR:
-                    self.noted(self.drawn(sketches.points, self.problem))
         if begin is not None:
             self.noted(begin)
+        if anew or begin is None or not self.explained(self.every[-1]):
+            sketches = self.together(self.beginnings(room), 0)
+            if not self.explained(self.noted(self.drawn(sketches.points, self.problem))):
+                self.draw_ladder(sketches, room)
         better: Configuration | None = max(self.every, key=self.rank)
         while better is not None:
             better = self.improved(better, room)
         return self.best
+
+    def explained(self, found: Configuration) -> bool:
+        """Return whether outlines leave hardly more unexplained than true ones would."""
+        return self.surplus(self.beside(found).load) <= SURPLUS * self.shared
+
+    def draw_ladder(self, begin: Sketches, room: int) -> None:
+        """Draw the likeliest sketches of all numbers."""
+        rungs = self.ladder(begin, room).values()
+        top = max(it.rank for it in rungs)
+        for sketches in rungs:
+            if sketches.rank > top - NEAR:
+                self.noted(self.drawn(sketches.points, self.problem))
 
     def far_from(self, x_cm: float, y_cm: float) -> float:
         """Return the distance of a place from the nearest touched element, in cm."""
@@ -159,14 +175,14 @@ class Search(Ladder):
     ) -> Iterator[Configuration]:
         """Yield what may explain a mask beside others: one outline, or two."""
         before, unexplained = left
-        one = self.sketch_of(mask)
-        least = self.sketched(one, beside) - HOPE
         if len(out) > 1:
-            if least > before - 2.0 * HOPE:
+            one = self.sketch_of(mask)
+            if self.sketched(one, beside) > before - CHANGED:
                 yield self.drawn(one, beside, before)
             if unexplained < RECUT:
                 return
         pairs = self.parted(mask, beside, PAIRS)
+        least = before - (SAME_NUMBER if len(out) > 1 else CHANGED)
         for worth, pair in pairs:
             if worth > max(least, pairs[0][0] - WORSE):
                 yield self.drawn(pair, beside, before)

@@ -12,6 +12,10 @@ Flags = NDArray[np.bool_]
 STEPS = 15
 """Of the centre towards where the readings around it lie: it has come to rest long before."""
 N_PLACE = 10
+FEW = 16
+"""Centres that are compared with every cell; of more the near ones are looked up."""
+CUT = 4.0
+"""Standard deviations at which smoothing is cut off."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,16 @@ class PatchKind:
         """Points of a patch."""
         return (2 * self.reach + 1) ** 2
 
+    @property
+    def smoothing_cells(self) -> float:
+        """Standard deviation of the smoothing over a step; 0 where that is a cell or less."""
+        return 0.5 * float(np.sqrt(self.step_cells**2 - 1.0)) if self.step_cells > 1.0 else 0.0
+
+    @property
+    def margin(self) -> int:
+        """Cells around what is a contact's own that smoothing carries it into, and one more."""
+        return int(CUT * self.smoothing_cells + 0.5) + 1
+
 
 def patches(values: Array, good: Flags, centres: Array, kind: PatchKind) -> tuple[Array, Array]:
     """Return the patch of each contact of a frame, and the centre it lies on.
@@ -60,19 +74,48 @@ def patches(values: Array, good: Flags, centres: Array, kind: PatchKind) -> tupl
     (ndarray, ndarray)
         Shapes (k, kind.size) and (k, 2). A cell that lies nearer to another contact counts as 0.
     """
+    from scipy.ndimage import find_objects
+
     out, middles = np.zeros((len(centres), kind.size)), np.array(centres, np.float64)
     at = np.mgrid[: values.shape[0], : values.shape[1]].astype(np.float64)
-    row, column = at
-    far = np.stack([(column - x) ** 2 + (row - y) ** 2 for x, y in centres])
-    owner = far.argmin(axis=0)
+    owner = _owners(at, middles)
     known = np.where(good, values, 0.0)
-    for k in range(len(centres)):
-        own = owner == k
-        mine = np.where(own, known, 0.0)
+    # A contact owns a part of the pad, beyond which nothing is told of it: only that is looked at.
+    boxes = find_objects(owner + 1, len(centres))
+    for k, box in enumerate(boxes):
+        if box is None:  # another lies in the same place
+            continue
+        part = tuple(slice(max(0, s.start - kind.margin), s.stop + kind.margin) for s in box)
+        own = owner[part] == k
+        mine = np.where(own, known[part], 0.0)
         if kind.window_cells > 0.0:
-            middles[k] = _windowed(mine, at, middles[k], kind.window_cells)
-        out[k] = _patch(mine, np.where(own, good, True), middles[k], kind)
+            middles[k] = _windowed(mine, at[(slice(None), *part)], middles[k], kind.window_cells)
+        corner = np.array([part[1].start, part[0].start], np.float64)
+        out[k] = _patch(mine, np.where(own, good[part], True), middles[k] - corner, kind)
     return out, middles
+
+
+def _owners(at: Array, centres: Array) -> NDArray[np.int64]:
+    """Return for each cell which centre it is nearest to, of equally near ones the first.
+
+    Parameters
+    ----------
+    at : ndarray, shape (2, rows, columns)
+        Row and column of each cell.
+    centres : ndarray, shape (k, 2)
+        (column, row).
+    """
+    row, column = at
+    if len(centres) <= FEW:
+        far = np.stack([(column - x) ** 2 + (row - y) ** 2 for x, y in centres])
+        return np.asarray(far.argmin(axis=0))
+    from scipy.spatial import KDTree
+
+    cells = np.column_stack([column.ravel(), row.ravel()])
+    distances, which = KDTree(centres).query(cells, k=4)  # seldom are more than four as near
+    near = np.asarray(distances)
+    first = np.where(near == near[:, :1], which, len(centres)).min(axis=1)
+    return np.asarray(first.reshape(row.shape))
 
 
 def _windowed(values: Array, at: Array, start: Array, width: float) -> Array:
@@ -93,10 +136,10 @@ def _patch(values: Array, good: Flags, centre: Array, kind: PatchKind) -> Array:
     from scipy.ndimage import gaussian_filter, map_coordinates
 
     known = good.astype(np.float64)
-    if kind.step_cells > 1.0:
-        width = 0.5 * float(np.sqrt(kind.step_cells**2 - 1.0))
-        values = gaussian_filter(values, width, mode="constant")
-        known = gaussian_filter(known, width, mode="nearest")
+    width = kind.smoothing_cells
+    if width > 0.0:
+        values = gaussian_filter(values, width, mode="constant", truncate=CUT)
+        known = gaussian_filter(known, width, mode="nearest", truncate=CUT)
     offsets = kind.step_cells * np.arange(-kind.reach, kind.reach + 1)
     at = np.meshgrid(centre[1] + offsets, centre[0] + offsets, indexing="ij")
     read = map_coordinates(values, at, order=1, mode="constant", cval=0.0).ravel()

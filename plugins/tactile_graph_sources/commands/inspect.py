@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -155,8 +156,15 @@ def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[st
     path = shlex.quote(str(looked.path))
     runs = [f"tactile-graph run {name} {path}{told}" for name in works.names[:MOST_SHOWN]]
     chosen = looked.chosen.replace("/", "-")
-    target = shlex.quote("-".join(filter(None, (looked.path.stem, chosen))) + ".zarr")
+    name = "-".join(filter(None, (looked.path.stem, chosen)))
+    target = shlex.quote(name + other_kind(looked.path))
     return [*runs, f"tactile-graph convert {path} {target}{told}"]
+
+
+def other_kind(path: Path) -> str:
+    """Return the ending of what to convert a recording to: no file it is itself, no extra more."""
+    kinds = [".zarr"] if find_spec("zarr") else []
+    return next(kind for kind in (*kinds, ".npz", ".csv") if kind != path.suffix)
 
 
 def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:

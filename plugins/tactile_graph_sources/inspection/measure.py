@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.leaps import is_leap
 
 Stack = NDArray[np.float64]
 MAD_TO_SD = 1.4826
@@ -45,6 +46,8 @@ class Measured:
         Rows and columns.
     rate_hz, jitter : float, optional
         Frames a second, and the spread of the steps over their median; None without times.
+    n_leaps : int
+        Times that go back, or leap by many usual steps.
     duration_s : float, optional
     lowest, highest : float
         Of all valid cells.
@@ -75,6 +78,7 @@ class Measured:
     shape: tuple[int, int]
     rate_hz: float | None
     jitter: float | None
+    n_leaps: int
     duration_s: float | None
     lowest: float
     highest: float
@@ -123,7 +127,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
         offset = float(np.median(idle[known])) if known.any() else 0.0
         level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
         dead, stuck = _still(filled, idle, known, _Levels(offset, highest, noise or 0.0))
-        rate, jitter, duration = _rate(frames)
+        pace = _pace(frames)
         spread = np.quantile(idle[known], [0.1, 0.9]) if known.any() else np.zeros(2)
         lasting, n_lasting = _lasting(
             np.where(stuck, offset, idle) - offset, level, highest - offset
@@ -131,9 +135,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
         return Measured(
             len(frames),
             (stack.shape[1], stack.shape[2]),
-            rate,
-            jitter,
-            duration,
+            *pace,
             lowest,
             highest,
             step,
@@ -288,13 +290,22 @@ def _contacts(above: Stack, level: float) -> int:
     return int(np.count_nonzero(np.bincount(labels.ravel())[1:] >= SMALLEST_CONTACT))
 
 
-def _rate(frames: Sequence[Frame]) -> tuple[float | None, float | None, float | None]:
-    """Return frames a second, the spread of their steps over the median, and the time they take."""
+class _Pace(NamedTuple):
+    """Frames a second, the spread of their steps over the median, leaps, and the time they take."""
+
+    rate_hz: float | None
+    jitter: float | None
+    n_leaps: int
+    duration_s: float | None
+
+
+def _pace(frames: Sequence[Frame]) -> _Pace:
     times = np.array([f.time_s for f in frames if f.time_s is not None], dtype=np.float64)
     steps = np.diff(times)
-    steps = steps[steps > 0]
-    if len(steps) < 1:
-        return None, None, None
-    usual = float(np.median(steps))
-    jitter = float(np.median(np.abs(steps - usual))) * MAD_TO_SD / usual
-    return 1.0 / usual, jitter, float(times[-1] - times[0])
+    onward = steps[steps > 0]
+    if len(onward) < 1:
+        return _Pace(None, None, 0, None)
+    usual = float(np.median(onward))
+    jitter = float(np.median(np.abs(onward - usual))) * MAD_TO_SD / usual
+    n_leaps = sum(is_leap(float(step), usual) for step in steps)
+    return _Pace(1.0 / usual, jitter, n_leaps, float(times.max() - times.min()))

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
@@ -48,7 +47,7 @@ class Held(NamedTuple):
     times_name: str = ""
 
 
-def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
+def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
     """Yield the matrices of a stack; times that are not as many as the frames are left out."""
     frames = stack_of(reading, held.values, held.what)
     times, factor = held.times, 1.0
@@ -58,15 +57,10 @@ def frames_of(reading: Reading, held: Held) -> Iterator[Frame]:
         factor = _factor(reading, held.times_name, times)
     reading.report.expect(len(frames))
     said = held.said
-    for k, matrix in enumerate(frames):
-        timed = times is not None and np.isfinite(times[k])
-        yield reading.frame(
-            matrix,
-            pitch_cm=said.pitch_cm,
-            quantity=said.quantity,
-            factor=said.factor,
-            time_s=float(times[k]) * factor if times is not None and timed else None,
-        )
+    times_s = None if times is None else times.astype(np.float64) * factor
+    yield from reading.frames(
+        frames, times_s, factor=said.factor, pitch_cm=said.pitch_cm, quantity=said.quantity
+    )
 
 
 def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -> str:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import islice
+from itertools import chain, islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.steps import Report
-from tactile_graph.wires import Frame
+from tactile_graph.wires import Frame, Image
+from tactile_graph.wires.frame_stack import FrameStack
 
 NEIGHBOURS = 3
 """How many frames before and as many after a frame it is held against."""
@@ -25,7 +26,9 @@ FEWEST_CELLS = 16
 Values = NDArray[Any]
 
 
-def without_garbage(frames: Iterator[Frame], report: Report, where: str) -> Iterator[Frame]:
+def without_garbage(
+    frames: Iterator[Frame], report: Report, where: str, begun: _Film | None = None
+) -> Iterator[Frame]:
     """Yield the frames but for those of garbage, which are counted and told.
 
     A frame is garbage if it differs from those around it many times as much as they do among
@@ -41,9 +44,11 @@ def without_garbage(frames: Iterator[Frame], report: Report, where: str) -> Iter
     report : Report
     where : str
         The file, for the report.
+    begun : _Film, optional
+        What came before, of frames without a label.
     """
     pending: deque[Frame] = deque()
-    films: dict[str, _Film] = {}
+    films: dict[str, _Film] = {} if begun is None else {"": begun}
     for frame in frames:
         pending.append(frame)
         films.setdefault(frame.label, _Film()).add(frame)
@@ -51,6 +56,82 @@ def without_garbage(frames: Iterator[Frame], report: Report, where: str) -> Iter
             yield from _settled(films[pending[0].label], pending.popleft(), report, where)
     while pending:
         yield from _settled(films[pending[0].label], pending.popleft(), report, where)
+
+
+def stacks_without_garbage(
+    frames: Iterator[Frame | FrameStack], report: Report, where: str
+) -> Iterator[Frame | FrameStack]:
+    """Yield what `without_garbage` does, as stacks up to the first frame of garbage.
+
+    Parameters
+    ----------
+    frames : iterator of Frame or FrameStack
+        Frames in stacks bear no label, and nobody knows their truth.
+    report, where
+        As of `without_garbage`.
+    """
+    film = _Film()
+    now: FrameStack | None = None
+    while True:
+        after = next(frames, None)
+        if now is not None and not _is_clean(film, now, after):
+            rest = chain([now], [] if after is None else [after], frames)
+            yield from without_garbage(_flat(rest), report, where, film)
+            return
+        if now is not None:
+            yield now
+        if after is None:
+            return
+        if not isinstance(after, FrameStack):
+            yield from without_garbage(_flat(chain([after], frames)), report, where, film)
+            return
+        now = after
+
+
+def _flat(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame]:
+    for some in frames:
+        yield from some if isinstance(some, FrameStack) else (some,)
+
+
+def _is_clean(film: _Film, now: FrameStack, after: Frame | FrameStack | None) -> bool:
+    """Return whether no frame of a stack is garbage; if so, take it into the film.
+
+    A stack that is short, or followed by anything but another one of its shape, is not looked at.
+    """
+    following = after.images.values[:NEIGHBOURS] if isinstance(after, FrameStack) else None
+    values = now.images.values
+    if len(values) <= NEIGHBOURS or (after is not None and following is None):
+        return False
+    if following is not None and following.shape != (NEIGHBOURS, *values.shape[1:]):
+        return False
+    around = [f.image.values[None] for f, _ in film.behind]
+    if around and around[-1].shape[1:] != values.shape[1:]:
+        return False
+    film_values = np.concatenate([*around, values, *([] if following is None else [following])])
+    n_behind, n = len(around), len(values)
+    with np.errstate(over="ignore"):
+        apart = np.abs(np.diff(film_values, axis=0)).reshape(len(film_values) - 1, -1)
+    changes = np.concatenate([[np.inf], apart.sum(axis=1) / values[0].size])
+    changes[:n_behind] = [change for _, change in film.behind]
+    for i in _jumps(changes, n_behind, n).tolist():
+        near = film_values[max(0, i - NEIGHBOURS) : i + NEIGHBOURS + 1]
+        others = [Frame(Image(v)) for k, v in enumerate(near, max(0, i - NEIGHBOURS)) if k != i]
+        if is_garbage(Frame(Image(film_values[i])), others):
+            return False
+    for i in range(n - NEIGHBOURS, n):
+        film.behind.append((now[i], float(changes[n_behind + i])))
+    film.last = values[-1]
+    return True
+
+
+def _jumps(changes: NDArray[np.float64], first: int, n: int) -> NDArray[np.intp]:
+    """Return which of ``n`` frames from ``first`` on change more than those around them."""
+    edge = np.full(NEIGHBOURS, np.inf)
+    padded = np.concatenate([edge, changes, edge])
+    at = np.arange(first, first + n) + NEIGHBOURS
+    others = np.min([padded[at + k] for k in (-3, -2, -1, 2, 3)], axis=0)
+    jumps = np.minimum(padded[at], padded[at + 1]) > 2.0 * others
+    return np.asarray(at[jumps] - NEIGHBOURS)
 
 
 @dataclass(slots=True)

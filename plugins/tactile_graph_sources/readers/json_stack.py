@@ -25,6 +25,7 @@ from tactile_graph_sources.readers.tables.preamble import Described, described
 
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
+_SHAPES = ("shape", "size", "dims", "dimensions", "grid")
 _NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
@@ -49,7 +50,13 @@ def recognises(head: Head) -> bool:
     first = next((x.strip() for x in head.lines if x.strip()), "")
     if not head.whole:
         return first.startswith(("[[", "[{")) or not first.endswith("]")
-    return _parsed("\n".join(head.lines)) is not None
+    return _parsed("\n".join(head.lines)) is not None or _is_nested(first)
+
+
+def _is_nested(line: str) -> bool:
+    """Return whether a line is a list of lists of numbers, as JSON writes it."""
+    found = _parsed(line) if line.startswith("[[") else None
+    return found is not None and (a := _array(found)) is not None and a.ndim == 2
 
 
 def read(reading: Reading) -> Iterator[Frame]:
@@ -173,7 +180,7 @@ def entries_of(where: str, content: Any) -> Entries:
         return Entries(content, None, "", Described(), what)
     if len(content[0]) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
-    objects = [_with_rows(_flattened(e)) if isinstance(e, dict) else {} for e in content]
+    objects = [_plain(e) if isinstance(e, dict) else {} for e in content]
     first = objects[0]
     lists = [k for k, v in first.items() if isinstance(v, list)]
     if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
@@ -187,6 +194,40 @@ def entries_of(where: str, content: Any) -> Entries:
     times = [e.get(time) for e in objects] if time else None
     said = _said(first)
     return Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
+
+
+def _plain(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object with its cells in one list, and its shape, if it has one, as numbers."""
+    return _with_cells(_with_shape(_with_rows(_flattened(entry))))
+
+
+def _with_shape(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object whose list of two that says the shape is ``rows`` and ``columns``."""
+    for key, pair in entry.items():
+        said = key.rpartition(".")[2].lower() in _SHAPES and isinstance(pair, list)
+        if said and len(pair) == 2 and all(isinstance(n, int) and n > 0 for n in pair):
+            rest = {k: v for k, v in entry.items() if k != key}
+            return {**rest, "rows": pair[0], "columns": pair[1]}
+    return entry
+
+
+def _with_cells(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object whose numbers by the names of cells, ``r0c0``, ``r0c1``, …, are a matrix."""
+    if any(isinstance(v, list) for v in entry.values()):
+        return entry
+    keys = [k for k, v in entry.items() if v is None or type(v) in (int, float)]
+    places = (found := named([k.rpartition(".")[2] for k in keys])).places
+    if not places:
+        return entry
+    matrix = np.full((max(p.row for p in places) + 1, max(p.column for p in places) + 1), np.nan)
+    if matrix.size > 2 * len(places):
+        return entry
+    names = [keys[k] for k in found.cells]
+    for name, (row, column) in zip(names, places, strict=True):
+        value = entry[name]
+        matrix[row, column] = np.nan if value is None else value
+    rest = {k: v for k, v in entry.items() if k not in names}
+    return {**rest, f"{names[0]} to {names[-1]}": matrix.tolist()}
 
 
 def _flattened(entry: dict[str, Any]) -> dict[str, Any]:
@@ -218,7 +259,7 @@ def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
 def _of_object(where: str, content: dict[str, Any]) -> Entries:
     if len(content) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
-    content = _with_rows(_flattened(content))
+    content = _plain(content)
     lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)
@@ -240,8 +281,14 @@ def _only(where: str, keys: Any) -> str:
     names = list(keys)
     if len(names) == 1:
         return str(names[0])
-    what = f"several lists could be the frames ({one_of(names)}); keep one" if names else "no list"
-    raise DataError(where, f"its JSON holds {what}")
+    if names:
+        told = f"several lists could be the frames ({one_of(names)}); keep one"
+        raise DataError(where, f"its JSON holds {told}")
+    raise DataError(
+        where,
+        "its JSON holds no list that could be a frame; save a list of rows for each, such as "
+        '{"time": 0.05, "values": [[1, 2], [3, 4]]}',
+    )
 
 
 def _is_time(key: str) -> bool:

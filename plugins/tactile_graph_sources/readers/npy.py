@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from tactile_graph.errors import DataError
-from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -31,7 +31,7 @@ def _words(error: Exception) -> str:
     return text
 
 
-def read(reading: Reading) -> Iterator[Frame]:
+def read(reading: Reading) -> Iterator[Any]:
     """Yield the matrices of the array, read from disk as they are asked for.
 
     Raises
@@ -54,8 +54,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         )
     values = stack_of(reading, array, "its array")
     reading.report.expect(len(values))
-    for matrix in values:
-        yield reading.frame(matrix)
+    yield from reading.frames(values)
 
 
 FORMAT = RecordingFormat("NumPy .npy", recognises, read)

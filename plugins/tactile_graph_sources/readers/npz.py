@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import unknown_quantity
-from tactile_graph.wires import Frame
 from tactile_graph_sources.readers import capcontact
 from tactile_graph_sources.readers.archive import opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
@@ -36,6 +35,7 @@ MOST_MEMBERS = 1000
 MOST_TIMES = 200
 SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
+_UNPACK = "unpack it, and give those that are recordings"
 OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
         "pitch_cm", "origin_cm", "truth")  # fmt: skip
 
@@ -45,7 +45,7 @@ def recognises(head: Head) -> bool:
     return head.raw.startswith((b"PK\x03\x04", b"PK\x05\x06"))
 
 
-def read(reading: Reading) -> Iterator[Frame]:
+def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of whichever kind of archive it is.
 
     Raises
@@ -78,6 +78,7 @@ class Archive:
         if document:
             raise DataError(where, document)
         arrays = [m for m in members if m.filename.endswith(".npy")]
+        self.held = [m.filename for m in members]
         self.names = {m.filename.removesuffix(".npy"): m for m in arrays}
 
     def outline(self, name: str) -> tuple[tuple[int, ...], np.dtype[Any]]:
@@ -125,9 +126,10 @@ class Archive:
         """
         self.check_sizes([name])
         try:
-            if (
-                self.names[name].file_size > SMALL
-            ):  # what is damaged is refused before it fills the memory
+            info = self.names[name]
+            stored = info.compress_type == zipfile.ZIP_STORED and info.file_size <= self._size
+            if info.file_size > SMALL and not stored:
+                # What is damaged is refused before it fills the memory.
                 with self._file.open(self.names[name]) as member:
                     while member.read(1 << 20):
                         pass
@@ -201,6 +203,8 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
     if stacks:
         told = f"several arrays could be it ({shapes}); name one with sensor"
         raise SeveralSensorsError(where, told, stacks)
+    if not outlines and arrays.held:
+        raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
@@ -216,7 +220,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
     return x, y
 
 
-def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
+def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
     arrays.check_sizes([name for name in OURS if name in arrays.names])
     values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
@@ -233,6 +237,14 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Frame]:
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     reading.report.expect(n)
+    told = (valid, device_times, gaps, doubtful, labels, *truths)
+    if all(one is None for one in told):  # nothing is to be said of single frames
+        times_s = None if times is None else times.astype(np.float64)
+        if reading.wants(""):
+            yield from reading.frames(
+                values, times_s, pitch_cm=pitch, origin_cm=origin, quantity=quantity
+            )
+        return
     for k in range(n):
         sensor = "" if labels is None else str(labels[k])
         if reading.wants(sensor):

@@ -26,6 +26,7 @@ _MARKS = (
     (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: mcap convert in.bag out.mcap"),
     (b"SQLite format 3", "an SQLite database (a ROS 2 bag?)",
      "convert it to MCAP, or save its table as CSV"),
+    (b"<", "HTML or XML", "open it in a spreadsheet, and save its table as CSV"),
     (b"%PDF", "a PDF", "save the numbers it was made from"),
     (b"RIFF", "a film or a sound", "save its frames as pictures or as .npy"),
     (b"HDF_UC", "HDF4", "save its array as .npy or HDF5"),
@@ -40,8 +41,16 @@ _SHEETS = {
     "content.xml": "an OpenDocument sheet",
     "word/document.xml": "a Word document",
 }
-_HEXADECIMAL = re.compile(r"(?:0x[0-9a-f]+[\s,;]*){3,}", re.IGNORECASE)
+_HEXADECIMAL = re.compile(
+    r"(?:0x[0-9a-f]+[\s,;]*){3,}|(?=.*[a-f])(?:[0-9a-f]{2}[\s,;]+){7,}"
+    r"[0-9a-f]{2}",
+    re.IGNORECASE,
+)
 _WITH_UNITS = re.compile(r"(?:[-+]?\d+(?:\.\d+)?\s?[a-zA-Z%]+\s*[,;\t]\s*){2,}.*")
+_AS_TABLE = (
+    "write the numbers of a frame on a line of its own, separated by commas, and no words among "
+    "them, or read it by a plugin: tactile-graph new my-reader --kind reader"
+)
 _RAW = (
     "in Python, with the type and the shape of its values: numpy.save('out.npy', "
     "numpy.fromfile('FILE', '<u2').reshape(-1, ROWS, COLUMNS))"
@@ -65,9 +74,14 @@ def remedy_for(head: Head) -> str:
 
 
 def remedy_without_header(head: Head) -> str:
-    """Return what to do with bytes that may be bare numbers; empty for a text."""
-    if not head.raw or head.lines:
+    """Return what to do with bytes that may be bare numbers, and with a text that is no table."""
+    if not head.raw:
         return ""
+    lines = head.first(2)
+    if len(lines) == 1 and len(re.split(r"[,;\t|]", lines[0])) > 1:
+        return "it has one line, which may be a header: a line for each frame is missing; "
+    if head.lines:
+        return f"{_AS_TABLE}; "
     return f"if it is bare numbers, {_RAW}; ".replace("FILE", head.path.name)
 
 

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph.wires import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, Image, TrueObject
+from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack
+from tactile_graph.wires.stacks import ImageStack
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.told import Told
 
@@ -47,6 +49,8 @@ class Reading:
         self._gaps: set[str] = set()
         self._seen: dict[str, set[float]] = {}
         self._fresh: set[str] = set()
+        self.in_stacks = False
+        """Whether frames are taken as stacks, where the file holds them so."""
 
     def text(self) -> Iterator[tuple[int, str]]:
         """Yield line numbers from 1 and lines without their ends, whatever ends them.
@@ -169,6 +173,61 @@ class Reading:
         frame = Frame(image, self.index, time_s, truth, device_time_s, gap, label)
         self.index += 1
         return frame
+
+    def frames(
+        self,
+        values: NDArray[Any],
+        times_s: NDArray[np.float64] | None = None,
+        *,
+        factor: float = 1.0,
+        **same: Any,
+    ) -> Iterator[Frame | FrameStack]:
+        """Yield the frames of a stack: as stacks, as long as nothing is to be said of single ones.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n, rows, columns)
+        times_s : ndarray, shape (n,), optional
+            NaN where none is known.
+        factor, same
+            As of `frame`, the same for all.
+        """
+        size = max(1, min(MOST_FRAMES, MOST_BYTES // max(values[0].size * 8, 1)))
+        for start in range(0, len(values), size):
+            part = slice(start, start + size)
+            times = None if times_s is None else times_s[part]
+            stack = self._stack(values[part], times, factor, same)
+            if stack is not None:
+                yield stack
+                continue
+            for k, matrix in enumerate(values[part]):
+                timed = times is not None and bool(np.isfinite(times[k]))
+                time_s = float(times[k]) if times is not None and timed else None
+                yield self.frame(matrix, factor=factor, time_s=time_s, **same)
+
+    def _stack(
+        self,
+        values: NDArray[Any],
+        times_s: NDArray[np.float64] | None,
+        factor: float,
+        same: dict[str, Any],
+    ) -> FrameStack | None:
+        """Return frames as a stack; None where each must be looked at for itself."""
+        untold = times_s is not None and not np.isfinite(times_s).all()
+        turned = self.told.transpose or self.told.flip
+        if not self.in_stacks or untold or turned or self.label or self._gaps:
+            return None
+        with np.errstate(over="ignore"):
+            values = np.array(values, dtype=np.float64)
+            if factor != 1.0:
+                values *= factor
+        if not (np.abs(values) <= LARGEST).all():
+            return None
+        grid = (self._pitch(same.get("pitch_cm")), self._origin(same.get("origin_cm")))
+        images = ImageStack(values, *grid, self._quantity(same.get("quantity", "raw")))
+        index = np.arange(self.index, self.index + len(values))
+        self.index += len(values)
+        return FrameStack(images, index, times_s)
 
     def _turned(
         self, values: NDArray[Any], mask: NDArray[np.bool_] | None, truth: object

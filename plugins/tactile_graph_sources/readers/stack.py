@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from math import isqrt
 from typing import Any
 
@@ -19,6 +20,7 @@ FEWEST_ALONG, MOST_ALONG = 4, 100
 ALIKE, UNLIKE = 2.5, 4.0
 """Times the difference of neighbours along one axis that those along another are, at most where
 they are axes of one kind, and at least where not."""
+MAD_TO_SD = 1.4826
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -92,17 +94,25 @@ def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
 def _lies_last(array: NDArray[Any]) -> bool:
     """Return whether the frames may lie along the last axis, by how neighbours differ.
 
-    Those along rows and along columns differ alike, those along time more or less than they.
+    Those along rows and along columns differ alike, those along time more or less than they. Of
+    each axis' differences what every cell shows, which noise gives along all of them, is left out.
     """
     if min(array.shape) < FEWEST_ALONG:
         return False
     values = np.nan_to_num(array[:MOST_ALONG, :MOST_ALONG, :MOST_ALONG].astype(np.float64))
     values = np.clip(values, -1e30, 1e30)
-    first, middle, last = (float(np.mean(np.abs(np.diff(values, axis=k)))) for k in range(3))
-    if min(first, middle) <= 0.0:
+    along = [np.abs(np.diff(values, axis=k)) for k in range(3)]
+    noise = MAD_TO_SD * max(float(np.median(steps)) for steps in along)
+    first, middle, last = (_beyond(steps, noise) for steps in along)
+    if min(first, middle) <= noise:
         return False
     alike = max(first, middle) < ALIKE * min(first, middle)
     return alike and (last > UNLIKE * max(first, middle) or last < min(first, middle) / UNLIKE)
+
+
+def _beyond(steps: NDArray[Any], noise: float) -> float:
+    """Return the root mean square of differences, less that of noise."""
+    return math.sqrt(max(0.0, float(np.mean(steps**2)) - noise**2))
 
 
 def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:

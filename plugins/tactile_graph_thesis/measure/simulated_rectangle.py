@@ -140,6 +140,8 @@ VARIED = {
 """What it tried instead, one at a time."""
 HOT = CHOSEN._replace(temperature=5000.0)
 """Not in the thesis: hot beside squared levels."""
+QUICK = HOT._replace(cooling=0.5)
+"""The same, cooled to the chosen schedule's start within ten sweeps."""
 
 
 class Annealed(NamedTuple):

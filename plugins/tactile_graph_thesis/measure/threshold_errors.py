@@ -14,6 +14,8 @@ from tactile_graph_thesis.work import Work
 
 Array = NDArray[np.float64]
 SCENE = "threshold-discs"
+LEVELS, QUICK_LEVELS = 11, 6
+"""Thresholds tried."""
 
 
 class ThresholdErrors(NamedTuple):
@@ -73,7 +75,7 @@ def _measured(work: Work) -> ThresholdErrors:
     from tactile_graph_sources.scene import load_scene
 
     said = numbers("threshold")
-    n_levels = 6 if work.quick else 11
+    n_levels = QUICK_LEVELS if work.quick else LEVELS
     levels = np.linspace(said["low_v"], said["high_v"], n_levels)
     discs = [group[0] for group in load_scene(SCENE).in_turn]
     frames = work.frames(SCENE, len(discs) * work.readings)

@@ -60,6 +60,7 @@ def prepared(name: str) -> str:
     from tactile_graph.api.pipeline import load
     from tactile_graph.compiled import warm_up
     from tactile_graph.errors import TactileGraphError
+    from tactile_graph.wires.frame_stack import in_stacks
 
     start = time.monotonic()
     warm_up()
@@ -69,7 +70,11 @@ def prepared(name: str) -> str:
             return f"{name}: {FAILED}, declares no source"
         if pipeline.writes:
             return f"{name}: {FAILED}, a step of it writes"
-        n = sum(1 for _ in islice(pipeline.stream(), FRAMES))
+        frames = [*islice(pipeline.frames(), FRAMES)]
+        n = sum(1 for _ in pipeline.stream(frames))
+        runner = pipeline.runner()
+        for stack in in_stacks(frames) if runner.in_blocks else ():
+            runner.block(stack)
     except TactileGraphError as error:
         return f"{name}: {FAILED}, {error}"
     return f"{name}: prepared by {n} frames in {time.monotonic() - start:.1f} s"

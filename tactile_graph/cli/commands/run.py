@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,10 +30,13 @@ from tactile_graph.files import is_plain
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph.engine.block import Block
     from tactile_graph.engine.table import Table
     from tactile_graph.exporter import Writer
 
 LONG_RUN = 200
+WORTH_BLOCKS = 2000
+"""Frames from which on blocks are sooner done, kernels that are not on disk yet included."""
 STALLED_S = 1.0
 
 
@@ -51,9 +55,9 @@ STALLED_S = 1.0
     "-o",
     "--output",
     metavar="FILE",
-    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; or stacks of the "
-    "images and masks asked for (--only): out.h5, out.zarr. How it was made is written beside it, "
-    "as FILE.meta.json.",
+    help="Write a line a frame: out.jsonl, out.csv, out.parquet, or - for stdout; results/ for a "
+    "Parquet data set with a part for each recording; or stacks of the images and masks asked for "
+    "(--only): out.h5, out.zarr. How it was made is written beside it, as FILE.meta.json.",
 )
 @click.option(
     "--format",
@@ -229,32 +233,40 @@ class _Run:
 
     # -- the frames --------------------------------------------------------------------------
 
-    def _results(self) -> Iterator[Result]:
-        frames = self.span.of(self.pipeline.frames(self.seed, self.report))
-        for i, frame in enumerate(frames):
-            if i == 0:
-                self._warm_up()
-            result = self.runner(frame)
-            if self.pipeline.promises.waiting:
-                self.pipeline.promises.check(result)
-            yield result
+    def _results(self) -> Iterator[Result | Block[Result]]:
+        from tactile_graph.engine.gathering import flat
 
-    def _warm_up(self) -> None:
-        from tactile_graph.compiled import warm_up
-
+        in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
+        if in_blocks and self.span.is_all:
+            frames = self.pipeline.frames_in_stacks(self.seed, self.report)
+        else:
+            frames = self.span.of(self.pipeline.frames(self.seed, self.report))
+        first = next(frames, None)
+        if first is None:
+            return
         expected = self.span.expected(self.report.n_expected)
         if expected is None or expected > LONG_RUN:
-            warm_up()
-            self.bar.now(expected)
+            self._warm_up(expected)
+        given = chain([first], frames)
+        if in_blocks and (expected or 0) >= WORTH_BLOCKS:
+            yield from self.pipeline.blocks(given, self.runner)
+        else:
+            yield from self.pipeline.results(flat(given), self.runner)
+
+    def _warm_up(self, expected: int | None) -> None:
+        from tactile_graph.compiled import warm_up
+
+        warm_up()
+        self.bar.now(expected)
 
     def _frames(self, held: Any) -> None:
         from tactile_graph.compiled import answered_meanwhile
 
         try:
             with answered_meanwhile(self._still_compiling):
-                for result in self._results():
+                for results in self._results():
                     with held:
-                        self._one(result)
+                        self._take(results)
         except KeyboardInterrupt as error:
             self.interrupted = error
         except BrokenPipeError:
@@ -274,19 +286,36 @@ class _Run:
         if time.monotonic() - self.last_frame_s > STALLED_S:
             self.stderr.print(f"{where}: {what}", style="yellow", soft_wrap=True)
 
+    def _take(self, results: Result | Block[Result]) -> None:
+        self.last_frame_s = time.monotonic()
+        first = self.tally.n == 0
+        from tactile_graph.engine.outcomes import Outcomes
+
+        if isinstance(results, Outcomes):
+            self._one(results)
+        else:
+            self._several(results)
+        if first and self.lines is not None:
+            self._provenance(complete=False)  # should the run be killed
+        self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
+
     def _one(self, result: Result) -> None:
         self.quantity = result.frame.image.quantity
-        self.last_frame_s = time.monotonic()
         self.tally.add(result)
         if self.lines is None:
             self._row(result)
         else:
             self.lines.write(result)
-            if self.tally.n == 1:
-                self._provenance(complete=False)  # should the run be killed
         if self.drawing is not None:
             self.drawing.add(result)
-        self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
+
+    def _several(self, block: Block[Result]) -> None:
+        from tactile_graph.exporter import write_block
+
+        assert self.lines is not None  # people are shown one frame after the other
+        self.quantity = block.frames.images.quantity
+        self.tally.add_block(block)
+        write_block(self.lines, block)
 
     def _row(self, result: Result) -> None:
         if self.table is None:

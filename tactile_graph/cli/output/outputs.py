@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 OFFERS = "exporters"
 USUAL = ".jsonl"
+FOLDER = ".dataset"
 SCREEN = "a table on the screen"
 
 
@@ -60,7 +62,7 @@ class Output:
             raise UsageError(_no_place("--long", exporter.called, exporter.holds))
         if full and exporter.holds != "records":
             raise UsageError(_no_place("--full", exporter.called, exporter.holds))
-        return cls(name, exporter, full, long, ending)
+        return cls(name.rstrip(f"/{os.sep}") or name, exporter, full, long, ending)
 
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""
@@ -105,10 +107,14 @@ def _ending(name: str, form: str | None) -> str:
             near = did_you_mean(form, forms())
             raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}")
         return f".{form}"
+    if name.endswith(("/", os.sep)):
+        return FOLDER
     suffix = Path(name).suffix.lower()
     if name == "-" or suffix in known:
         return USUAL if name == "-" else suffix
     if Path(name).is_dir():
-        raise UsageError(f"-o {name}: is a folder; name a file in it")
+        raise UsageError(
+            f"-o {name}: is a folder; name a file in it, or end it in / for a data set of Parquet"
+        )
     near = did_you_mean(suffix, known) if suffix else ""
     raise UsageError(f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}")

@@ -12,8 +12,9 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from tactile_graph.api.result import Result
+from tactile_graph.engine.block import Block
 from tactile_graph.engine.columns import Column
-from tactile_graph.engine.table import Row, Table, units_of
+from tactile_graph.engine.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import said, uninterrupted
@@ -58,16 +59,30 @@ class ParquetFile:
         self._target = Path(os.path.realpath(output))
         self._part = self._target.with_name(f".{self._target.name}.{os.getpid()}.part")
         self._table = table
-        self._rows: list[Row] = []
+        self._cells: dict[str, list[Any]] = {column.key: [] for column in table.columns}
+        self._n_rows = 0
         self._writer: Any = None
         self._quantity = "raw"
 
     def write(self, result: Result) -> None:
         """Take in a frame's rows."""
-        if not self._rows and self._writer is None:
-            self._quantity = result.frame.image.quantity
-        self._rows += self._table.rows(result)
-        if len(self._rows) >= ROWS_A_GROUP:
+        rows = [*self._table.rows(result)]
+        cells = {key: [row.get(key) for row in rows] for key in self._cells}
+        self._add(cells, len(rows), result.frame.image.quantity)
+
+    def write_block(self, block: Block[Result]) -> None:
+        """Take in the rows of several frames."""
+        cells = self._table.of_block(block)
+        n = len(next(iter(cells.values())))
+        self._add(cells, n, block.frames.images.quantity)
+
+    def _add(self, cells: dict[str, list[Any]], n: int, quantity: str) -> None:
+        if self._writer is None and not self._n_rows:
+            self._quantity = quantity
+        for key, column in self._cells.items():
+            column += cells[key]
+        self._n_rows += n
+        if self._n_rows >= ROWS_A_GROUP:
             self._flush()
 
     def close(self) -> None:
@@ -98,12 +113,10 @@ class ParquetFile:
                 fields = [_field(arrow, c, units.get(c.key, "")) for c in self._table.columns]
                 self._schema = arrow.schema(fields)
                 self._writer = arrow.parquet.ParquetWriter(str(self._part), self._schema)
-            cells = {
-                column.key: [_plain(row.get(column.key), column.kind) for row in self._rows]
-                for column in self._table.columns
-            }
+            cells = {c.key: _plain(self._cells[c.key], c.kind) for c in self._table.columns}
             self._writer.write_table(arrow.table(cells, schema=self._schema))
-        self._rows = []
+        self._cells = {key: [] for key in self._cells}
+        self._n_rows = 0
 
 
 def _field(arrow: Any, column: Column, unit: str) -> Any:
@@ -119,11 +132,10 @@ def _field(arrow: Any, column: Column, unit: str) -> Any:
     return arrow.field(column.key, of, metadata={"unit": unit} if unit else None)
 
 
-def _plain(cell: Any, kind: type) -> Any:
-    if cell is None:
-        return None
-    number = issubclass(kind, bool | int | float | np.generic)
-    return cell if number else str(cell)
+def _plain(cells: list[Any], kind: type) -> list[Any]:
+    if issubclass(kind, bool | int | float | np.generic):
+        return cells
+    return [None if cell is None else str(cell) for cell in cells]
 
 
 def _check(name: str) -> None:

@@ -9,15 +9,19 @@ from dataclasses import astuple, dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 from rich.text import Text
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.live_table import shown
+from tactile_graph.engine.block import Block
+from tactile_graph.engine.block_columns import Part, known_finite, parts_of
 from tactile_graph.engine.columns import OutputColumns, values_of
 from tactile_graph.engine.notices import notices
 from tactile_graph.engine.outcome import Failed, Skipped, item_words
 from tactile_graph.steps.injected import Report
+from tactile_graph.wires.stacks import Stack
 
 MOST_TROUBLES = 20
 LOOKED_THROUGH = 100
@@ -160,6 +164,46 @@ class Tally:
         self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
         self.n_not_finite += strange and good and not empty
         self.seconds = time.perf_counter() - self.started
+
+    def add_block(self, block: Block[Result]) -> None:
+        """Count several frames, as `add` counts each."""
+        more = block.frames.says_more
+        single = np.ones(len(block), np.bool_)
+        alike: list[Part] = []
+        for part in parts_of(block, [o.output for o in self.outputs]):
+            if not self._finite(part):
+                continue
+            alike.append(part)
+            single[part.rows] = more[part.rows]
+            single[part.rows[0]] = True  # the first of its kind says how it is told
+        single[: max(LOOKED_THROUGH - self.n, 0)] = True
+        rows = np.flatnonzero(single).tolist()
+        for row in rows:
+            self.add(block[row])
+        for part in alike:
+            self._add_alike(part.outcomes, block.frames.index[part.rows[~single[part.rows]]])
+        self.n += len(block) - len(rows)
+        self.seconds = time.perf_counter() - self.started
+
+    def _finite(self, part: Part) -> bool:
+        """Return whether frames of a block are known to be good or skipped, by arrays."""
+        for output in self.outputs:
+            outcomes = part.outcomes[output.output]
+            if isinstance(outcomes, Stack) and not known_finite(outcomes):
+                return False
+        return True
+
+    def _add_alike(self, outcomes: dict[str, Any], frames: NDArray[np.int64]) -> None:
+        """Count frames that came to the same as one counted before: values, and the same skips."""
+        if not len(frames):
+            return
+        skipped = {name: o for name, o in outcomes.items() if not isinstance(o, Stack)}
+        self.n_skipped += len(frames) if skipped else 0
+        for name, told in skipped.items():
+            kept = self.skipped[(name, told[0].origin)]
+            kept.n += len(frames)
+            kept.first_frame = min(kept.first_frame, int(frames[0]))
+            kept.last_frame = max(kept.last_frame, int(frames[-1]))
 
     @staticmethod
     def _keep(

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
+from tactile_graph.engine.block import Block
+from tactile_graph.engine.block_columns import parts_of, plain_fields
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.engine.rows import as_data, without_nan
 from tactile_graph.engine.table import Table
@@ -17,7 +20,8 @@ from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said
-from tactile_graph.foreign_text import csv_line, visible
+from tactile_graph.foreign_text import csv_line, csv_lines, visible
+from tactile_graph.wires.stacks import Column, Stack
 
 
 class Lines(Protocol):
@@ -28,6 +32,9 @@ class Lines(Protocol):
 
     def line(self, result: Result) -> str:
         """Return a frame's line, its end included."""
+
+    def of_block(self, block: Block[Result]) -> str:
+        """Return the lines of several frames, as `line` gives each."""
 
 
 class JsonLines:
@@ -50,6 +57,27 @@ class JsonLines:
         """Return a frame's line."""
         row = without_nan(json_row(result, self.full))
         return visible(json.dumps(row, ensure_ascii=False, allow_nan=False)) + "\n"
+
+    def of_block(self, block: Block[Result]) -> str:
+        """Return the lines of several frames: of one text with gaps, where outputs are numbers."""
+        lines = [""] * len(block)
+        names = list(block.plan.asked)
+        frames = block.frames
+        heads = _json_heads(frames.index.tolist(), frames.times_s)
+        left = frames.says_more.copy()
+        for part in parts_of(block, names):
+            texts = [_json_outputs(part.outcomes[name]) for name in names]
+            told = [text for text in texts if text is not None]
+            if len(told) < len(texts):
+                continue
+            keys = [json.dumps(name, ensure_ascii=False) for name in names]
+            form = ", ".join(f"{key.replace('%', '%%')}: %s" for key in keys)
+            for row, outputs in zip(part.rows.tolist(), zip(*told, strict=True), strict=True):
+                lines[row] = f'{heads[row]}"outputs": {{{form % outputs}}}}}'
+        for row, line in enumerate(lines):
+            if left[row] or not line:
+                lines[row] = self.line(block[row])[:-1]
+        return visible("\n".join([*lines, ""]))
 
 
 def json_row(result: Result, full: bool) -> dict[str, Any]:
@@ -80,6 +108,44 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
     return row
 
 
+def _json_heads(numbers: list[int], times_s: list[float | None]) -> list[str]:
+    """Return how the line of each frame begins."""
+    return [
+        f'{{"frame": {n}, ' if t is None else f'{{"frame": {n}, "time_s": {_json_number(t)}, '
+        for n, t in zip(numbers, times_s, strict=True)
+    ]
+
+
+def _json_outputs(outcomes: Stack | list[Any]) -> list[str] | None:
+    """Return each frame's outcome as JSON; None where no array knows what it is made of."""
+    if not isinstance(outcomes, Stack):
+        told = {o: json.dumps(as_data(o), ensure_ascii=False) for o in set(outcomes)}
+        return [told[o] for o in outcomes]
+    if isinstance(outcomes, Column):
+        return [*map(_json_number, outcomes.values.tolist())]
+    found = plain_fields(outcomes)
+    if found is None:
+        return None
+    kind, fields = found
+    parts = [f'"kind": {json.dumps(kind)}'] if kind else []
+    parts += [f"{json.dumps(name)}: %s" for name in fields]
+    form = "{" + ", ".join(parts) + "}"
+    columns = [_json_numbers(column) for column in fields.values()]
+    return [form % row for row in zip(*columns, strict=True)]
+
+
+def _json_numbers(numbers: list[Any]) -> Iterable[str]:
+    """Return numbers as JSON has them, one type throughout as a rule."""
+    kinds = {number.__class__ for number in numbers}
+    if kinds == {int} or (kinds == {float} and all(map(math.isfinite, numbers))):
+        return map(repr, numbers)
+    return map(_json_number, numbers)
+
+
+def _json_number(number: Any) -> str:
+    return json.dumps(without_nan(number), ensure_ascii=False)
+
+
 class Csv:
     """Rows of a table; the columns follow from the types of the outputs, whatever a frame gave.
 
@@ -100,6 +166,11 @@ class Csv:
         """Return a frame's rows; empty cells where an output has no value."""
         rows = self.table.rows(result)
         return "".join(csv_line([row.get(name) for name in self.names]) for row in rows)
+
+    def of_block(self, block: Block[Result]) -> str:
+        """Return the rows of several frames."""
+        columns = self.table.of_block(block)
+        return csv_lines([columns[name] for name in self.names])
 
 
 class LineFile:
@@ -132,6 +203,11 @@ class LineFile:
         """
         self._put(self._file or self.open(), self.lines.line(result))
         self._n_lines += 1
+
+    def write_block(self, block: Block[Result]) -> None:
+        """Write the lines of several frames through to the file; errors as of `write`."""
+        self._put(self._file or self.open(), self.lines.of_block(block))
+        self._n_lines += len(block)
 
     def open(self) -> BinaryIO:
         """Open the file and write what stands before the first frame."""

@@ -14,6 +14,8 @@ from tactile_graph import Frame, Image, Pipeline, loads
 from tactile_graph.engine.outcome import Skipped
 from tactile_graph.errors import PipelineError, RuleError
 from tactile_graph.pipeline.conditions import compile_condition
+from tactile_graph.pipeline.facts import quantity_trouble
+from tactile_graph.pipeline.graph import FrameRule
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps import Quantity
 
@@ -153,3 +155,10 @@ def test_a_condition_is_settled_as_far_as_the_quantity_decides(text: str, comes_
     guard = compile_condition(text, {"frame": Frame})
     known = {ref: "volt" for ref in guard.refs if ref == QUANTITY}
     assert guard.settled(known) is comes_out
+
+
+def test_where_nobody_said_what_values_mean_the_error_says_how_to() -> None:
+    rule = FrameRule("x", "image", "decouple", {}, Quantity("volt"))
+    told = quantity_trouble(rule, "raw", "raw")
+    assert told.endswith("got a frame of raw; if its values are volt, say so: --with quantity=volt")
+    assert "--with" not in quantity_trouble(rule, "kilopascal", "kilopascal")

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Polygon
-from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon
+from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon, thinned
 
 
 def regular(n, radius=5.0, turn=0.2):
@@ -70,3 +71,34 @@ def test_few_corners_are_refused_in_words():
 def test_exactly_one_of_the_two_settings_is_needed(settings, got):
     with pytest.raises(ValueError, match=f"exactly one of corners and tolerance_cm .* got {got}"):
         SimplifyPolygon(**settings)
+
+
+def one_after_the_other(xy, least, tolerance):
+    """Take away the corner of the smallest triangle, found anew each time."""
+    kept = list(range(len(xy)))
+    while len(kept) > least:
+        best = (np.inf, -1)
+        for k, b in enumerate(kept):
+            p, q, r = xy[kept[k - 1]], xy[b], xy[kept[(k + 1) % len(kept)]]
+            side = r - p
+            twice = abs(side[0] * (q[1] - p[1]) - side[1] * (q[0] - p[0]))
+            size = np.hypot(*side)
+            if tolerance >= 0 and size > 0 and twice / size > tolerance:
+                continue
+            best = min(best, (twice, k))
+        if best[1] < 0:
+            break
+        del kept[best[1]]
+    return kept
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, 0.0, 0.3, 50.0])
+@pytest.mark.parametrize("whole", [True, False], ids=["many equal triangles", "none equal"])
+def test_corners_go_as_if_each_was_looked_for_among_all(tolerance, whole):
+    rng = np.random.default_rng(5)
+    for n in (3, 4, 5, 16, 33, 60):
+        xy = rng.integers(0, 4, (n, 2)).astype(float) if whole else rng.normal(size=(n, 2))
+        for least in (3, n // 2 + 2):
+            kept = np.arange(n)
+            left = plainly(thinned)(xy, kept, n, min(least, n), tolerance)
+            assert kept[:left].tolist() == one_after_the_other(xy, min(least, n), tolerance)

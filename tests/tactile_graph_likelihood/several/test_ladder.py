@@ -37,9 +37,28 @@ def test_what_outlines_explain_leaves_little_and_what_they_miss_leaves_much():
     assert not Ladder(problem._replace(states=unknown), KINDS, 3.0, 1.0).unexplained(both).any()
 
 
+def test_true_outlines_leave_no_more_unexplained_than_usual_and_others_do():
+    surplus = []
+    for seed in range(20):
+        ladder = Ladder(problem_of_discs(seed), KINDS, 3.0, 1.0)
+        surplus.append(ladder.surplus(load_of(ladder.problem, DISCS)))
+        assert ladder.surplus(load_of(ladder.problem, DISCS[:1])) > 20.0
+    assert abs(np.mean(surplus)) < 3.0
+
+
+def test_a_search_begins_with_a_sketch_of_each_piece_of_some_elements():
+    ladder = Ladder(problem_of_discs(2), KINDS, 1.0, 1.0)
+    ladder.on[:, 6:8] = ladder.on[12:] = False
+    ladder.on[14, 14] = True
+    points = ladder.beginnings(6)
+    assert len(points) == 2
+    assert np.hypot(*(points[points[:, 0].argsort()] - DISCS)[:, :2].T).max() < 1.0
+
+
 @pytest.mark.slow  # plain code takes some seconds
 def test_a_ladder_has_two_sketches_where_two_discs_lie_and_they_are_the_likeliest():
-    best = Ladder(problem_of_discs(2), KINDS, 1.0, 1.0).ladder(3)
+    ladder = Ladder(problem_of_discs(2), KINDS, 1.0, 1.0)
+    best = ladder.ladder(ladder.together(ladder.sketch_of(ladder.on), 0), 3)
     assert {1, 2} <= set(best)
     assert max(best, key=lambda n: best[n].rank) == 2
     two = best[2].points

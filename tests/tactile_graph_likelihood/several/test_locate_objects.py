@@ -9,7 +9,7 @@ import pytest
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
-from tactile_graph_likelihood.several.locate_objects import LocateObjects, is_other, unbiased
+from tactile_graph_likelihood.several.locate_objects import VAGUE, LocateObjects, is_other, unbiased
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_tracking.score_objects import score_objects
 
@@ -77,7 +77,7 @@ def test_readings_of_any_unit_and_offset_give_the_same_answer():
 
 
 def test_other_numbers_of_objects_that_are_as_likely_are_flagged():
-    frames = frames_of("voids 0.4", 3, True, Asked(12, 3))
+    frames = frames_of("voids 0.4", 3, True, Asked(12, 4))
     found = [LocateObjects()(frame.image) for frame in frames]
     unsure = [f for f in found if f.count_probability <= 0.5]
     assert unsure
@@ -89,7 +89,7 @@ def test_frames_whose_outlines_are_vague_are_flagged_and_others_are_not():
         "noise 0", 1, False, Asked(4, 5)
     )
     found = [LocateObjects()(frame.image) for frame in frames]
-    vague = [np.mean([its.centre_std_cm for its in f.shapes]) > 0.62 * 1.3 for f in found]
+    vague = [np.mean([its.centre_std_cm for its in f.shapes]) > VAGUE * 1.3 for f in found]
     assert 0 < sum(vague) < len(found)
     for its, flagged in zip(found, vague, strict=True):
         assert its.fits != (flagged or its.count_probability <= 0.5 or its.surprise <= -6.0)

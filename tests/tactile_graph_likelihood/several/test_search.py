@@ -50,6 +50,19 @@ def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():
     assert (own[~search.on] == -1).all()
 
 
+def test_a_search_may_begin_with_nothing_but_what_explains_all(monkeypatch):
+    search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
+    found = Configuration(np.full(2, DISC), np.zeros(2, np.int64), DISCS, 0.0)
+    monkeypatch.setattr(search, "improved", lambda *_: None)
+    monkeypatch.setattr(search, "noted", lambda its: search.every.append(its) or its)
+    monkeypatch.setattr(search, "beginnings", lambda _: pytest.fail("begun anew"))
+    search.divisions(6, found, anew=False)
+    assert search.every == [found]
+    for begin, anew in [(found, True), (found.without(1), False), (None, False)]:
+        with pytest.raises(pytest.fail.Exception, match="begun anew"):
+            search.divisions(6, begin, anew)
+
+
 def test_of_two_numbers_alike_likely_outlines_that_are_alike_are_likelier():
     search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
     alike = Configuration(np.full(2, DISC), np.zeros(2, np.int64), DISCS, 0.0)

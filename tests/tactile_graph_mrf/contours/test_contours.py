@@ -62,3 +62,10 @@ def test_only_points_near_the_hull_stay() -> None:
     np.testing.assert_array_equal(kept, [[0.0, 0.0], [2.0, 0.3], [3.6, 2.0]])
     single = Polygon(np.array([[1.0, 1.0]]))
     assert near_hull(Points(np.array([[1.0, 1.2], [3.0, 1.0]])), single).count == 1
+
+
+def test_contours_come_by_their_first_corner_in_reading_order() -> None:
+    on = np.random.default_rng(7).random((12, 15)) < 0.4
+    found = [min((y, x) for x, y in polygon.xy_cm.tolist()) for polygon in contours(Mask(on))]
+    assert found == sorted(found)
+    assert len(found) > 15

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from helpers_modes import held, plainly
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
-from tactile_graph_mrf.contours.line_regions import line_regions
+from tactile_graph_mrf.contours.line_regions import line_regions, with_voids
 from tactile_graph_mrf.contours.regions import label_regions, standing
 from tactile_graph_mrf.energy.line_field import LineField
 
@@ -156,3 +156,12 @@ def test_raised_regions_have_the_outline_of_most_contrast(seed: int) -> None:
         for code in range(2**n)
     )
     assert contrast(standing(values, lines, labels)) == pytest.approx(best)
+
+
+def test_a_hollow_that_meets_the_outside_at_a_corner_only_is_filled() -> None:
+    rows = [".....", ".###.", ".#.#.", "..##.", "....."]
+    mask = np.array([[c == "#" for c in row] for row in rows])
+    filled = mask.copy()
+    filled[2, 2] = True
+    np.testing.assert_array_equal(with_voids(mask, 1), filled)
+    np.testing.assert_array_equal(with_voids(mask, 0), mask)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tactile_graph_pads.learning.patch import PatchKind, patches, place_terms
+from tactile_graph_pads.learning.patch import FEW, PatchKind, patches, place_terms
 
 SHAPE = (22, 26)
 
@@ -70,3 +70,20 @@ def test_place_terms_go_from_minus_one_to_one_over_the_pad():
     assert terms[:, :3].tolist() == [[1, -1, -1], [1, 1, 1], [1, 0, 0]]
     assert terms.shape == (3, 10)
     assert np.isfinite(place_terms(np.array([(0.0, 0.0)]), (1, 1))).all()
+
+
+@pytest.mark.parametrize("kind", [PatchKind(3), PatchKind(4, 1.7, 0.7, 1.5)], ids=["own", "window"])
+def test_many_contacts_have_the_patches_they_have_on_the_whole_pad(kind, monkeypatch):
+    rng = np.random.default_rng(2)
+    values, good = rng.random((40, 50)), rng.random((40, 50)) > 0.05
+    # Cells as far from several contacts as from one, and two contacts in one place.
+    centres = np.array([(x, y) for y in range(4, 40, 8) for x in range(4, 50, 8)], float)
+    centres = np.vstack([centres, centres[:1]])
+    assert len(centres) > FEW
+    near, at = patches(values, good, centres, kind)
+    monkeypatch.setattr("tactile_graph_pads.learning.patch.FEW", len(centres))
+    monkeypatch.setattr(PatchKind, "margin", 1000)
+    whole, at_whole = patches(values, good, centres, kind)
+    assert near == pytest.approx(whole, abs=1e-12)
+    assert at == pytest.approx(at_whole, abs=1e-12)
+    assert np.abs(near).sum(axis=1).astype(bool).sum() == len(centres) - 1

@@ -15,6 +15,7 @@ from helpers_dialects import film, flat
 from helpers_recordings import shared, xsensor_text
 from tactile_graph import Frame
 from tactile_graph.cli import cli
+from tactile_graph_sources.commands import inspect
 from tactile_graph_sources.writers.write_npz import write_npz
 
 RNG = np.random.default_rng(0)
@@ -106,6 +107,18 @@ def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     for command in (contacts + " --frames 2", convert.replace("my mat.zarr", f"{tmp_path}/a.npz")):
         result = CliRunner().invoke(cli, shlex.split(command)[1:])
         assert result.exit_code == 0, result.output
+
+
+@pytest.mark.parametrize(
+    ("name", "zarr", "ending"),
+    [("a.csv", True, ".zarr"), ("a.zarr", True, ".npz"), ("a.csv", False, ".npz"),
+     ("a.npz", False, ".csv")],
+)  # fmt: skip
+def test_it_is_converted_to_what_it_is_not_and_needs_no_extra(
+    name: str, zarr: bool, ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inspect, "find_spec", lambda _: object() if zarr else None)
+    assert inspect.other_kind(Path(name)) == ending
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,8 @@ pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 pytestmark = pytest.mark.slow
 
 
-def store(path: Path, n: int, garbage: tuple[int, ...] = ()) -> Path:
+def store(path: Path, n: int, garbage: tuple[int, ...] = (), pause: int | None = None) -> Path:
+    path.parent.mkdir(exist_ok=True)
     rng = np.random.default_rng(n)
     frames = []
     for k in range(n):
@@ -27,14 +29,15 @@ def store(path: Path, n: int, garbage: tuple[int, ...] = ()) -> Path:
         values += 0.001 * rng.random((8, 8))
         if k in garbage:
             values = rng.random((8, 8)) * 5.0
-        frames.append(Frame.of(values, quantity="volt", index=k, time_s=0.1 * k))
+        time_s = 0.1 * k + (60.0 if pause is not None and k >= pause else 0.0)
+        frames.append(Frame.of(values, quantity="volt", index=k, time_s=time_s))
     with StoreWriter(path, chunk=10) as writer:
         for frame in frames:
             writer.write(frame)
     return path
 
 
-def ranges(path: Path | list[Path], **told: int) -> Ranges:
+def ranges(path: Path | list[Path], **told: Any) -> Ranges:
     found = ranges_of_stores(path, **told)
     assert found is not None
     return found
@@ -42,20 +45,44 @@ def ranges(path: Path | list[Path], **told: int) -> Ranges:
 
 def told(frame: Frame) -> tuple[object, ...]:
     image = frame.image
-    return (frame.index, frame.time_s, frame.gap, frame.label, image.values.tobytes())
+    grid = (image.pitch_cm, image.origin_cm, image.quantity)
+    said = (frame.index, frame.time_s, frame.gap, frame.label)
+    return (*said, *grid, image.values.flags.c_contiguous, image.values.tobytes())
 
 
-@pytest.mark.parametrize("skip", [0, 7])
-def test_any_range_is_what_the_source_gives(tmp_path: Path, skip: int) -> None:
-    paths = [store(tmp_path / "a.zarr", 23), store(tmp_path / "b.zarr", 31)]
-    whole = [told(f) for f in recording(path=paths, skip=skip, report=Report())]
-    found = ranges(paths, skip=skip)
+@pytest.mark.parametrize("settings", [
+    {}, {"skip": 7}, {"flip": "rows", "pitch_cm": (0.5, 2.0)}, {"transpose": True, "rows": 8},
+], ids=str)  # fmt: skip
+def test_any_range_is_what_the_source_gives(tmp_path: Path, settings: dict[str, Any]) -> None:
+    paths = [store(tmp_path / "one" / "a.zarr", 23), store(tmp_path / "two" / "a.zarr", 31)]
+    whole = [told(f) for f in recording(path=paths, report=Report(), **settings)]
+    found = ranges(paths, **settings)
+    skip = settings.get("skip", 0)
     assert found.recordings == (23 - skip, 31 - skip)
     assert found.together == 10
     for low in range(0, len(whole), 9):
         for high in (low + 1, low + 13, len(whole)):
             read = [told(f) for f in found.read(low, min(high, len(whole)))]
             assert read == whole[low:high]
+
+
+def test_a_leap_in_time_makes_it_irregular_as_far_as_it_is_told(tmp_path: Path) -> None:
+    found = ranges(store(tmp_path / "a.zarr", 60, pause=30))
+    assert len(list(found.read(0, 25))) == 25
+    with pytest.raises(Irregular, match="leaps in time"):
+        list(found.read(31, 35))
+
+
+def test_a_setting_that_the_frames_contradict_is_left_to_who_reads_from_the_start(
+    tmp_path: Path,
+) -> None:
+    found = ranges(store(tmp_path / "a.zarr", 5), rows=9)
+    with pytest.raises(Irregular, match="the settings say rows=9"):
+        list(found.read(0, 5))
+
+
+def test_settings_that_leave_frames_out_anywhere_have_no_ranges(tmp_path: Path) -> None:
+    assert ranges_of_stores(store(tmp_path / "a.zarr", 5), sensor="left") is None
 
 
 def test_frames_that_are_left_out_make_it_irregular(tmp_path: Path) -> None:

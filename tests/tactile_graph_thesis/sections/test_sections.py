@@ -137,6 +137,22 @@ def test_an_item_that_could_not_be_made_is_told_as_such() -> None:
     assert found.commands == ("tactile-graph reproduce x",)
 
 
+@pytest.mark.parametrize(
+    ("claim", "verdict", "commands"),
+    [
+        (Claim("a", built="so", command="tactile-graph steps"), BUILT, ("tactile-graph steps",)),
+        (Claim("a", not_here="hardware"), NOT_HERE, ()),
+        (Claim("a", open="to do"), OPEN, ()),
+    ],
+)
+def test_what_no_item_measures_says_why_and_what_shows_it(
+    claim: Claim, verdict: str, commands: tuple[str, ...]
+) -> None:
+    found = judged(claim, {})
+    assert (found.verdict, found.commands) == (verdict, commands)
+    assert found.because == (claim.built or claim.not_here or claim.open,)
+
+
 def test_verdicts_are_counted_by_kind_without_those_that_do_not_occur() -> None:
     told = [judged(c, {"x": item(UP)}) for c in (Claim("a", ("x",)), Claim("b", built="c"))]
     assert counted([*told, told[0]]) == {SHOWN: 2, BUILT: 1}

@@ -99,6 +99,8 @@ def _decide(table: Table, base: Layout, told: Told, lead: bool) -> tuple[str, in
                     "together; give rows and columns"
                 ),
             )
+        if width == 1:
+            return "unclear", 0, _one_a_line_question(usual)
         return "stacked", usual, f"blank lines or frame lines after every {usual} rows"
     if lead:
         return "flat", 0, "a time or a number before the values"
@@ -211,6 +213,13 @@ def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layou
         shape=found.shape,
         places=_ordered(base, table, found.shape),
         assumed=(*base.assumed, *found.assumed),
+    )
+
+
+def _one_a_line_question(n: int) -> str:
+    return (
+        f"a frame is {n} lines of one value, and nothing says its shape; put the values of a frame "
+        "on one line, or as rows (ROS: ros2 topic echo --csv), and give rows and columns"
     )
 
 

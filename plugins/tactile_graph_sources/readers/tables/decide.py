@@ -15,6 +15,7 @@ A table seldom says what it is. The rules, in order:
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -31,6 +32,10 @@ from tactile_graph_sources.readers.units import length_unit
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"
+_TIME_NAME = re.compile(
+    r"(?:t|time|zeit|temps|tiempo|tempo)\s*[=_ ]\s*(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)?"
+    r"|(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)"
+)
 
 
 def layout_of(
@@ -67,6 +72,7 @@ def layout_of(
         _unnamed_value(table, roles)
         or _strange_column(table, roles)
         or _cells_by_line(table, roles)
+        or _frames_by_column(table)
     )
     if trouble:
         return replace(base, trouble=trouble)
@@ -135,6 +141,11 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
     wrong = next((j for j, x in enumerate(table.rows[:, k]) if np.isnan(x)), 0)
     text = table.texts[wrong][k].strip()[:30]
     line = "" if wrong else f"line {table.first_line}, "
+    if "[[" in table.lines[0] and not table.lines[0].lstrip().startswith("[["):
+        return (
+            f"{line}words stand before a matrix in brackets; leave them out, so that each line is "
+            "a list of rows: [[1, 2], [3, 4]]"
+        )
     return (
         f"{line}column {k + 1}: {text!r} is no number; write numbers with a decimal point and "
         "without marks between thousands, or say which columns are cells, such as cells=2-65"
@@ -156,6 +167,19 @@ def _cells_by_line(table: Table, roles: dict[str, int]) -> str:
                 "each line is a frame"
             )
     return ""
+
+
+def _frames_by_column(table: Table) -> str:
+    """Return what to ask where the columns are named as frames: ``t=0.1s``, ``0.2 s``, …."""
+    names = [table.named.names[k] for k in table.named.cells if table.named.names]
+    found = [_TIME_NAME.fullmatch(n.strip().lower()) for n in names]
+    times = [float((m[1] or m[2]).replace(",", ".")) for m in found if m is not None]
+    if len(times) < max(FEWEST_NAMED, len(names)) or any(np.diff(times) <= 0):
+        return ""
+    return (
+        f"its columns are named as times ({names[0]}, {names[1]}, …), so that each would be a "
+        "frame; exchange lines and columns (in a spreadsheet: paste, transposed)"
+    )
 
 
 def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tuple[str, ...]:

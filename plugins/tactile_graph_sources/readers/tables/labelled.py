@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactile_graph_sources.readers.tables.dialect import is_numeric
+from tactile_graph_sources.readers.tables.names import ROLES
 
 MOST = 0.6
 """Least share of the lines that must be written so."""
 LOOKED_AT = 200
 FEWEST_NUMBERS = 3
+_ROW = re.compile(r"\s*\"?([^\W\d_]+)[ _]?(\d{1,6})\"?\s*[;,|\t]\s*(?=[-+.]?\d)")
+"""A field in front that names a row, as spreadsheets write it: ``Zeile 1;0,5;0,7``."""
 _NAME = re.compile(r"([^\W\d_][\w .()\[\]/%-]{0,40}?)\s*[:=]\s*(?=[-+.]?\d)")
 
 
@@ -36,6 +39,7 @@ class Labels:
 
         The rows of a matrix come out in brackets, as NumPy prints them.
         """
+        line = _with_row_named(line)
         names = tuple(_NAME.findall(line))
         if not names or not _NAME.match(line.lstrip()):
             return line
@@ -52,7 +56,9 @@ class Labels:
 def labels_of(lines: Sequence[str]) -> Labels | None:
     """Return how lines are written in which names stand before the numbers; None otherwise."""
     sample = [line for line in lines[: 4 * LOOKED_AT] if any(c.isalnum() for c in line)][:LOOKED_AT]
-    if not sample or not _NAME.match(sample[len(sample) // 2].lstrip()):
+    sample = [_with_row_named(line) for line in sample]
+    middle = sample[len(sample) // 2 :][:3]  # one of them may be what stands between matrices
+    if not any(_NAME.match(line.lstrip()) for line in middle):
         return None
     found = [_names(line) for line in sample]
     pairs = Counter(names for names in found if len(names) > 1).most_common(1)
@@ -62,6 +68,14 @@ def labels_of(lines: Sequence[str]) -> Labels | None:
     if len(alone) < MOST * len(sample):
         return None
     return Labels(first=alone[0] if len(set(alone)) > 1 else "")
+
+
+def _with_row_named(line: str) -> str:
+    """Return a line whose first field names its row as ``Row 3: 1 2 3`` does."""
+    found = _ROW.match(line)
+    if found is None or ROLES.get(found[1].lower()) != "row":
+        return line
+    return f"{found[1]} {found[2]}: {line[found.end() :]}"
 
 
 def _names(line: str) -> tuple[str, ...]:

@@ -27,8 +27,8 @@ _ROLES = {
     "frame": "frame frame_index frameindex index frame_no frame_number n nr no num sample scan seq "
     "packet bild bildnr image trame cuadro fotograma muestra quadro #",
     "time": "time t ts timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
-    "datetime date_time clock zeit zeitstempel uhrzeit temps heure horodatage tiempo hora tempo "
-    "ora timestamps zeitpunkt instant momento tijd tid czas",
+    "datetime date_time clock epoch epoch_time unix unix_time zeit zeitstempel uhrzeit temps heure "
+    "horodatage tiempo hora tempo ora timestamps zeitpunkt instant momento tijd tid czas",
     "row": "row r y i rows row_index zeile reihe ligne rang fila riga line linha rij rad wiersz",
     "column": "column col c x j columns col_index column_index spalte colonne columna colonna "
     "coluna kolom kolumn kolumna",
@@ -38,6 +38,7 @@ _ROLES = {
 }
 ROLES = {word: role for role, words in _ROLES.items() for word in words.split()}
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\]\d][^\]]*)\]|\(([^)\d][^)]*)\)|[_/ ]([^\W\d_]+\d?))$")
+_BRACKETED = re.compile(r"[\[(]\s*([^\W\d_][^\])]*?)\s*[\])]\s*$")
 _PAIRS = (
     (re.compile(r"\D*?\b[a-z_]*?r(?:ow)?\W?_?(\d+)\W*_?c(?:ol|olumn)?\W?_?(\d+)\W*"), False),
     (re.compile(r"\D*?\b[a-z_]*?c(?:ol|olumn)?\W?_?(\d+)\W*_?r(?:ow)?\W?_?(\d+)\W*"), True),
@@ -97,7 +98,7 @@ class Named:
     time_factor : float, optional
         From the column of time to seconds; None where its name has no unit.
     quantity, factor : str, float
-        What the column of values holds, by the unit in its name.
+        What the column of values, or what all cells hold, by the unit in their names.
     """
 
     names: tuple[str, ...] = ()
@@ -214,7 +215,15 @@ def named(header: Sequence[str]) -> Named:
         if len(left) == 1:
             roles["value"] = left[0]
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])
+    if cells:
+        quantity, scale = _unit_of_cells([names[k] for k in cells])
     return Named(names, roles, cells, places, numbers, factor, quantity, scale)
+
+
+def _unit_of_cells(names: Sequence[str]) -> tuple[str, float]:
+    """Return the quantity and factor of the unit that stands in brackets behind every name."""
+    units = {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
+    return value_unit(units.pop()) if len(units) == 1 else ("raw", 1.0)
 
 
 def _is_value(name: str) -> bool:
@@ -229,7 +238,7 @@ def _parts(name: str) -> tuple[str, str]:
     if found is None:
         return name.lower(), ""
     unit = next((u for u in found.groups()[1:] if u), "")
-    return found[1].strip().lower(), unit.strip().lower()
+    return found[1].strip().lower().removesuffix(" in"), unit.strip().lower()
 
 
 def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tuple[int, ...]]:

@@ -36,6 +36,7 @@ from tactile_graph_sources.readers.tables.preamble import Described, described
 from tactile_graph_sources.readers.units import value_unit
 
 _BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
+_HEADER_ENDS = "***End_of_Header***"
 _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
@@ -201,10 +202,11 @@ def table_of(
     ValueError
         If a setting names a column that is not there.
     """
+    begin = _after_header(lines[:_LOOKED_AT])
     rows = [
         (k, line)
         for k, line in enumerate(lines[:_LOOKED_AT])
-        if not is_blank(line) and not is_comment(line) and is_row(line)
+        if k >= begin and not is_blank(line) and not is_comment(line) and is_row(line)
     ]
     if not rows:
         return None
@@ -235,6 +237,8 @@ def table_of(
         quantity, factor = value_unit(unit)
         said = replace(said, quantity=quantity, factor=factor)
     columns = as_told(named(header) if header else Named(), width, told)
+    if columns.cells and said.quantity == "raw":
+        said = replace(said, quantity=columns.quantity, factor=columns.factor)
     rest = tuple(lines[start:])
     return Table(
         dialect,
@@ -248,6 +252,12 @@ def table_of(
         whole,
         header_line,
     )
+
+
+def _after_header(lines: Sequence[str]) -> int:
+    """Return the index behind the last line that says a header ends there, as LabVIEW's do."""
+    ends = [k for k, line in enumerate(lines) if line.startswith(_HEADER_ENDS)]
+    return ends[-1] + 1 if ends else 0
 
 
 def _number(text: str) -> float:
@@ -299,7 +309,7 @@ def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ..
         separator = next((s for s in (";", "\t", "|", ",") if s in text), None)
     text = without_rules(text) if separator == "|" else text.strip("\r\n")
     names = tuple(n.strip() for n in text.split(separator))
-    while len(names) > width and not names[-1]:
+    while len(names) > width and names[-1].lower() in ("", "comment"):  # as LabVIEW ends a header
         names = names[:-1]
     return names if len(names) == width else ()
 

@@ -93,7 +93,7 @@ def weight_area(pad: Pad, rng: np.random.Generator, n_placements: int = N_PLACEM
     sum of the grams over all elements. The plate under a stack keeps the centre of pressure
     within a millimetre or two of the middle.
     """
-    volt, siemens, sums = _curves(pad, rng)
+    volt, siemens, sums = curves(pad, rng)
     bench = Bench(pad, rng)
     radii = table_2_2_radii_cm()
     radius = np.array(list(radii.values()))
@@ -101,10 +101,10 @@ def weight_area(pad: Pad, rng: np.random.Generator, n_placements: int = N_PLACEM
     shape = (*weight.shape, n_placements)
     coupled, decoupled, by_sums = (np.empty(shape) for _ in range(3))
     for at in np.ndindex(shape):
-        read = _read(bench, float(radius[at[0]]), float(weight[at[:2]]))
+        read = put_down(bench, float(radius[at[0]]), float(weight[at[:2]]))
         behind = bench.siemens(read)[0]
-        coupled[at] = _weighed(volt, read)
-        decoupled[at], by_sums[at] = _weighed(siemens, behind), _weighed(sums, behind)
+        coupled[at] = weighed_g(volt, read)
+        decoupled[at], by_sums[at] = weighed_g(siemens, behind), weighed_g(sums, behind)
     names = tuple(f"{name}, {r:g} cm" for name, r in radii.items())
     return Weighings(names, np.pi * radius**2, PRESSURES_G_CM2, weight, coupled, decoupled, by_sums)
 
@@ -114,7 +114,7 @@ def table_2_2_radii_cm() -> dict[str, float]:
     return {name: float(radius) for name, (_, radius) in numbers("table-2.2")["rows"].items()}
 
 
-def _curves(pad: Pad, rng: np.random.Generator) -> tuple[Calibration, Calibration, Calibration]:
+def curves(pad: Pad, rng: np.random.Generator) -> tuple[Calibration, Calibration, Calibration]:
     """Return calibrations of volts, and twice of decoupled conductance: by means, by sums."""
     found = group_readings(pad, rng, CALIBRATED_G, N_GROUPS)
     volt, siemens = (found.observations(q) for q in ("volt", "siemens"))
@@ -125,12 +125,12 @@ def _curves(pad: Pad, rng: np.random.Generator) -> tuple[Calibration, Calibratio
     )
 
 
-def _weighed(curve: Calibration, readings: Array) -> float:
+def weighed_g(curve: Calibration, readings: Array) -> float:
     """Return the weight on all elements; a reading beyond the curve counts as its end."""
     return float(curve.grams_of(np.minimum(readings, curve.up_to)).load_g.sum())
 
 
-def _read(bench: Bench, radius_cm: float, weight_g: float) -> Array:
+def put_down(bench: Bench, radius_cm: float, weight_g: float) -> Array:
     """Return one reading of a disc put down anew, fully on the pad."""
     width, height = bench.pad.geometry.size_cm
     x, y = (float(bench.rng.uniform(radius_cm, side - radius_cm)) for side in (width, height))

@@ -11,6 +11,7 @@ from tactile_graph_thesis.item import Finding, Item, Made, Table
 from tactile_graph_thesis.measure.simulated_rectangle import (
     CHOSEN,
     HOT,
+    QUICK,
     VARIED,
     Annealed,
     StateSpace,
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 IMAGES, QUICK_IMAGES = 16, 8
 NOTHING_LEVELS = 1.0
 """Change in the error (rms, of 200 levels) that is no effect: a level off looks the same."""
+FROZEN = 1.1
+"""Times the energy of slow cooling from which a state is stuck in a minimum above it."""
 UNITS = {1.0: "squared levels", 0.001: "thousands of squared levels"}
 """Units of the energy by the factor on it; what the thesis concludes is tried in the first."""
 
@@ -38,8 +41,8 @@ def _images(work: Work) -> int:
 
 def _annealing(work: Work) -> Made:
     n = _images(work)
-    found = {scale: schedules(work.seed, n, scale) for scale in UNITS}
-    chosen, *varied, hot = found[1.0]
+    found = {scale: schedules(work.seed, n, scale, (HOT, QUICK)) for scale in UNITS}
+    chosen, *varied, hot, quick = found[1.0]
     rows = [
         (UNITS[scale], *one.schedule, one.rms_levels.mean(), one.rms_levels.std(),
          one.off_chosen_levels, one.energy)
@@ -61,6 +64,7 @@ def _annealing(work: Work) -> Made:
                 f"an error less than {NOTHING_LEVELS:g} level smaller",
                 hot.off_chosen_levels < -NOTHING_LEVELS,
             ),
+            freezes(quick, hot),
         ),
         table=Table(columns, [tuple(r) for r in rows]),
         figure=_schedule_figure(found, n),
@@ -86,6 +90,22 @@ def no_effect(what: str, one: Annealed, chosen: Annealed) -> Finding:
         f"{chosen.rms_levels.mean():.2f}",
         f"a change of more than {NOTHING_LEVELS:g} level",
         abs(one.off_chosen_levels) <= NOTHING_LEVELS,
+    )
+
+
+def freezes(quick: Annealed, slow: Annealed) -> Finding:
+    """Return whether quick cooling from the same temperature ends at a higher energy.
+
+    Parameters
+    ----------
+    quick, slow : Annealed
+    """
+    return Finding(
+        "too quick a cooling freezes in a local minimum",
+        f"{quick.schedule}: energy {quick.energy:.0f} instead of {slow.energy:.0f} by "
+        f"{slow.schedule.cooling:g}",
+        f"an energy less than {FROZEN:g} times that of the slow cooling",
+        quick.energy >= FROZEN * slow.energy,
     )
 
 
@@ -173,7 +193,8 @@ ITEMS = (
         "annealing",
         "Start temperature, cooling, iterations",
         f"Figure 5.8's image restored with lines by other schedules than {CHOSEN}, one number "
-        f"changed at a time, and by {HOT}; the energy in squared levels, and in thousands of them.",
+        f"changed at a time, by {HOT}, and by {QUICK}; the energy in squared levels, and in "
+        "thousands of them.",
         _annealing,
         "Each conclusion is tried on the energy in squared levels, in which the thesis' start "
         "temperatures are both so cold that lines stay where they start.",

@@ -77,6 +77,8 @@ def bars(single_percent: float, group_percent: float) -> ErrorBars:
         (190.0, 45.0, [True, False, True]),
         (60.0, 9.0, [True, False, True]),
         (60.0, 30.0, [True, True, False]),
+        (200.0, 40.0, [False, False, True]),
+        (50.0, 10.0, [False, False, True]),
     ],
 )
 def test_bars_of_another_size_refute_the_thesis(

@@ -16,6 +16,7 @@ from tactile_graph_thesis.items.chapter_5.figures_5_8_to_5_14_restoration import
     very_similar,
 )
 from tactile_graph_thesis.items.chapter_5.section_5_4_1_schedule import (
+    freezes,
     little_difference,
     no_effect,
 )
@@ -30,6 +31,7 @@ from tactile_graph_thesis.measure.restorations import (
 from tactile_graph_thesis.measure.simulated_rectangle import (
     CHOSEN,
     HOT,
+    QUICK,
     Annealed,
     StateSpace,
     corrupted,
@@ -104,6 +106,12 @@ def test_a_change_of_more_than_a_level_is_an_effect(off: float, none: bool) -> N
     chosen = Annealed(CHOSEN, np.array([10.0, 11.0]), 0.0, 1.0)
     other = Annealed(HOT, chosen.rms_levels + off, off, 1.0)
     assert no_effect("start temperature", other, chosen).holds == none
+
+
+@pytest.mark.parametrize(("energy", "stuck"), [(110.1, True), (109.9, False), (50.0, False)])
+def test_quick_cooling_that_ends_as_low_is_not_frozen(energy: float, stuck: bool) -> None:
+    slow = Annealed(HOT, np.array([6.0]), 0.0, 100.0)
+    assert freezes(Annealed(QUICK, np.array([6.0]), 0.0, energy), slow).holds == stuck
 
 
 def test_a_level_of_200_is_a_difference_between_state_spaces() -> None:

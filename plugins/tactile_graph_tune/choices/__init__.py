@@ -1,0 +1,1 @@
+"""What of a pipeline may be chosen: comparisons, the order of its ladder, free settings."""

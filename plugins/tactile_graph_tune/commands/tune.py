@@ -1,0 +1,216 @@
+"""``tactile-graph tune``: guards, the order of a ladder and settings, found by measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tactile_graph.cli.arguments import (
+    Span,
+    open_pipeline,
+    parse_span,
+    pipeline_argument,
+)
+from tactile_graph.errors import UsageError
+from tactile_graph.files import check_target
+from tactile_graph.foreign_text import visible
+
+if TYPE_CHECKING:
+    from tactile_graph import Pipeline
+    from tactile_graph.wires.frame import Frame
+    from tactile_graph_tune.tuned import Tuned
+
+PICTURES = (".png", ".svg", ".pdf")
+EPILOG = """\b
+Without a goal it finds what is cheapest and errs no more than the pipeline as it is, or than its
+best rung always run, whichever errs less. Half of the frames choose, the others report.
+
+\b
+  tactile-graph tune adaptive --frames 400 -o faster.yaml --plot front.png
+  tactile-graph tune circle-3 film.npz --truth truth.csv --free footprint.level_v=0.005:0.05
+
+\b
+Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
+"""
+
+
+@click.command(epilog=EPILOG)
+@pipeline_argument
+@click.argument("recordings", metavar="[RECORDING]...", nargs=-1)
+@click.option("--truth", type=click.Path(path_type=Path), metavar="FILE",
+              help="What truly lay there, for recordings that do not hold it.")  # fmt: skip
+@click.option("--held-out", multiple=True, metavar="RECORDING",
+              help="Report on this recording, choose by the others; can be repeated.")  # fmt: skip
+@click.option("--source", metavar="STEP", help="Take frames from this source step.")
+@click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+              help="A setting of the source; can be repeated.")  # fmt: skip
+@click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+              help="A setting of a node instead of the file's; can be repeated.")  # fmt: skip
+@click.option("--free", "free", metavar="NODE.SETTING=LOW:HIGH", multiple=True,
+              help="Choose this setting too: LOW:HIGH, LOW:HIGH:COUNT or A,B,C; can be "
+              "repeated.")  # fmt: skip
+@click.option("--field", "fields", metavar="NODE.FIELD", multiple=True,
+              help="Guards may ask this field and no others; can be repeated.")  # fmt: skip
+@click.option("--answer", default="", metavar="OUTPUT",
+              help="The output whose error counts; the first one otherwise.")  # fmt: skip
+@click.option("--error", "quantity", metavar="QUANTITY",
+              help="What of it counts: centre, radius, angle, identity, …; the first there is "
+              "otherwise.")  # fmt: skip
+@click.option("--price", type=click.FloatRange(min=0.0, min_open=True), metavar="ERROR",
+              help="What no answer counts, and one where nothing lies; no error counts more.  "
+              "[default: 2 cm, 45°, 1 for a wrong name]")  # fmt: skip
+@click.option("--error-at-most", "most_loss", type=click.FloatRange(min=0.0), metavar="ERROR",
+              help="Find the cheapest whose mean error is no greater.")  # fmt: skip
+@click.option("--time-at-most", "most_us", type=click.FloatRange(min=0.0), metavar="µS",
+              help="Find the best that takes no longer, mean over the frames.")  # fmt: skip
+@click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
+              help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True,
+              help="How often every frame is run; times are medians.")  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
+              help="Seed of everything random.")  # fmt: skip
+@click.option("-o", "--output", "written", metavar="FILE.yaml",
+              help="Write the tuned pipeline; a file that is there stays.")  # fmt: skip
+@click.option("--plot", metavar="FILE", help="Draw error against time (.png, .svg, .pdf).")
+@click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
+    """Find the guards, the order of rungs and the settings of PIPELINE that are cheapest.
+
+    Every node is run on every frame once; from what each took and how far off it was thousands of
+    choices are weighed: comparisons with any node's field, the order of the first_of that answers,
+    settings marked --free. Only the last few are run again.
+    """
+    from tactile_graph.cli.interrupt import Interrupts
+    from tactile_graph.cli.output.progress import Bar
+    from tactile_graph.cli.terminal import console
+    from tactile_graph_tune.request import Request, parse_free
+    from tactile_graph_tune.tuner import tune as tuned_of
+
+    asked = _Options(**options)
+    _check_files(asked)
+    free = tuple(parse_free(text) for text in asked.free)
+    opened = open_pipeline(
+        pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
+    )
+    request = Request(
+        opened, asked.answer, asked.quantity, asked.price, asked.most_loss, asked.most_us,
+        asked.fields, free, asked.rounds, asked.seed,
+    )  # fmt: skip
+    bar = Bar(console(stderr=True), "tune")
+    try:
+        with Interrupts():
+            frames = _frames(opened, span, asked)
+            apart = [f for name in asked.held_out for f in _recorded(opened, name, asked)]
+            found = tuned_of(request, frames, apart, lambda what, n, of: bar.at(n, of))
+    finally:
+        bar.stop()
+    _show(found)
+    for name in _written(found, asked):
+        console().print(f"wrote {name}", style="dim", soft_wrap=True)
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What the command line says beside pipeline and frames."""
+
+    truth: Path | None
+    held_out: tuple[str, ...]
+    source: str | None
+    source_settings: tuple[str, ...]
+    settings: tuple[str, ...]
+    free: tuple[str, ...]
+    fields: tuple[str, ...]
+    answer: str
+    quantity: str | None
+    price: float | None
+    most_loss: float | None
+    most_us: float | None
+    rounds: int
+    seed: int
+    written: str | None
+    plot: str | None
+    json_path: str | None
+
+
+def _check_files(asked: _Options) -> None:
+    """Refuse what could not be written in the end, before the work."""
+    if asked.most_loss is not None and asked.most_us is not None:
+        raise UsageError("--error-at-most and --time-at-most: one of them is the goal, not both")
+    if asked.written is not None:
+        if not asked.written.endswith((".yaml", ".yml")):
+            raise UsageError(f"-o {asked.written}: a pipeline file ends in .yaml")
+        if Path(asked.written).exists():
+            raise UsageError(f"-o {asked.written}: is there already; name another file")
+        check_target("-o", asked.written)
+    if asked.plot is not None:
+        if not asked.plot.lower().endswith(PICTURES):
+            raise UsageError(f"--plot {asked.plot}: its name must end in {', '.join(PICTURES)}")
+        check_target("--plot", asked.plot)
+    if asked.json_path is not None:
+        check_target("--json", asked.json_path)
+
+
+def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
+    """Return the frames to choose by, with the truth that a file holds."""
+    frames: Iterator[Frame] = opened.frames(asked.seed)
+    if asked.truth is not None:
+        from tactile_graph_sources.readers.truth_file import with_truth
+
+        frames = with_truth(frames, asked.truth)
+    return list(span.of(frames))
+
+
+def _recorded(opened: Pipeline, name: str, asked: _Options) -> Iterator[Frame]:
+    """Yield the frames of a recording that is held out."""
+    from tactile_graph.cli.arguments import source_named
+
+    named = source_named(opened, [name], None, (), Span())
+    assert named is not None
+    return opened.with_settings({}, named).frames(asked.seed)
+
+
+def _show(found: Tuned) -> None:
+    from rich.text import Text
+
+    from tactile_graph.cli.terminal import console
+    from tactile_graph_compare.output.shown import fitted, rich_table
+    from tactile_graph_tune.output.tables import (
+        front_table,
+        guards_table,
+        heading,
+        points_table,
+        verdict,
+    )
+
+    out = console()
+    out.print(Text(heading(found), style="bold"), soft_wrap=True)
+    for table in (points_table(found), front_table(found), guards_table(found)):
+        if table.rows:
+            narrow, _ = fitted(table, out.width)
+            out.print(rich_table(narrow))
+    for name, value in found.settings.items():
+        out.print(Text(f"{name} = {value}"))
+    out.print(Text(verdict(found), style="bold"), soft_wrap=True)
+
+
+def _written(found: Tuned, asked: _Options) -> Iterator[str]:
+    """Write the files asked for, and yield their names."""
+    from tactile_graph.files import write_whole
+
+    if asked.written is not None:
+        write_whole(asked.written, found.text)
+        yield asked.written
+    if asked.plot is not None:
+        from tactile_graph_tune.output.figure import write_figure
+
+        write_figure(found, asked.plot)
+        yield asked.plot
+    if asked.json_path is not None:
+        from tactile_graph_tune.output.data import as_json
+
+        write_whole(asked.json_path, visible(as_json(found)))
+        yield asked.json_path

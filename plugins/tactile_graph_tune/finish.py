@@ -1,0 +1,195 @@
+"""From what the search found to what is told: frames it did not see, and real runs of the last."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tactile_graph import Pipeline
+from tactile_graph.plugins.registry import installed
+from tactile_graph_tune.choices.comparisons import Comparison
+from tactile_graph_tune.choices.text import Notes
+from tactile_graph_tune.rerun import rerun
+from tactile_graph_tune.search.front import Choice, Weighed
+from tactile_graph_tune.searching import Told, Tuning
+from tactile_graph_tune.split import Interval, interval_of
+from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, GuardWorth, Point, Tuned, Weight
+
+MOST_ON_FRONT = 12
+MOST_RIVALS = 3
+
+
+def finished(tuning: Tuning, told: Told) -> Tuned:
+    """Return the report of a search, its last few choices run and timed."""
+    last = {GIVEN: tuning.variants[0].given, ALWAYS: tuning.always, CHOSEN: tuning.chosen}
+    worths = tuple(_worth(tuning, place) for place in tuning.chosen.chosen)
+    text = _text(tuning, worths)
+    told("run the last", 0, 1)
+    pipelines = {k: _pipeline(tuning, c, text if k == CHOSEN else "") for k, c in last.items()}
+    frames = [tuning.frames[k] for k in tuning.split.reporting]
+    request = tuning.request
+    ran = rerun(pipelines, frames, tuning.judged, request.rounds, request.seed)
+    told("run the last", 1, 1)
+    points = {
+        k: Point(k, c, _predicted(tuning, c), _weight(tuning, *ran[k])) for k, c in last.items()
+    }
+    (given_us, given), (tuned_us, tuned) = ran[GIVEN], ran[CHOSEN]
+    return Tuned(
+        judged=tuning.judged,
+        n_choosing=len(tuning.split.choosing),
+        n_reporting=len(tuning.split.reporting),
+        how=tuning.split.how,
+        n_weighed=tuning.front.n_weighed,
+        points=points,
+        front=tuple(
+            Point("", p.choice, _predicted(tuning, p.choice)) for p in _some(tuning.front.points)
+        ),
+        bound=tuning.bound(),
+        everything_us=tuning.everything_us(),
+        worths=worths,
+        settings=tuning.variants[tuning.chosen.variant].settings,
+        ratio=_interval(tuning, tuned_us, given_us),
+        difference=_interval(tuning, tuned - given),
+        pipeline=pipelines[CHOSEN],
+        text=text,
+    )
+
+
+def _some(points: list[Weighed]) -> list[Weighed]:
+    """Return at most `MOST_ON_FRONT` points, evenly along the front, both its ends among them."""
+    n = min(len(points), MOST_ON_FRONT)
+    at = np.linspace(0, len(points) - 1, n).round().astype(int)
+    return [points[k] for k in at.tolist()]
+
+
+# -- the frames it did not see ---------------------------------------------------------------
+
+
+def _columns(tuning: Tuning, choice: Choice) -> tuple[Reals, Reals]:
+    """Return time and error of each frame that reports."""
+    found = tuning.variants[choice.variant].predicted(choice)
+    rows = tuning.split.reporting
+    return found.time_us[rows], found.loss[rows]
+
+
+def _interval(tuning: Tuning, values: Reals, over: Reals | None = None) -> Interval:
+    groups = tuning.split.groups[tuning.split.reporting]
+    return interval_of(values, groups, tuning.request.seed, over)
+
+
+def _weight(tuning: Tuning, time_us: Reals, loss: Reals) -> Weight:
+    return Weight(_interval(tuning, time_us), _interval(tuning, loss))
+
+
+def _predicted(tuning: Tuning, choice: Choice) -> Weight:
+    return _weight(tuning, *_columns(tuning, choice))
+
+
+def _worth(tuning: Tuning, place: str) -> GuardWorth:
+    choice = tuning.chosen
+    without = replace(choice, chosen={p: c for p, c in choice.chosen.items() if p != place})
+    time_us, loss = _columns(tuning, choice)
+    more_us, other = _columns(tuning, without)
+    saved = more_us - time_us
+    return GuardWorth(
+        place=place,
+        comparisons=choice.chosen[place],
+        n_stopped=int(_stopped(tuning, place).sum()),
+        saved_us=_interval(tuning, saved),
+        saved_share=float(saved.mean() / more_us.mean()) if more_us.any() else 0.0,
+        cost=_interval(tuning, loss - other),
+        rivals=_rivals(tuning, place),
+    )
+
+
+def _stopped(tuning: Tuning, place: str) -> Any:
+    """Return in which of the frames that report something at a place does not hold."""
+    variant = tuning.variants[tuning.chosen.variant]
+    rows = tuning.split.reporting
+    columns = [c.of(variant.table.fields[c.field].values) for c in tuning.chosen.chosen[place]]
+    return ~np.logical_and.reduce(columns)[rows]
+
+
+def _rivals(tuning: Tuning, place: str) -> tuple[tuple[Comparison, float, float], ...]:
+    """Return the best other fields at a place, chosen by the frames that choose."""
+    choice = tuning.chosen
+    space = tuning.spaces[choice.variant]
+    own = {c.field for c in choice.chosen[place]}
+    _, loss = _chosen_by(tuning, choice)
+    found = []
+    for field in space.questions.fields.get(place, ()):
+        batch = space.questions.batch(field)
+        if field in own or batch is None:
+            continue
+        best = None
+        for comparison in batch.comparisons:
+            its = replace(choice, chosen={**choice.chosen, place: (comparison,)})
+            time_us, its_loss = _chosen_by(tuning, its)
+            if its_loss <= loss * 1.001 and (best is None or time_us < best[0]):
+                best = (time_us, its)
+        if best is not None:
+            found.append(best)
+    found = sorted(found, key=lambda b: b[0])[:MOST_RIVALS]
+    rows = []
+    for _, its in found:
+        times, losses = _columns(tuning, its)
+        rows.append((its.chosen[place][0], float(times.mean()), float(losses.mean())))
+    return tuple(rows)
+
+
+def _chosen_by(tuning: Tuning, choice: Choice) -> tuple[float, float]:
+    """Return mean time and mean error on the frames that choose."""
+    space = tuning.spaces[choice.variant]
+    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
+    return float(found.time_us.mean()), float(found.loss.mean())
+
+
+# -- the file --------------------------------------------------------------------------------
+
+
+def _pipeline(tuning: Tuning, choice: Choice, text: str = "") -> Pipeline:
+    its = tuning.variants[choice.variant].declared
+    return its.resolved(text or its.text(choice.order, choice.chosen))
+
+
+def _text(tuning: Tuning, worths: tuple[GuardWorth, ...]) -> str:
+    its = tuning.variants[tuning.chosen.variant].declared
+    notes = Notes({w.place: told_of(w, tuning) for w in worths}, _head(tuning))
+    own = tuning.request.pipeline
+    head = {"pipeline": f"{own.name}-tuned", **_parent(own)}
+    return its.text(tuning.chosen.order, tuning.chosen.chosen, head, notes)
+
+
+def _parent(own: Pipeline) -> Mapping[str, str]:
+    """Return what the tuned file says it evolved from: what it can name wherever it lies."""
+    registry = own.registry or installed()
+    names = (own.name, own.evolves)
+    return {"evolves": next((n for n in names if n and registry.has("pipelines", n)), "")}
+
+
+def _head(tuning: Tuning) -> str:
+    judged = tuning.judged
+    return (
+        f"Guards and order by 'tactile-graph tune {tuning.request.pipeline.name}': "
+        f"{tuning.front.n_weighed} choices weighed on {len(tuning.split.choosing)} frames, "
+        f"numbers of {len(tuning.split.reporting)} others ({tuning.split.how}); error: of the "
+        f"{judged.quantity}, no answer counting {judged.price:g} {judged.unit}".rstrip()
+    )
+
+
+def told_of(worth: GuardWorth, tuning: Tuning) -> str:
+    """Return what a guard saves and costs, in words."""
+    unit = tuning.judged.unit
+    saved, cost = worth.saved_us, worth.cost
+    low, high = sorted((abs(saved.low), abs(saved.high)))
+    share = f", {100 * worth.saved_share:.0f} %" if saved.mean > 0.0 else ""
+    took = "saves" if saved.mean > 0.0 else "takes"
+    return (
+        f"{took} {abs(saved.mean):.3g} us a frame ({low:.3g} to {high:.3g}){share}; error "
+        f"{cost.mean:+.2g} {unit} ({cost.low:+.2g} to {cost.high:+.2g}); does not hold in "
+        f"{worth.n_stopped} of {len(tuning.split.reporting)} frames"
+    ).replace("  ", " ")

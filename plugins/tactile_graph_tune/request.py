@@ -1,0 +1,122 @@
+"""What is asked of tuning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from tactile_graph import Pipeline
+from tactile_graph.errors import UsageError, did_you_mean
+from tactile_graph.pipeline.document import assignment
+from tactile_graph_compare.variants.prepare import setting_names
+
+STEPS = 5
+MOST_VARIANTS = 32
+
+
+@dataclass(frozen=True)
+class Free:
+    """A setting that may be chosen, ``node.setting``, and the values it may take."""
+
+    name: str
+    values: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is tuned, and for what.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    answer : str
+        The output whose error counts; the first that a truth can judge where empty.
+    quantity : str, optional
+        Of its error; the first there is if not given.
+    price : float, optional
+        What no answer, and one where nothing lies, counts.
+    most_loss : float, optional
+        Find the cheapest whose mean error is no greater. If neither this nor ``most_us`` is given:
+        than that of the pipeline as it is, or of its best rung always run, whichever is less.
+    most_us : float, optional
+        Find the best that takes no longer, mean over the frames.
+    fields : tuple of str
+        The only fields that guards may ask; all where empty.
+    free : tuple of Free
+    rounds : int
+        How often every frame is run: times are medians.
+    seed : int
+    """
+
+    pipeline: Pipeline
+    answer: str = ""
+    quantity: str | None = None
+    price: float | None = None
+    most_loss: float | None = None
+    most_us: float | None = None
+    fields: tuple[str, ...] = ()
+    free: tuple[Free, ...] = ()
+    rounds: int = 3
+    seed: int = 0
+
+    def variants(self) -> list[dict[str, Any]]:
+        """Return every combination of the free settings' values, the file's own first.
+
+        Raises
+        ------
+        UsageError
+            If a setting does not exist, or there are too many combinations.
+        """
+        known = set(setting_names(self.pipeline))
+        for free in self.free:
+            if free.name not in known:
+                hint = did_you_mean(free.name, known)
+                raise UsageError(
+                    f"--free {free.name}: pipeline {self.pipeline.name!r} has no such setting{hint}"
+                )
+        n = int(np.prod([len(f.values) for f in self.free]))
+        if n > MOST_VARIANTS:
+            raise UsageError(
+                f"--free: {n} combinations of values, at most {MOST_VARIANTS}: name fewer values "
+                "(node.setting=low:high:count)"
+            )
+        names = [f.name for f in self.free]
+        combined = product(*(f.values for f in self.free)) if self.free else ()
+        return [{}, *(dict(zip(names, values, strict=True)) for values in combined)]
+
+
+def parse_free(text: str) -> Free:
+    """Return what ``node.setting=low:high``, ``low:high:count`` or ``a,b,c`` spells.
+
+    Values between positive bounds stand at equal ratios, others at equal distances.
+
+    Raises
+    ------
+    UsageError
+        If it spells none of them.
+    """
+    name, sign, given = (part.strip() for part in text.partition("="))
+    if not sign or "." not in name.strip(".") or not given:
+        raise UsageError(f"--free {text}: must be node.setting=low:high, low:high:count, or a,b,c")
+    if ":" in given:
+        return Free(name, _between(text, given.split(":")))
+    listed = assignment("--free", f"{name}=[{given}]")[1]
+    return Free(name, tuple(listed))
+
+
+def _between(text: str, parts: Sequence[str]) -> tuple[float, ...]:
+    try:
+        low, high = (float(p) for p in parts[:2])
+        n = int(parts[2]) if len(parts) == 3 else STEPS
+    except ValueError:
+        n = 0
+    if len(parts) > 3 or n < 2 or not low < high < np.inf:
+        raise UsageError(
+            f"--free {text}: must be low:high or low:high:count, low below high, 2 values or more"
+        )
+    spaced = np.geomspace if low > 0.0 else np.linspace
+    return tuple(float(f"{v:.3g}") for v in spaced(low, high, n))

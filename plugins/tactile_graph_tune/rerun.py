@@ -1,0 +1,56 @@
+"""Run the last few pipelines themselves, in turn, and time them as wholes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tactile_graph import Pipeline
+from tactile_graph.wires.frame import Frame
+from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.table.losses import LossOf
+from tactile_graph_tune.table.record import WARM_FRAMES, Judged
+
+
+def rerun(
+    pipelines: Mapping[str, Pipeline],
+    frames: Sequence[Frame],
+    judged: Judged,
+    rounds: int,
+    seed: int,
+) -> dict[str, tuple[Reals, Reals]]:
+    """Return for each pipeline the time and the error of each frame, shapes (n_frames,).
+
+    Parameters
+    ----------
+    pipelines : mapping of str to Pipeline
+    frames : sequence of Frame
+    judged : Judged
+    rounds : int
+        In each every pipeline has its turn with each frame; times are medians over them, processor
+        time of whole frames: what lies between the steps counts too.
+    seed : int
+    """
+    runners = {k: p.runner(seed=seed) for k, p in pipelines.items()}
+    losses = {
+        k: LossOf(p, judged.answer, judged.quantity, judged.price) for k, p in pipelines.items()
+    }
+    found = {k: np.zeros(len(frames)) for k in pipelines}
+    taken = {k: np.empty((rounds, len(frames))) for k in pipelines}
+    for runner in runners.values():
+        for frame in frames[:WARM_FRAMES]:
+            runner(frame)
+    for k in range(rounds):
+        for label, runner in runners.items():
+            for i, frame in enumerate(frames):
+                runner.forget()
+                start = time.process_time()
+                result = runner(frame)
+                taken[label][k, i] = time.process_time() - start
+                if k == 0:
+                    found[label][i] = losses[label](frame, result.outcome_at)
+    # What cannot be held against the truth of a frame is no answer to it.
+    lost = {k: np.where(np.isnan(x), judged.price, x) for k, x in found.items()}
+    return {k: (1e6 * np.median(taken[k], axis=0), lost[k]) for k in pipelines}

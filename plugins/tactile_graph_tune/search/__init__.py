@@ -1,0 +1,1 @@
+"""Choices weighed against the table, and the least that any could reach."""

@@ -1,0 +1,203 @@
+"""Search guards and orders: one place after the other, for one price of error after the other.
+
+Time and error are weighed as time + price * error, as budgeted prediction does (Xu, Weinberger and
+Chapelle 2012, "The greedy miser"); comparisons that stop early are Viola and Jones' attentional
+cascade (2001, 10.1109/CVPR.2001.990517). For each price and each order every place in turn takes
+the comparison that is best while the others stay, from the best that any other price found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, permutations
+
+import numpy as np
+
+from tactile_graph_tune.choices.comparisons import Comparison
+from tactile_graph_tune.choices.declared import Chosen
+from tactile_graph_tune.search.cascade import Asked, Cascade, Order
+from tactile_graph_tune.search.front import Choice, Front
+from tactile_graph_tune.search.questions import Batch, Questions
+from tactile_graph_tune.table.columns import Reals, Table
+
+MOST_ASKED = 2
+"""Comparisons at one place."""
+GAIN = 0.003
+"""Share of the objective that one comparison more has to bring."""
+MOST_SWEEPS = 2
+ALL_ORDERS = 3
+"""Rungs up to which every order is tried; of more, only those from cheap to dear."""
+
+
+@dataclass(frozen=True)
+class Space:
+    """What is searched, and by which frames."""
+
+    variant: int
+    cascade: Cascade
+    table: Table
+    questions: Questions
+    given: Choice
+
+
+class Search:
+    """Fills a front.
+
+    Parameters
+    ----------
+    space : Space
+    front : Front
+    prices : sequence of float
+        Of error: µs per unit.
+    """
+
+    def __init__(self, space: Space, front: Front, prices: Sequence[float]) -> None:
+        self.space, self.front, self.prices = space, front, prices
+        self._best: dict[tuple[Order, float], tuple[float, Chosen]] = {}
+
+    def run(self, orders: Sequence[Order]) -> None:
+        """Search with each of the orders of rungs."""
+        given = self.space.given.chosen
+        starts: list[Chosen] = [{}, given]
+        for order in orders:
+            for start in starts:
+                self._weigh(order, start, {}, [()])
+            for price in self.prices:
+                self._descend(order, price)
+
+    def _descend(self, order: Order, price: float) -> None:
+        """Improve the best choice for a price, place by place, until none gets better."""
+        for _ in range(MOST_SWEEPS):
+            before, _ = self._best[order, price]
+            for place in self.space.questions.fields:
+                if self._live(place, order):
+                    self._improve(order, price, place)
+            if self._best[order, price][0] > before * (1.0 - GAIN):
+                return
+
+    def _live(self, place: str, order: Order) -> bool:
+        """Return whether anything is asked at a place: the last rung answers whatever it has."""
+        rungs = self.space.given.order
+        return place not in rungs or place in order[:-1]
+
+    def _improve(self, order: Order, price: float, place: str) -> None:
+        _, chosen = self._best[order, price]
+        now = chosen.get(place, ())
+        bases = dict.fromkeys([(), *((c,) for c in now)])
+        self._weigh(order, {**chosen, place: ()}, {}, [()])
+        for base in bases:
+            for field in self.space.questions.fields[place]:
+                if any(c.field == field for c in base) and len(base) == MOST_ASKED:
+                    continue
+                finer = any(c.field == field for c in now)
+                batch = self.space.questions.batch(field, finer)
+                if batch is not None:
+                    self._weigh_batch(order, {**chosen, place: base}, place, batch)
+
+    def _weigh_batch(self, order: Order, chosen: Chosen, place: str, batch: Batch) -> None:
+        asked = {place: [batch.asked]}
+        self._weigh(order, chosen, asked, [(place, c) for c in batch.comparisons])
+
+    def _weigh(
+        self,
+        order: Order,
+        chosen: Chosen,
+        more: dict[str, list[Asked]],
+        added: Sequence[tuple[()] | tuple[str, Comparison]],
+    ) -> None:
+        """Weigh a choice, or many that each have one comparison added."""
+        table = self.space.table
+        asked = {p: [Asked.of(c, table) for c in cs] for p, cs in chosen.items()}
+        for place, questions in more.items():
+            asked[place] = [*asked.get(place, ()), *questions]
+        found = self.space.cascade(table, order, asked)
+        shape = (len(added), table.n)
+        times = np.broadcast_to(found.time_us, shape).mean(axis=1)
+        losses = np.broadcast_to(found.loss, shape).mean(axis=1)
+        made: dict[int, Chosen] = {}
+
+        def chosen_at(k: int) -> Chosen:
+            if k not in made:
+                made[k] = _with(chosen, *added[k])
+            return made[k]
+
+        variant = self.space.variant
+        self.front.enter(times, losses, lambda k: Choice(variant, order, chosen_at(k)))
+        self._note(order, times, losses, chosen_at, sum(map(len, chosen.values())) + len(more))
+
+    def _note(
+        self,
+        order: Order,
+        times: Reals,
+        losses: Reals,
+        chosen_at: Callable[[int], Chosen],
+        n_asked: int,
+    ) -> None:
+        for price in self.prices:
+            objective = (times + price * losses) * (1.0 + GAIN * n_asked)
+            k = int(objective.argmin())
+            known = self._best.get((order, price), (math.inf, {}))
+            if objective[k] < known[0]:
+                self._best[order, price] = (float(objective[k]), chosen_at(k))
+
+
+def _with(chosen: Chosen, place: str = "", comparison: Comparison | None = None) -> Chosen:
+    found = {p: cs for p, cs in chosen.items() if cs}
+    if comparison is not None:
+        found[place] = (*found.get(place, ()), comparison)
+    return found
+
+
+def orders_of(rungs: Order, mean_us: Sequence[float]) -> list[Order]:
+    """Return the orders of rungs to try: the given one, and others, rungs left out too.
+
+    Parameters
+    ----------
+    rungs : tuple of str
+        In the given order.
+    mean_us : sequence of float
+        What each takes alone.
+    """
+    if not rungs:
+        return [()]
+    cheap_first = sorted(range(len(rungs)), key=lambda k: mean_us[k])
+    found: Iterator[tuple[int, ...]]
+    if len(rungs) <= ALL_ORDERS:
+        sizes = range(1, len(rungs) + 1)
+        found = (o for n in sizes for o in permutations(range(len(rungs)), n))
+    else:
+        sizes = range(1, len(rungs) + 1)
+        found = (o for n in sizes for o in combinations(cheap_first, n))
+    return list(dict.fromkeys([rungs, *(tuple(rungs[k] for k in o) for o in found)]))
+
+
+def pruned(space: Space, choice: Choice, allowed: float, by_time: bool = False) -> Choice:
+    """Return a choice without the comparisons that bring next to nothing.
+
+    Parameters
+    ----------
+    space : Space
+    choice : Choice
+    allowed : float
+        The greatest mean error, or with ``by_time`` the greatest mean time.
+    by_time : bool
+        Whether the error is to be least, not the time.
+    """
+    best = _means(space, choice, by_time)
+    for place, comparisons in choice.chosen.items():
+        for comparison in comparisons:
+            left = tuple(c for c in choice.chosen[place] if c != comparison)
+            simpler = replace(choice, chosen={**choice.chosen, place: left})
+            limited, sought = _means(space, simpler, by_time)
+            if limited <= allowed and sought <= best[1] * (1.0 + 2.0 * GAIN):
+                choice, best = simpler, (limited, sought)
+    return replace(choice, chosen={p: cs for p, cs in choice.chosen.items() if cs})
+
+
+def _means(space: Space, choice: Choice, by_time: bool) -> tuple[float, float]:
+    """Return the mean of what is limited, and of what is to be least."""
+    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
+    time_us, loss = float(found.time_us.mean()), float(found.loss.mean())
+    return (time_us, loss) if by_time else (loss, time_us)

@@ -1,0 +1,262 @@
+"""From one run of everything to the choice that is taken, before any of it is run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tactile_graph import Pipeline
+from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.score.answers import answers_of
+from tactile_graph_tune.choices.declared import Declared, Place, declared
+from tactile_graph_tune.request import Request
+from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
+from tactile_graph_tune.search.front import Choice, Front
+from tactile_graph_tune.search.oracle import Bound, Options, bound_of, options_of
+from tactile_graph_tune.search.questions import Questions, fields_by_place
+from tactile_graph_tune.search.search import Search, Space, orders_of, pruned
+from tactile_graph_tune.search.select import Goal, limit_of, merged, selected
+from tactile_graph_tune.split import Split, halves_of, split_of
+from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.losses import PRICES, quantity_of
+from tactile_graph_tune.table.record import Judged, Rounds, leaves_of, record
+
+COSTLY = 0.1
+"""Share of all time from which a step without a guard is offered one."""
+MOST_OFFERED = 3
+N_PRICES = 5
+Told = Callable[[str, int, int], None]
+"""Is told what is done, how far, and how far it goes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Variant:
+    """One combination of the free settings' values, with its table."""
+
+    number: int
+    settings: dict[str, Any]
+    declared: Declared
+    pipeline: Pipeline
+    cascade: Cascade
+    table: Table
+    given: Choice
+
+    def predicted(self, choice: Choice) -> Predicted:
+        """Return what a choice comes to in every frame."""
+        return self.cascade.predicted(self.table, choice.order, choice.chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class Tuning:
+    """All that the search found, before any of it is run."""
+
+    request: Request
+    judged: Judged
+    frames: Sequence[Frame]
+    split: Split
+    variants: list[Variant]
+    spaces: list[Space]
+    front: Front
+    always: Choice
+    chosen: Choice
+
+    def everything_us(self) -> float:
+        """Return the mean time of the frames that report, nothing skipped."""
+        nodes = self.variants[0].table.nodes.values()
+        return sum(float(c.time_us[self.split.reporting].mean()) for c in nodes)
+
+    def bound(self) -> Bound:
+        """Return the least that any choice could reach on the frames that report."""
+        rows = self.split.reporting
+        options = [_options(v, v.table.taken(rows), self.judged.answer) for v in self.variants]
+        times, losses = (np.concatenate(part) for part in zip(*options, strict=True))
+        return bound_of(Options(times, losses))
+
+
+def searched(
+    request: Request, frames: Sequence[Frame], held_out: Sequence[Frame], told: Told
+) -> Tuning:
+    """Return what the search found; parameters and errors as of `tuner.tune`."""
+    judged = _judged(request)
+    known = [f for f in frames if f.truth is not None]
+    apart = [f for f in held_out if f.truth is not None]
+    for given, left in ((frames, known), (held_out, apart)):
+        if given and not left:
+            raise UsageError(
+                f"none of {len(given)} frames has a truth to choose by: give --truth FILE, or "
+                "recordings that hold it (docs/how-to/attach-truth.md)"
+            )
+    every = [*known, *apart]
+    split = split_of(every, len(apart), request.seed)
+    variants = _variants(request, judged, every, lambda n, of: told("run everything", n, of))
+    scored = np.all([v.table.scored for v in variants], axis=0)
+    if not scored.all():
+        raise UsageError(
+            f"in {int((~scored).sum())} of {len(every)} frames the truth says nothing of "
+            f"{judged.quantity!r}: choose another with --error, or leave these frames out"
+        )
+    _check_answers(variants, judged)
+    spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
+    always = _always(spaces[0])
+    if not spaces[0].questions.fields and len(spaces) == 1 and len(spaces[0].given.order) < 2:
+        raise UsageError(
+            f"pipeline {request.pipeline.name!r}: nothing to choose: it has no guard, no first_of "
+            "that answers, and no costly step before which a field is known; mark a setting free "
+            "(--free node.setting=low:high)"
+        )
+    folds = halves_of(every, split, request.seed)
+    fronts = [Front() for _ in folds]
+    for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
+        half = [_space(v, v.table.taken(rows), request) for v in variants]
+        _search(half, front, judged)
+        told("weigh choices", k + 1, len(folds))
+
+    def predict(choice: Choice) -> Predicted:
+        return variants[choice.variant].predicted(choice)
+
+    goal = _goal(request, (spaces[0].given, always))
+    chosen = selected(goal, fronts, folds, predict)
+    allowed = limit_of(goal, split.choosing, predict)
+    chosen = pruned(spaces[chosen.variant], chosen, allowed, goal.by_time)
+    front = merged(fronts, split.choosing, predict)
+    return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
+
+
+def _goal(request: Request, references: tuple[Choice, ...]) -> Goal:
+    by_time = request.most_us is not None
+    return Goal(request.most_us if by_time else request.most_loss, by_time, references)
+
+
+# -- before the search -----------------------------------------------------------------------
+
+
+def _judged(request: Request) -> Judged:
+    pipeline = request.pipeline
+    answer = request.answer
+    if answer and answer not in pipeline.outputs:
+        known = list(pipeline.outputs)
+        hint = did_you_mean(answer, known)
+        raise UsageError(f"--answer {answer}: outputs are {one_of(known)}{hint}")
+    if not answer:
+        able = [o for o in pipeline.outputs if answers_of(pipeline, (o,)).quantities]
+        if not able:
+            raise UsageError(f"pipeline {pipeline.name!r}: no truth says how right an output is")
+        answer = able[0]
+    quantity, unit = quantity_of(pipeline, answer, request.quantity)
+    price = PRICES.get(unit, 1.0) if request.price is None else request.price
+    return Judged(answer, quantity, unit, price)
+
+
+def _variants(
+    request: Request, judged: Judged, frames: Sequence[Frame], told: Callable[[int, int], None]
+) -> list[Variant]:
+    settings = request.variants()
+    given = [
+        declared(request.pipeline.with_settings(s) if s else request.pipeline, judged.answer)
+        for s in settings
+    ]
+    kept: set[str] = set()
+    while True:
+        parted = [d.keeping(kept) for d in given]
+        opened = [d.opened() for d in parted]
+        also = [c.field for p in parted[0].places.values() for c in p.given]
+        tables = record(opened, also, frames, judged, Rounds(request.rounds, request.seed, told))
+        nodes = set().union(*(bound(p, t) for p, t in zip(opened, tables, strict=True)))
+        stay = {p.name for d in parted for p in d.places.values() if nodes & set(p.nodes)}
+        if not stay:
+            break
+        kept |= stay  # what they keep from running is read where it may be missing
+    found = []
+    for k, (values, its, pipeline, table) in enumerate(
+        zip(settings, parted, opened, tables, strict=True)
+    ):
+        its = _with_offers(its, pipeline, table, nodes)
+        cascade = Cascade(pipeline, its, pipeline.outputs[judged.answer])
+        choice = Choice(k, its.rungs, its.given)
+        found.append(Variant(k, values, its, pipeline, cascade, table, choice))
+    _check_fields(request, found[0].table)
+    return found
+
+
+def _with_offers(its: Declared, pipeline: Pipeline, table: Table, bound_: set[str]) -> Declared:
+    """Offer a guard to the costliest steps of the file that have none."""
+    mean = {n: float(c.time_us.mean()) for n, c in table.nodes.items()}
+    least = COSTLY * sum(mean.values())
+    guarded = {n for p in its.places.values() for n in p.nodes}
+    costly = [
+        n for n, node in its.data["nodes"].items()
+        if "step" in node and n not in guarded | bound_ and mean.get(n, 0.0) >= least
+    ]  # fmt: skip
+    for name in sorted(costly, key=lambda n: -mean[n])[:MOST_OFFERED]:
+        its = its.with_place(Place(name, (name,)))
+    return its
+
+
+def _check_fields(request: Request, table: Table) -> None:
+    for name in request.fields:
+        if name not in table.fields:
+            hint = did_you_mean(name, table.fields)
+            raise UsageError(
+                f"--field {name}: no node of pipeline {request.pipeline.name!r} has it, or it is "
+                f"no number{hint}"
+            )
+
+
+def _check_answers(variants: Sequence[Variant], judged: Judged) -> None:
+    tables = [v.table for v in variants]
+    names = _leaves(variants[0], judged.answer)
+    if not any(t.nodes[node].ok.any() for t in tables for node in names.values()):
+        failed = sum(t.nodes[n].failed.sum() for t in tables[:1] for n in names.values())
+        why = f"; {failed} times a step failed" if failed else ""
+        raise UsageError(
+            f"{judged.answer!r} has a value in none of {tables[0].n} frames, even with every guard "
+            f"left out{why}: 'tactile-graph explain' tells why"
+        )
+
+
+def _space(variant: Variant, table: Table, request: Request) -> Space:
+    fields = fields_by_place(variant.declared, variant.pipeline, table, request.fields)
+    fields = {place: names for place, names in fields.items() if names}
+    questions = Questions(variant.pipeline, table, fields)
+    return Space(variant.number, variant.cascade, table, questions, variant.given)
+
+
+def _leaves(variant: Variant, answer: str) -> dict[str, str]:
+    """Return what may answer -> its node."""
+    refs = leaves_of(variant.pipeline, variant.pipeline.outputs[answer])
+    return {str(ref): ref.node for ref in refs}
+
+
+def _options(variant: Variant, table: Table, answer: str) -> Options:
+    return options_of(variant.pipeline, table, _leaves(variant, answer))
+
+
+def _always(space: Space) -> Choice:
+    """Return the one rung, always run, whose error is least."""
+    rungs: list[Order] = [(r,) for r in space.given.order] or [()]
+    return min((Choice(0, order, {}) for order in rungs), key=lambda c: _loss(space, c))
+
+
+# -- the search ------------------------------------------------------------------------------
+
+
+def _search(spaces: Sequence[Space], front: Front, judged: Judged) -> None:
+    own = spaces[0]
+    whole = own.cascade.predicted(own.table, own.given.order, {})
+    unit_us = float(whole.time_us.mean()) / judged.price
+    prices = (unit_us * np.geomspace(0.3, 3000.0, N_PRICES)).tolist()
+    for space in spaces:
+        alone = [
+            float(space.cascade.predicted(space.table, (r,), {}).time_us.mean())
+            for r in space.given.order
+        ]
+        Search(space, front, prices).run(orders_of(space.given.order, alone))
+
+
+def _loss(space: Space, choice: Choice) -> float:
+    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
+    return float(found.loss.mean())

@@ -1,0 +1,143 @@
+"""Which frames are chosen by, and which the outcome is told of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from tactile_graph.errors import UsageError
+from tactile_graph.wires.frame import Frame
+from tactile_graph_tune.table.columns import Reals
+
+LEAST_FRAMES = 8
+BLOCKS = 40
+"""Stretches that a recording is cut into: frames next to each other stay on one side."""
+RESAMPLES = 2000
+LEVEL = 0.95
+
+
+class Split(NamedTuple):
+    """Rows on either side, and which belong together.
+
+    Parameters
+    ----------
+    choosing, reporting : ndarray of int64
+        Rows of the table.
+    groups : ndarray of int64, shape (n_frames,)
+        Frames of one group are resampled together.
+    how : str
+        In words.
+    """
+
+    choosing: NDArray[np.int64]
+    reporting: NDArray[np.int64]
+    groups: NDArray[np.int64]
+    how: str
+
+
+def split_of(frames: Sequence[Frame], n_apart: int, seed: int) -> Split:
+    """Return which frames are on which side.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+        Those to be held out, if they were named, last.
+    n_apart : int
+        How many were named so.
+    seed : int
+
+    Raises
+    ------
+    UsageError
+        If there are too few.
+    """
+    n = len(frames)
+    if n < LEAST_FRAMES:
+        raise UsageError(
+            f"{n} frame{'s' if n != 1 else ''} with a known truth: half of them choose and the "
+            f"others tell what came of it, so {LEAST_FRAMES} are needed at least"
+        )
+    groups = _blocks([f.label for f in frames])
+    rows = np.arange(n)
+    if n_apart:
+        if n_apart >= n:
+            raise UsageError("no frame with a known truth is left to choose by")
+        return Split(rows[: n - n_apart], rows[n - n_apart :], groups, "recordings named for it")
+    chosen, several = _half(frames, groups, rows, np.random.default_rng([seed, 5]))
+    how = "recording by recording" if several else "by stretches of neighbouring frames"
+    return Split(rows[chosen], rows[~chosen], groups, how)
+
+
+def halves_of(frames: Sequence[Frame], split: Split, seed: int) -> list[NDArray[np.int64]]:
+    """Return the rows that choose in two halves, recording by recording if there are several.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+    split : Split
+    seed : int
+    """
+    rng = np.random.default_rng([seed, 6])
+    first, _ = _half(frames, split.groups, split.choosing, rng)
+    return [split.choosing[first], split.choosing[~first]]
+
+
+def _half(
+    frames: Sequence[Frame], groups: NDArray[np.int64], rows: NDArray[np.int64], rng: Generator
+) -> tuple[NDArray[np.bool_], bool]:
+    """Return which rows are in the first half, and whether recordings were told apart."""
+    labels = np.unique([frames[k].label for k in rows], return_inverse=True)[1]
+    several = bool(labels.max() > 0)
+    parts = labels if several else groups[rows]
+    mixed = rng.permutation(np.unique(parts))
+    return np.isin(parts, mixed[: (len(mixed) + 1) // 2]), several
+
+
+def _blocks(labels: Sequence[str]) -> NDArray[np.int64]:
+    """Return a number for each stretch of neighbouring frames of one recording."""
+    n = len(labels)
+    length = max(1, n // BLOCKS)
+    found = np.empty(n, np.int64)
+    number, start = -1, 0
+    for i in range(n):
+        if i == 0 or labels[i] != labels[i - 1] or i - start >= length:
+            number, start = number + 1, i
+        found[i] = number
+    return found
+
+
+class Interval(NamedTuple):
+    """A mean, and the bounds it lies within at `LEVEL`."""
+
+    mean: float
+    low: float
+    high: float
+
+
+def interval_of(
+    values: Reals, groups: NDArray[np.int64], seed: int, over: Reals | None = None
+) -> Interval:
+    """Return the mean of values, and its percentile bootstrap over groups.
+
+    Parameters
+    ----------
+    values : ndarray of float64, shape (n,)
+    groups : ndarray of int64, shape (n,)
+    seed : int
+        Draws the resamples, the same for every row of a table.
+    over : ndarray of float64, shape (n,), optional
+        Return the ratio of the means of values to these instead.
+    """
+    _, at = np.unique(groups, return_inverse=True)
+    below = np.ones(len(values)) if over is None else over
+    sums, counts = np.bincount(at, values), np.bincount(at, below)
+    rng = np.random.default_rng([seed, 9])
+    drawn = rng.integers(0, len(sums), (RESAMPLES, len(sums)))
+    means = sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
+    tail = 50.0 * (1.0 - LEVEL)
+    low, high = np.percentile(means, (tail, 100.0 - tail))
+    return Interval(float(values.sum() / below.sum()), float(low), float(high))

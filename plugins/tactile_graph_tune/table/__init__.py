@@ -1,0 +1,1 @@
+"""What every node came to in every frame, kept once."""

@@ -1,0 +1,85 @@
+"""What one run of everything came to, kept as columns: a row a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Reals = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class NodeColumn:
+    """What a node came to, each of shape (n_frames,).
+
+    Parameters
+    ----------
+    ok : ndarray of bool
+        It had a value.
+    failed : ndarray of bool
+        It failed, by itself or by what it reads.
+    opened : ndarray of bool
+        The part of its guard that stays held.
+    time_us : ndarray of float64
+        Median over the rounds; 0 where it did not run.
+    """
+
+    ok: Flags
+    failed: Flags
+    opened: Flags
+    time_us: Reals
+
+    def taken(self, frames: NDArray[np.int64]) -> NodeColumn:
+        """Return some frames of it."""
+        return NodeColumn(*(c[frames] for c in vars(self).values()))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldColumn:
+    """A field's values, shape (n_frames,), NaN where it has none; and the time to read one."""
+
+    values: Reals
+    time_us: float
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Everything that is known of every frame.
+
+    Parameters
+    ----------
+    nodes : mapping of str to NodeColumn
+    fields : mapping of str to FieldColumn
+        Every number and every yes or no that a guard could read, by ``node.field``.
+    losses : mapping of str to ndarray, shape (n_frames,)
+        For each node that may answer, the error if it does where it has a value.
+    none : ndarray of float64, shape (n_frames,)
+        The error if nothing answers.
+    scored : ndarray of bool, shape (n_frames,)
+        Frames whose truth is known.
+    """
+
+    nodes: Mapping[str, NodeColumn]
+    fields: Mapping[str, FieldColumn]
+    losses: Mapping[str, Reals]
+    none: Reals
+    scored: Flags
+
+    @property
+    def n(self) -> int:
+        """Frames."""
+        return len(self.none)
+
+    def taken(self, frames: NDArray[np.int64]) -> Table:
+        """Return the table of some frames."""
+        return Table(
+            {k: c.taken(frames) for k, c in self.nodes.items()},
+            {k: replace(c, values=c.values[frames]) for k, c in self.fields.items()},
+            {k: v[frames] for k, v in self.losses.items()},
+            self.none[frames],
+            self.scored[frames],
+        )

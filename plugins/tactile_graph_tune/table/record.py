@@ -1,0 +1,185 @@
+"""Run everything on every frame, and keep of it what choosing needs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph import Pipeline, Result
+from tactile_graph.compiled import warm_up
+from tactile_graph.errors import UsageError
+from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Skipped
+from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.variants.merge import Member, merge
+from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Reals, Table
+from tactile_graph_tune.table.fields import guard_fields, value_at
+from tactile_graph_tune.table.losses import LossOf
+
+WARM_FRAMES = 8
+Told = Callable[[int, int], None]
+"""Is told how many frames of how many are done."""
+
+
+class Judged(NamedTuple):
+    """By what an answer is judged."""
+
+    answer: str
+    quantity: str
+    unit: str
+    price: float
+
+
+class Rounds(NamedTuple):
+    """How often everything runs, times being medians; the seed; and who is told how far it is."""
+
+    n: int
+    seed: int
+    told: Told
+
+
+def record(
+    pipelines: Sequence[Pipeline],
+    also: Sequence[str],
+    frames: Sequence[Frame],
+    judged: Judged,
+    rounds: Rounds,
+) -> list[Table]:
+    """Return the table of each pipeline; nodes they have in common run once.
+
+    Parameters
+    ----------
+    pipelines : sequence of Pipeline
+        Without the guards that are to be chosen.
+    also : sequence of str
+        Fields that are asked already, whatever they say.
+    frames : sequence of Frame
+    judged : Judged
+    rounds : Rounds
+
+    Raises
+    ------
+    UsageError
+        If a step keeps state or writes: what it does then hangs on what was skipped before.
+    """
+    for pipeline in pipelines:
+        _check(pipeline)
+    warm_up()  # what answers as plain code meanwhile would be timed as such
+    merged = merge(pipelines, [tuple(p.nodes) for p in pipelines])
+    runner = merged.pipeline.runner(seed=rounds.seed)
+    for frame in frames[:WARM_FRAMES]:
+        runner(frame)
+    rows = [_Rows(p, m, also, judged) for p, m in zip(pipelines, merged.members, strict=True)]
+    for k in range(rounds.n):
+        for i, frame in enumerate(frames):
+            runner.forget()
+            result = runner(frame)
+            for its in rows:
+                its.add(result, first=k == 0)
+            rounds.told(k * len(frames) + i + 1, rounds.n * len(frames))
+    return [its.table(len(frames)) for its in rows]
+
+
+def _check(pipeline: Pipeline) -> None:
+    for name, node in pipeline.nodes.items():
+        if node.stateful:
+            raise UsageError(
+                f"pipeline {pipeline.name!r}: node {name!r} keeps state from frame to frame: what "
+                "it gives hangs on which frames it saw, and no table of single frames can tell"
+            )
+        if node.is_sink:
+            raise UsageError(
+                f"pipeline {pipeline.name!r}: node {name!r} writes; tune it without that node"
+            )
+
+
+@dataclass
+class _Field:
+    name: str
+    node: str
+    path: tuple[str, ...]
+    values: list[float]
+    spent_s: float = 0.0
+
+
+class _Rows:
+    """What was recorded so far of one pipeline."""
+
+    def __init__(
+        self, pipeline: Pipeline, member: Member, also: Sequence[str], judged: Judged
+    ) -> None:
+        self._pipeline, self._member, self._judged = pipeline, member, judged
+        self._states: dict[str, list[tuple[bool, bool, bool]]] = {n: [] for n in pipeline.nodes}
+        self._times: list[list[float]] = []
+        parted = [(f, *f.split(".")) for f in dict.fromkeys([*guard_fields(pipeline), *also])]
+        self._fields = [_Field(f, node, tuple(path), []) for f, node, *path in parted]
+        leaves = leaves_of(pipeline, pipeline.outputs[judged.answer])
+        self._losses = {
+            str(leaf): LossOf(pipeline, str(leaf), judged.quantity, judged.price) for leaf in leaves
+        }
+        self._lost: dict[str, list[float]] = {name: [] for name in self._losses}
+        self._truths: list[int] = []
+
+    def add(self, result: Result, first: bool) -> None:
+        """Enter a frame; all but its times the first time only."""
+        times, names = result.times_us, self._member.names
+        self._times.append([times[names[n]] for n in self._pipeline.nodes])
+        if not first:
+            return
+        values = {n: result.outcome(names[n]) for n in self._pipeline.nodes}
+        for name, value in values.items():
+            own = value.__class__ is Skipped and value.origin == names[name]
+            closed = own and times[names[name]] == 0.0
+            ok = value.__class__ not in NO_VALUE
+            self._states[name].append((ok, value.__class__ is Failed, not closed))
+        for field in self._fields:
+            value = values[field.node]
+            start = time.perf_counter()
+            number = np.nan if value.__class__ in NO_VALUE else value_at(value, field.path)
+            field.spent_s += time.perf_counter() - start
+            field.values.append(number)
+        for name, loss in self._losses.items():
+            lost = loss(result.frame, lambda ref: result.outcome_at(self._member.ref(ref)))
+            self._lost[name].append(lost)
+        truth = result.frame.truth
+        self._truths.append(-1 if truth is None else len(truth))
+
+    def table(self, n: int) -> Table:
+        """Return the columns."""
+        times = np.array(self._times).reshape(-1, n, len(self._states))
+        median = np.median(times, axis=0)
+        truths, price = np.array(self._truths), self._judged.price
+        lost = {k: np.array(v) for k, v in self._lost.items()}
+        known = np.any([~np.isnan(v) for v in lost.values()], axis=0)
+        return Table(
+            {
+                name: _node_column(rows, median[:, k])
+                for k, (name, rows) in enumerate(self._states.items())
+            },
+            {f.name: _column(f) for f in self._fields},
+            {k: np.where(np.isnan(v), price, v) for k, v in lost.items()},
+            np.where(truths > 0, price, 0.0),
+            (truths >= 0) & known,
+        )
+
+
+def _node_column(rows: list[tuple[bool, bool, bool]], time_us: Reals) -> NodeColumn:
+    ok, failed, opened = np.array(rows, dtype=np.bool_).T
+    return NodeColumn(ok, failed, opened, time_us)
+
+
+def _column(field: _Field) -> FieldColumn:
+    values = np.array(field.values)
+    return FieldColumn(values, 1e6 * field.spent_s / max(1, int((~np.isnan(values)).sum())))
+
+
+def leaves_of(pipeline: Pipeline, ref: Ref) -> list[Ref]:
+    """Return what may answer in the end at a reference: all that a ladder of ladders holds."""
+    node = pipeline.nodes.get(ref.node)
+    if node is None or node.kind is not NodeKind.FIRST_OF or not ref.whole:
+        return [ref]
+    found = [leaf for choice in node.choices for leaf in leaves_of(pipeline, choice)]
+    return list(dict.fromkeys(found))

@@ -1,0 +1,1 @@
+"""What the command ``summary`` tells of results that runs wrote."""

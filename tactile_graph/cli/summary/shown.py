@@ -1,0 +1,192 @@
+"""A summary for people: outcomes, quantities, and a row a recording."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from rich.cells import cell_len
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from tactile_graph.cli.output.live_table import shown
+from tactile_graph.cli.summary.as_data import mean_of
+from tactile_graph.cli.summary.summary import Group, Summary, kind
+from tactile_graph.vocabulary import words_and_unit
+
+MOST_REASONS = 5
+MOST_WORDS = 6
+MOST_RECORDINGS = 40
+LONGEST_NAME = 36
+STYLES = {"ok": "green", "skipped": "yellow", "failed": "red"}
+LACKING = ("skipped", "failed")
+STATISTICS = ("n", "mean", "5 %", "median", "95 %", "least", "most")
+
+
+def show(console: Console, title: str, summary: Summary) -> None:
+    """Print a summary, what is of all recordings last."""
+    several = len(summary.recordings) > 1
+    if several:
+        _recordings(console, summary)
+    console.print(_head(title, summary), soft_wrap=True)
+    for line in _outcomes(summary.all):
+        console.print(line, soft_wrap=True)
+    _quantities(console, summary)
+    for line in _texts(summary.all):
+        console.print(line, soft_wrap=True)
+
+
+def _head(title: str, summary: Summary) -> Text:
+    n, frames = len(summary.recordings), summary.frames
+    parts = [f"{frames} frame{'' if frames == 1 else 's'}"]
+    parts[0] += f" of {n} recordings" if n > 1 else ""
+    if summary.lasts_s:
+        parts.append(_rate(frames - n, summary.lasts_s))
+    return Text.assemble((title, "bold"), ": ", ", ".join(parts))
+
+
+def _rate(n_steps: int, lasts_s: float) -> str:
+    return f"{_lasting(lasts_s)} by their times ({n_steps / lasts_s:.4g} frames a second)"
+
+
+def _lasting(seconds: float) -> str:
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.4g} {unit}"
+    return f"{seconds:.4g} s"
+
+
+def _outcomes(group: Group) -> Iterator[Text]:
+    """Yield a line for each output, and one for each reason why it has no value."""
+    width = max((cell_len(o) for o in group.outcomes), default=0)
+    for output, words in group.outcomes.items():
+        line = Text(f"{output:<{width}}  ")
+        parts = []
+        for how, style in STYLES.items():
+            n = sum(count for word, count in words.items() if kind(word) == how)
+            if n or how == "ok":
+                parts.append((f"{n} {'ran' if how == 'ok' else how}", style if n else ""))
+        for i, part in enumerate(parts):
+            line.append(", " if i else "")
+            line.append(*part)
+        yield line
+        lacking = [(n, word) for word, n in words.most_common() if kind(word) != "ok"]
+        for n, word in lacking[:MOST_REASONS]:
+            yield Text(f"{'':<{width}}  {n:>6} {word}", STYLES[kind(word)])
+        if lacking[MOST_REASONS:]:
+            rest = sum(n for n, _ in lacking[MOST_REASONS:])
+            more = len(lacking) - MOST_REASONS
+            yield Text(f"{'':<{width}}  {rest:>6} for {more} other reasons (--json gives them)")
+
+
+def _quantities(console: Console, summary: Summary) -> None:
+    """Print a row for each quantity, errors last; columns that have no place are left out."""
+    keys = sorted(summary.all.numbers, key=_is_error)
+    keys = [
+        key for key in keys if summary.all.numbers[key].n + summary.all.numbers[key].n_not_finite
+    ]
+    if not keys:
+        return
+    table = _table("", "unit", *STATISTICS)
+    for key in keys:
+        numbers, unit = summary.all.numbers[key], summary.unit(key)
+        p5, median, p95 = numbers.quantiles((0.05, 0.5, 0.95))
+        cells = (mean_of(numbers, unit), p5, median, p95, numbers.least, numbers.most)
+        n = str(numbers.n) + (
+            f" (+{numbers.n_not_finite} no number)" if numbers.n_not_finite else ""
+        )
+        style = "magenta" if _is_error(key) else ""
+        table.add_row(_called(key), unit, n, *(_cell(c, unit) for c in cells), style=style)
+    console.print(table)
+    if any(map(_is_error, keys)):
+        console.print("errors against the truth are without their sign", style="dim")
+
+
+def _texts(group: Group) -> Iterator[Text]:
+    for key, words in group.texts.items():
+        most = [f"{word} {n}" for word, n in words.most_common(MOST_WORDS)]
+        more = len(words) - len(most)
+        told = ", ".join(most) + (f", and {more} more" if more > 0 else "")
+        if told:
+            yield Text(f"{_called(key)}: {told}")
+
+
+def _recordings(console: Console, summary: Summary) -> None:
+    """Print a row a recording: the medians of as many quantities as there is room for."""
+    keys = sorted(summary.all.numbers, key=lambda k: not _is_error(k))
+    names = list(summary.recordings)
+    chosen = names[:MOST_RECORDINGS]
+    head = ["recording", "frames", "lasts", *LACKING]
+    longest = min(LONGEST_NAME, console.width // 4)
+    rows = [_row(_cut(name, longest), summary.recordings[name]) for name in chosen]
+    width = sum(max(cell_len(c) for c in column) + 2 for column in zip(head, *rows, strict=True))
+    room, kept = console.width - width, []
+    for key in keys:
+        cells = [_median(summary, summary.recordings[name], key) for name in chosen]
+        wide = max(cell_len(c) for c in (*cells, *_stacked(summary, key).split("\n"))) + 2
+        if wide > room:
+            break
+        room -= wide
+        kept.append((_stacked(summary, key), cells))
+    table = _table(*head, *(name for name, _ in kept))
+    for i, row in enumerate(rows):
+        table.add_row(*row, *(cells[i] for _, cells in kept))
+    console.print(table)
+    told = ["medians"] if kept else []
+    if len(kept) < len(keys):
+        told.append(f"{len(keys) - len(kept)} quantities are not shown for want of width")
+    if len(names) > len(chosen):
+        told.append(f"{len(names) - len(chosen)} recordings more")
+    console.print("; ".join(told) + " (--json gives all)\n", style="dim", soft_wrap=True)
+
+
+def _row(name: str, group: Group) -> list[str]:
+    lasts = group.times.lasts_s
+    counts = [group.ended(how) for how in LACKING]
+    return [name, str(group.frames), "" if lasts is None else _lasting(lasts), *map(str, counts)]
+
+
+def _cut(name: str, longest: int) -> str:
+    """Return a name on one line; of a long one its end, which tells it from others."""
+    line = name.replace("\n", "\\n").replace("\t", "\\t")
+    if cell_len(line) <= longest:
+        return line
+    while cell_len(line) >= longest:
+        line = line[1:]
+    return f"…{line}"
+
+
+def _median(summary: Summary, group: Group, key: str) -> str:
+    numbers = group.numbers.get(key)
+    value = np.nan if numbers is None else float(numbers.quantiles(0.5))
+    return _cell(value, summary.unit(key))
+
+
+def _stacked(summary: Summary, key: str) -> str:
+    """Return a column's head: its output over the quantity over its unit."""
+    output, _, field = key.rpartition(".")
+    return "\n".join((output, words_and_unit(field)[0], summary.unit(key)))
+
+
+def _called(key: str) -> str:
+    output, _, field = key.rpartition(".")
+    return f"{output} {words_and_unit(field)[0]}".strip()
+
+
+def _is_error(key: str) -> bool:
+    return "_error_" in key
+
+
+def _cell(value: float, unit: str) -> str:
+    return "" if math.isnan(value) else shown(float(value), unit)
+
+
+def _table(*heads: str) -> Table:
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    for i, head in enumerate(heads):
+        left: Any = "left" if i == 0 or head == "unit" else "right"
+        table.add_column(head, justify=left, no_wrap=i > 0, overflow="fold", vertical="bottom")
+    return table

@@ -1,0 +1,267 @@
+"""What results come to: of each recording, and of all."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.cli.summary.quantiles import Numbers
+from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines
+from tactile_graph.vocabulary import words_and_unit
+
+LONG = ("output", "item", "outcome", "type")
+SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+MOST_WORDS = 1000
+"""How many different reasons or texts are told apart."""
+OTHERS = "(others)"
+WHOLE_RECORDINGS = 64
+"""Of so many recordings, the latest, all is kept that makes their quantiles exact."""
+
+
+@dataclass
+class Times:
+    """When frames were taken, in the clock of their recording."""
+
+    first_s: float = math.inf
+    last_s: float = -math.inf
+
+    def add(self, time_s: NDArray[np.float64]) -> None:
+        """Take in times; NaN is none."""
+        known = time_s[np.isfinite(time_s)]
+        if known.size:
+            self.first_s = min(self.first_s, float(known.min()))
+            self.last_s = max(self.last_s, float(known.max()))
+
+    @property
+    def lasts_s(self) -> float | None:
+        """From the first frame to the last; None where no frame has a time."""
+        return self.last_s - self.first_s if self.last_s >= self.first_s else None
+
+
+@dataclass
+class Group:
+    """What some results come to: those of a recording, or all."""
+
+    frames: int = 0
+    times: Times = field(default_factory=Times)
+    outcomes: dict[str, Counter[str]] = field(default_factory=dict)
+    """By output, how often each outcome: ``ok``, ``skipped: why``, ``failed: why``."""
+    numbers: dict[str, Numbers] = field(default_factory=dict)
+    """By column; errors by their size."""
+    signed: dict[str, Numbers] = field(default_factory=dict)
+    """Errors with their sign, where they have one."""
+    texts: dict[str, Counter[str]] = field(default_factory=dict)
+    _last_frame: float = math.nan
+
+    def count_frames(self, numbers: NDArray[np.float64]) -> None:
+        """Count frames by the numbers in their rows, several rows of one standing together."""
+        if numbers.size:
+            new = int(numbers[0] != self._last_frame) + int(np.count_nonzero(np.diff(numbers)))
+            self.frames += new
+            self._last_frame = float(numbers[-1])
+
+    def add_outcomes(self, output: str, words: Mapping[str, int]) -> None:
+        """Count outcomes of an output."""
+        _count(self.outcomes.setdefault(output, Counter()), words)
+
+    def add_values(self, key: str, values: Column) -> None:
+        """Take in the values of a column."""
+        if values.dtype == object:
+            _count(
+                self.texts.setdefault(key, Counter()), Counter(v for v in values if v is not None)
+            )
+            return
+        told = values[~np.isnan(values)]
+        if "_error_" in key:
+            self.signed.setdefault(key, Numbers()).add(told)
+            told = np.abs(told)
+        self.numbers.setdefault(key, Numbers()).add(told)
+
+    def compress(self) -> None:
+        """Take little memory from now on."""
+        for numbers in (*self.numbers.values(), *self.signed.values()):
+            numbers.compress()
+
+    def ended(self, how: str) -> int:
+        """Return how many outcomes are ``ok``, ``skipped`` or ``failed``."""
+        return sum(
+            n for words in self.outcomes.values() for w, n in words.items() if kind(w) == how
+        )
+
+
+@dataclass
+class Summary:
+    """What results come to, by recording and in all."""
+
+    recordings: dict[str, Group] = field(default_factory=dict)
+    all: Group = field(default_factory=Group)
+    units: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def frames(self) -> int:
+        """Of all recordings."""
+        return sum(group.frames for group in self.recordings.values())
+
+    @property
+    def lasts_s(self) -> float | None:
+        """Of all recordings whose frames have times, together."""
+        told = [g.times.lasts_s for g in self.recordings.values()]
+        known = [t for t in told if t is not None]
+        return sum(known) if known else None
+
+    def add(self, chunk: Chunk | Lines, otherwise: str, prefix: str = "") -> None:
+        """Take in some rows.
+
+        Parameters
+        ----------
+        chunk : Chunk or Lines
+        otherwise : str
+            The recording of rows without a label.
+        prefix : str
+            Stands before the names of recordings, those of other files being others.
+        """
+        if isinstance(chunk, Lines):
+            for name, rows in _by_label(chunk, otherwise):
+                self._lines(self._groups(prefix + name), rows)
+            return
+        self.units.update(chunk.units)
+        for name, columns in _split(chunk, otherwise):
+            self._rows(self._groups(prefix + name), columns)
+
+    def unit(self, key: str) -> str:
+        """Return the unit of a column: as its file tells, otherwise by its name."""
+        column = key if key in self.units else key.rpartition(".")[2]
+        told = self.units.get(column) or words_and_unit(key.rpartition(".")[2])[1]
+        return "" if told == "1" else told
+
+    def _groups(self, name: str) -> tuple[Group, Group]:
+        found = self.recordings.get(name)
+        if found is None:
+            found = self.recordings[name] = Group()
+            if len(self.recordings) > WHOLE_RECORDINGS:
+                next(islice(reversed(self.recordings.values()), WHOLE_RECORDINGS, None)).compress()
+        return found, self.all
+
+    def _rows(self, groups: tuple[Group, Group], columns: dict[str, Column]) -> None:
+        frames, times = columns["frame"], columns.get("time_s")
+        for group in groups:
+            group.count_frames(frames)
+            if times is not None and times.dtype != object:
+                group.times.add(times)
+        for output, key, values in _cells(columns):
+            for group in groups:
+                if output:
+                    group.add_outcomes(output, Counter(v for v in values if v is not None))
+                else:
+                    group.add_values(key, values)
+
+    def _lines(self, groups: tuple[Group, Group], rows: list[dict[str, Any]]) -> None:
+        numbers: dict[str, list[float]] = {}
+        texts: dict[str, list[str]] = {}
+        words: dict[str, Counter[str]] = {}
+        for row in rows:
+            for output, value in row["outputs"].items():
+                words.setdefault(output, Counter())[_ended(value)] += 1
+                _gather(output, value, numbers, texts)
+            for output, errors in row.get("errors", {}).items():
+                for error, value in errors.items():
+                    head, _, unit = error.rpartition("_")
+                    _gather(f"{output}.{head}_error_{unit}", value, numbers, texts)
+        frames = np.array([row.get("frame", np.nan) for row in rows], dtype=np.float64)
+        times = np.array([row.get("time_s", np.nan) for row in rows], dtype=np.float64)
+        for group in groups:
+            group.count_frames(frames)
+            group.times.add(times)
+            for output, counted in words.items():
+                group.add_outcomes(output, counted)
+            for key, found in numbers.items():
+                group.add_values(key, np.array(found, dtype=np.float64))
+            for key, told in texts.items():
+                group.add_values(key, np.array(told, dtype=object))
+
+
+def kind(word: str) -> str:
+    """Return ``ok``, ``skipped`` or ``failed`` of an outcome; a list with a failed item failed."""
+    if word in ("ok", "no items"):
+        return "ok"
+    return "failed" if "failed: " in word else "skipped"
+
+
+def _count(counter: Counter[str], more: Mapping[str, int]) -> None:
+    for word, n in more.items():
+        counter[word if word in counter or len(counter) < MOST_WORDS else OTHERS] += n
+
+
+def _split(chunk: Chunk, otherwise: str) -> Iterator[tuple[str, dict[str, Column]]]:
+    """Yield rows by recording."""
+    labels = chunk.columns.get("label")
+    if chunk.recording or labels is None or labels.dtype != object:
+        yield chunk.recording or otherwise, chunk.columns
+        return
+    names = np.array([label or otherwise for label in labels], dtype=object)
+    for name in dict.fromkeys(names.tolist()):
+        mine = names == name
+        yield name, {key: values[mine] for key, values in chunk.columns.items()}
+
+
+def _by_label(lines: Lines, otherwise: str) -> Iterable[tuple[str, list[dict[str, Any]]]]:
+    found: dict[str, list[dict[str, Any]]] = {}
+    for row in lines.rows:
+        found.setdefault(str(row.get("label") or otherwise), []).append(row)
+    return found.items()
+
+
+def _cells(columns: dict[str, Column]) -> Iterator[tuple[str, str, Column]]:
+    """Yield outputs' outcomes, and the values of columns, named by their output in long tables."""
+    if not {*LONG[:3]} <= {*columns}:
+        for key, values in columns.items():
+            output = key.removesuffix(".outcome") if key.endswith(".outcome") else ""
+            if key not in LEAD:
+                yield output, key, values
+        return
+    for output in dict.fromkeys(columns["output"].tolist()):
+        mine = columns["output"] == output
+        yield str(output), "", columns["outcome"][mine]
+        for key, values in columns.items():
+            if key not in (*LEAD, *LONG):
+                told = values[mine]
+                there = told != None if told.dtype == object else ~np.isnan(told)  # noqa: E711
+                if np.any(there):
+                    yield "", f"{output}.{key}", told
+
+
+def _ended(value: Any) -> str:
+    if isinstance(value, dict):
+        for word in ("skipped", "failed"):
+            if word in value and "origin" in value:
+                return f"{word}: {value[word]}"
+    if isinstance(value, list):
+        gaps = [_ended(item) for item in value]
+        return "; ".join(gap for gap in gaps if gap != "ok") or "ok"
+    return "ok"
+
+
+def _gather(
+    key: str, value: Any, numbers: dict[str, list[float]], texts: dict[str, list[str]]
+) -> None:
+    """Put the single numbers and texts of a value in their lists; of lists, those of each item."""
+    if isinstance(value, bool):
+        texts.setdefault(key, []).append("yes" if value else "no")
+    elif isinstance(value, int | float):
+        numbers.setdefault(key, []).append(value)
+    elif isinstance(value, str):
+        texts.setdefault(key, []).append(value)
+    elif isinstance(value, dict) and _ended(value) == "ok":
+        for name, inner in value.items():
+            if name != "shape" or not isinstance(inner, list):
+                _gather(f"{key}.{name}", inner, numbers, texts)
+    elif isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        for item in value:
+            _gather(key, item, numbers, texts)

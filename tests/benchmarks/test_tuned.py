@@ -1,0 +1,39 @@
+"""The benchmark of tuned guards: what it is told on chose nothing."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tactile_graph import load
+from tactile_graph_compare.score.answers import answers_of
+
+FOLDER = Path(__file__).parents[2] / "benchmarks"
+sys.path.insert(0, str(FOLDER))
+import tuned  # noqa: E402
+
+
+def test_pads_that_report_are_of_other_kinds_than_those_that_choose() -> None:
+    assert set(tuned.SEEN) & set(tuned.UNSEEN) == set()
+    assert set(tuned.SEEN) | set(tuned.UNSEEN) == set(tuned.KINDS)
+
+
+def test_a_mostly_empty_pad_is_empty_four_times_in_five_and_says_so() -> None:
+    frames = tuned.mostly_empty("noise 1 mV", 60, 3)
+    empty = [f for f in frames if not f.truth]
+    assert 36 <= len(empty) <= 56
+    assert max(abs(f.image.values).max() for f in empty) < 0.01
+    assert all(f.image.values.max() > 0.05 for f in frames if f.truth)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(tuned.CASES))
+def test_every_ladder_answers_what_its_truth_can_judge(name: str) -> None:
+    case = tuned.CASES[name]
+    ladder = load(tuned.LADDERS / f"{case.ladder}.yaml" if case.ladder else case.by_hand)
+    output = next(iter(ladder.outputs))
+    assert set(answers_of(ladder, (output,)).quantities) & {"centre", "identity"}
+    (frame, *_) = tuned.frames_of(case, tuned.UNSEEN[:1], 2, 1, own=False)
+    assert ladder.run(frame).outcome(output) is not None

@@ -1,0 +1,177 @@
+"""``summary`` counts, averages and names what results hold, alike in every format of file."""
+
+from __future__ import annotations
+
+import json
+import tracemalloc
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_cli import call
+from tactile_graph.cli.summary import reading
+from tactile_graph.cli.summary import summary as summaries
+from tactile_graph.cli.summary.reading import chunks
+from tactile_graph.cli.summary.summary import Summary
+
+CSV = """\
+frame,time_s,label,circle.outcome,circle.x_cm,circle.turned_rad,circle.centre_error_cm,circle.fine
+0,0.0,a.npz,ok,1.0,0.1,0.5,True
+1,0.5,a.npz,ok,3.0,3.1,-1.5,False
+2,1.0,a.npz,skipped: nothing lies there,,,,
+3,0.0,b.npz,failed: fewer than 3 points,,,,
+4,2.0,b.npz,ok,nan,0.2,,True
+"""
+LONG = """\
+frame,time_s,label,output,item,outcome,type,x_cm,total
+0,0.0,,load,,ok,Load,,5
+0,0.0,,objects.contacts,1,ok,Contact,1,
+0,0.0,,objects.contacts,2,ok,Contact,2,
+1,0.1,,load,,ok,Load,,7
+1,0.1,,objects.contacts,,no items,,,
+"""
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tactile_graph.compiled.warm_up", lambda: None)
+    Path("out.csv").write_text(CSV)
+    Path("long.csv").write_text(LONG)
+
+
+def of(*names: str) -> Any:
+    done = call("summary", *names, "--json")
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout)
+
+
+def test_frames_outcomes_and_quantities_are_counted_of_each_recording_and_in_all() -> None:
+    told = of("out.csv")
+    assert (told["frames"], told["lasts_s"]) == (5, 3.0)
+    assert told["outcomes"]["circle"] == {
+        "ok": 3, "skipped: nothing lies there": 1, "failed: fewer than 3 points": 1,
+    }  # fmt: skip
+    x = told["quantities"]["circle.x_cm"]
+    assert (x["unit"], x["n"], x["not_finite"]) == ("cm", 2, 1)
+    assert (x["mean"], x["median"], x["least"], x["most"]) == (2.0, 2.0, 1.0, 3.0)
+    assert told["texts"]["circle.fine"] == {"yes": 2, "no": 1}
+    first, second = told["recordings"]
+    assert [r["recording"] for r in (first, second)] == ["a.npz", "b.npz"]
+    assert (first["frames"], first["lasts_s"], second["frames"]) == (3, 1.0, 2)
+    assert second["outcomes"]["circle"] == {"failed: fewer than 3 points": 1, "ok": 1}
+    assert second["quantities"]["circle.x_cm"]["mean"] is None
+
+
+def test_errors_are_by_their_size_and_angles_have_no_mean() -> None:
+    told = of("out.csv")["quantities"]
+    error = told["circle.centre_error_cm"]
+    assert (error["mean"], error["most"], error["bias"]) == (1.0, 1.5, -0.5)
+    assert told["circle.turned_rad"]["mean"] is None
+    assert told["circle.turned_rad"]["median"] == 0.2
+
+
+def test_rows_of_objects_are_told_by_their_output() -> None:
+    told = of("long.csv")
+    assert told["frames"] == 2
+    assert told["outcomes"] == {"load": {"ok": 2}, "objects.contacts": {"ok": 2, "no items": 1}}
+    assert told["quantities"]["objects.contacts.x_cm"]["mean"] == 1.5
+    assert told["quantities"]["load.total"]["n"] == 2
+
+
+@pytest.mark.slow
+def test_all_formats_come_to_the_same() -> None:
+    pytest.importorskip("pyarrow")
+    names = ["out.csv", "out.parquet", "out.jsonl", "out.dataset"]
+    for name in names:
+        done = call("run", "circle-1", "--frames", 6, "-o", name)
+        assert done.exit_code == 0, done.output
+    told = [of(name) for name in names]
+    for one in told[1:]:
+        assert (one["frames"], one["outcomes"]) == (told[0]["frames"], told[0]["outcomes"])
+        for key, numbers in told[0]["quantities"].items():
+            got = one["quantities"][key]
+            assert got.pop("unit") == numbers["unit"]
+            assert got == pytest.approx({k: v for k, v in numbers.items() if k != "unit"}), key
+    assert "circle.centre_error_cm" in told[0]["quantities"]
+
+
+def test_what_was_skipped_and_items_of_lists_are_told_of_json_lines() -> None:
+    rows = [
+        {"frame": 0, "outputs": {"c": {"skipped": "empty", "origin": "c"}, "n": 3}},
+        {"frame": 1, "outputs": {"c": [{"x_cm": 1.0}, {"failed": "no", "origin": "c"}], "n": 4}},
+    ]
+    Path("out.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    told = of("out.jsonl")
+    assert told["outcomes"]["c"] == {"skipped: empty": 1, "failed: no": 1}
+    assert told["quantities"]["c.x_cm"]["n"] == 1
+    assert told["quantities"]["n"]["mean"] == 3.5
+
+
+def test_people_get_what_fits_and_are_told_the_rest() -> None:
+    done = call("summary", "out.csv")
+    assert "out.csv: 5 frames of 2 recordings, 3 s by their times" in done.stdout
+    assert "3 ran, 1 skipped, 1 failed" in done.stdout
+    assert "1 skipped: nothing lies there" in done.stdout
+    (row,) = (line.split() for line in done.stdout.splitlines() if line.startswith("circle x"))
+    assert row == ["circle", "x", "cm", "2", "(+1", "no", "number)", "2.000", "1.100", "2.000",
+                   "2.900", "1.000", "3.000"]  # fmt: skip
+    assert "circle fine: yes 2, no 1" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"a,b\n1,2\n", "bad: is no result of a run: has no columns 'frame' and '….outcome'"),
+        (CSV.encode() + b"5,1\n", "bad:7: has 2 cells, the header 8"),
+        (b"PAR1 and no more", "bad: is no whole Parquet file"),
+        (b'{"outputs": {}}\n{"x"\n', "bad:2: is no JSON"),
+        (b"{}\n", "bad:1: is no line of a run: has no 'outputs'"),
+        (b"\xff\xfe\x00", "bad: is no result file: no UTF-8"),
+    ],
+)
+def test_what_is_no_result_is_told_where_and_why(content: bytes, said: str) -> None:
+    if b"PAR1" in content:
+        pytest.importorskip("pyarrow")
+    Path("bad").write_bytes(content)
+    done = call("summary", "bad")
+    assert done.exit_code == 2
+    assert said in done.stderr
+
+
+def test_a_folder_that_is_no_data_set_and_a_missing_file_are_told() -> None:
+    Path("folder").mkdir()
+    assert "folder: is no data set" in call("summary", "folder").stderr
+    assert "none.csv: cannot be read" in call("summary", "none.csv").stderr
+
+
+def test_several_files_are_recordings_of_their_own() -> None:
+    Path("other.csv").write_text(CSV)
+    told = of("out.csv", "other.csv")
+    assert told["frames"] == 10
+    assert [r["recording"] for r in told["recordings"]][::2] == [
+        "out.csv: a.npz",
+        "other.csv: a.npz",
+    ]
+
+
+@pytest.mark.slow
+def test_more_rows_and_more_recordings_take_no_more_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "ROWS_A_CHUNK", 500)
+    monkeypatch.setattr(summaries, "WHOLE_RECORDINGS", 4)
+    rng = np.random.default_rng(1)
+    most = {}
+    for n_recordings in (20, 40):
+        lines = [f"{k},{k},r{k * n_recordings // 20_000},ok,{x}"
+                 for k, x in enumerate(rng.normal(size=20_000))]  # fmt: skip
+        Path("many.csv").write_text("frame,time_s,label,c.outcome,c.x_cm\n" + "\n".join(lines))
+        tracemalloc.start()
+        found = Summary()
+        for chunk in chunks(Path("many.csv")):
+            found.add(chunk, "many.csv")
+        most[n_recordings] = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert (found.frames, len(found.recordings)) == (20_000, n_recordings)
+    assert most[40] < 1.3 * most[20]

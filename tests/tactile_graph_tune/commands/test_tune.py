@@ -1,0 +1,78 @@
+"""``tactile-graph tune`` as people call it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from helpers_cli import call
+from helpers_tune import LADDER
+
+QUICK = ("--rounds", "1", "--field", "load.total", "--field", "first.radius_cm")
+
+
+@pytest.mark.slow
+def test_a_ladder_comes_out_with_its_numbers_its_file_its_plot_and_all_figures(hand_made):
+    got = call("tune", "ladder.yaml", "--frames", "24", *QUICK, "-o", "out.yaml", "--plot",
+               "out.svg", "--json", "out.json")  # fmt: skip
+    assert got.exit_code == 0, got.output
+    for text in ("choices weighed on", "Time and error", "as given", "always the best", "tuned",
+                 "oracle", "Pareto front", "of the time as given"):  # fmt: skip
+        assert text in got.output
+    assert Path("out.yaml").read_text().startswith("# Guards and order by 'tactile-graph tune")
+    assert call("check", "out.yaml").exit_code == 0
+    assert call("audit", "out.yaml", "--frames", "8").exit_code in (0, 2)
+    drawn = Path("out.svg").read_text()
+    assert "<svg" in drawn
+    data = json.loads(Path("out.json").read_text())
+    assert data["weighed"] > 100
+    assert data["points"]["tuned"]["run"]["loss"]["mean"] <= 2.0
+
+
+@pytest.mark.slow
+def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
+    wrong = LADDER.replace("level_v: 0.5", "level_v: 1.5")  # nothing is that heavy
+    Path("wrong.yaml").write_text(wrong)
+    got = call("tune", "wrong.yaml", "--frames", "16", *QUICK, "--free",
+               "footprint.level_v=0.4,0.6", "--error-at-most", "1.5")  # fmt: skip
+    assert got.exit_code == 0, got.output
+    assert "footprint.level_v = 0." in got.output
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (("ladder.yaml", "--frames", "1"), "1 frame with a known truth"),
+        (("ladder.yaml", "--field", "load.totl"), "no node of pipeline 'ladder' has it"),
+        (("ladder.yaml", "--answer", "circel"), "did you mean 'circle'"),
+        (("ladder.yaml", "--error", "angel"), "did you mean 'angle'"),
+        (("ladder.yaml", "--free", "footprint.level_x=1:2"), "did you mean 'footprint.level_v'"),
+        (("ladder.yaml", "-o", "ladder.yaml"), "is there already; name another file"),
+        (("ladder.yaml", "-o", "out.txt"), "a pipeline file ends in .yaml"),
+        (("ladder.yaml", "--plot", "out.txt"), "its name must end in .png"),
+        (("ladder.yaml", "--error-at-most", "1", "--time-at-most", "1"), "not both"),
+        (("ladder.yaml", "--time-at-most", "0", *QUICK), "the cheapest choice takes"),
+        (("discs", "--with", "frames=9", "--set", "circle.crash=true"),
+         "has a value in none of 9 frames"),
+        (("ladder.yaml", "--error", "angle"), "frames the truth says nothing of 'angle'"),
+        (("loads", "one.txt"), "none of 9 frames has a truth"),
+        (("loads",), "'loads' declares no source"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_done_is_told_in_a_sentence(hand_made, args, message):
+    Path("one.txt").write_text("1\n" * 9)
+    got = call("tune", *args)
+    assert got.exit_code == 2, got.output
+    assert message in " ".join(got.output.split())
+    assert "Traceback" not in got.output
+
+
+def test_a_pipeline_without_anything_to_choose_says_so(hand_made):
+    text = "pipeline: bare\nsource: {step: made, with: {frames: 9}}\nnodes:\n"
+    text += "  mask: {step: pressed, in: frame}\n  circle: {step: disc, in: mask}\n"
+    Path("bare.yaml").write_text(text + "outputs: [circle]\n")
+    got = call("tune", "bare.yaml", "--field", "circle.radius_cm")
+    assert got.exit_code == 2
+    assert "pipeline 'bare': nothing to choose: it has no guard" in got.output
