@@ -25,6 +25,7 @@ from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.core import tactile_graph_quantities
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind, read_signature
+from tactile_graph.testing import BrokenPromises
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
@@ -165,7 +166,7 @@ def test_the_preset_shown_is_a_preset(tmp_path: Path) -> None:
 
 
 def test_the_plugin_shown_is_one() -> None:
-    shown = fenced("plugins", "python")
+    shown = [block for block in fenced("plugins", "python") if ".stacked = " not in block]
     spaces: list[dict[str, Any]] = [{"__name__": "shown"} for _ in shown]
     for code, space in zip(shown, spaces, strict=True):
         exec(compile(code, "plugins.md", "exec"), space)
@@ -191,7 +192,7 @@ def test_the_plugin_shown_is_one() -> None:
 def test_the_tests_shown_for_plugins_pass(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (code,) = (block for block in fenced("plugins", "python") if "check_step" in block)
+    (code,) = (block for block in fenced("plugins", "python") if "def test_" in block)
     shown = ModuleType("shown_tests")
     monkeypatch.setitem(sys.modules, "shown_tests", shown)
     exec(compile(code, "plugins.md", "exec"), vars(shown))
@@ -200,6 +201,18 @@ def test_the_tests_shown_for_plugins_pass(
     for _, test in tests:
         wanted = [] if hasattr(test, "hypothesis") else signature(test).parameters
         test(**{name: request.getfixturevalue(name) for name in wanted})
+
+
+def test_the_stacked_form_shown_answers_as_its_step_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    (code,) = (block for block in fenced("plugins", "python") if ".stacked = " in block)
+    shown = ModuleType("shown_stacked")
+    monkeypatch.setitem(sys.modules, "shown_stacked", shown)
+    exec(compile(code, "plugins.md", "exec"), vars(shown))
+    shown.spread.stacked = lambda image, *, factor: shown.Answered(
+        shown.Column(image.values[:, 0, 0])
+    )
+    with pytest.raises(BrokenPromises):
+        shown.check_step(shown.spread)
 
 
 @pytest.mark.slow  # takes seconds

@@ -190,7 +190,7 @@ def test_without_its_library_it_says_what_to_install(
         (("--format", "hdf5"), "-o -: images cannot go to stdout; give a name"),
         (("-o", "a.h5", "--long"), "--long: HDF5: holds images; give -o FILE.csv"),
         (("-o", "a.zarr", "--full"), "--full: a Zarr store holds images; give -o FILE.jsonl"),
-        (("-o", "a.zar"), "its name must end in .jsonl, .ndjson, .csv, .parquet, .h5, .hdf5, "),
+        (("-o", "a.zar"), "its name must end in .jsonl, .ndjson, .csv, .parquet, .dataset, .h5, "),
         (("-o", "a.zar"), "or give --format; did you mean '.zarr'?"),
     ],
 )

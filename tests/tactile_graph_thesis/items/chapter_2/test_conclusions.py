@@ -12,6 +12,7 @@ from tactile_graph_thesis.work import Work
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 STUDIES = (
+    "hysteresis",
     "current-limit",
     "converter",
     "samples",
