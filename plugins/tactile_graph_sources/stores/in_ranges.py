@@ -44,7 +44,7 @@ def ranges_of_stores(path: Path | list[Path], **settings: Any) -> Ranges | None:
     others = [value for name, value in settings.items() if name not in TOLD]
     if any(others) or not paths or not all(is_store(p) for p in paths):
         return None
-    told = Told.of(**settings)
+    told = Told.of(**{name: value for name, value in settings.items() if name in TOLD})
     labels = labels_of(paths) if len(paths) > 1 else [""]
     stores = [_Laid(open_stored(p), told, name) for p, name in zip(paths, labels, strict=True)]
     if any(s.stored.troubles or not s.stored.sure or s.n_frames <= 0 for s in stores):
