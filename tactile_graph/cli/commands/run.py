@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from tactile_graph.exporter import Writer
 
 LONG_RUN = 200
-WORTH_BLOCKS = 2000
-"""Frames from which on blocks are sooner done, kernels that are not on disk yet included."""
 STALLED_S = 1.0
 
 
@@ -234,7 +232,7 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.gathering import flat
+        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
         if in_blocks and self.span.is_all:

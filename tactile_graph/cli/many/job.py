@@ -16,8 +16,11 @@ from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.tally import LOOKED_THROUGH, Tally
 from tactile_graph.compiled import warm_up
+from tactile_graph.engine.block import Block
 from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.gathering import WORTH_BLOCKS
 from tactile_graph.errors import DataError, TactileGraphError
+from tactile_graph.exporter import Writer, write_block
 from tactile_graph.many.division import Division, Settling
 from tactile_graph.many.portion import Portion, unpacked
 from tactile_graph.plugins.registry import installed
@@ -134,12 +137,17 @@ class _Bench:
         ended: list[Exception] = []
         quantity = ""
         try:
-            with self._written() as (write, part):
+            with self._written() as (writer, part):
                 try:
-                    for result in self._results(portion):
-                        tally.add(result)
-                        write(result)
-                        quantity = result.frame.image.quantity
+                    for came in self._results(portion):
+                        if isinstance(came, Block):
+                            tally.add_block(came)
+                            write_block(writer, came)
+                            quantity = came.frames.images.quantity
+                        else:
+                            tally.add(came)
+                            writer.write(came)
+                            quantity = came.frame.image.quantity
                 except Irregular:
                     raise
                 except Exception as error:  # what was done before is kept
@@ -149,16 +157,13 @@ class _Bench:
         tally.outputs = []  # columns hold functions, and who asked knows them
         return Done(tally.n, part[0], tally, quantity, error=ended[0] if ended else None)
 
-    def _results(self, portion: Portion) -> Iterator[Result]:
-        job = self.job
+    def _results(self, portion: Portion) -> Iterator[Result | Block[Result]]:
         if self.runner.stateful:
             self.runner = self._settled(portion)
-        promises = job.pipeline.promises
-        for frame in self._frames(portion):
-            result = self.runner(frame)
-            if promises.waiting:
-                promises.check(result)
-            yield result
+        frames, pipeline = self._frames(portion), self.job.pipeline
+        if portion.high - self.job.start >= WORTH_BLOCKS:
+            return pipeline.blocks(frames, self.runner)
+        return pipeline.results(frames, self.runner)
 
     def _settled(self, portion: Portion) -> Runner[Result]:
         """Return a runner whose state is that of one that ran all frames before."""
@@ -185,7 +190,7 @@ class _Bench:
                 yield frame
 
     @contextmanager
-    def _written(self) -> Iterator[tuple[Any, list[bytes]]]:
+    def _written(self) -> Iterator[tuple[Writer, list[bytes]]]:
         """Give what takes results, and where their file is as bytes at the end."""
         job = self.job
         part: list[bytes] = []
@@ -195,7 +200,7 @@ class _Bench:
             assert output is not None
             writer, _ = output.writer(job.pipeline, job.asked)
             try:
-                yield writer.write, part
+                yield writer, part
             finally:
                 writer.close()
             part.append(path.read_bytes())

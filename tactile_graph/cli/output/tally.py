@@ -176,7 +176,7 @@ class Tally:
             alike.append(part)
             single[part.rows] = more[part.rows]
             single[part.rows[0]] = True  # the first of its kind says how it is told
-        single[: max(LOOKED_THROUGH - self.n, 0)] = True
+        single[: max(self.n_looked - self.n, 0)] = True
         rows = np.flatnonzero(single).tolist()
         for row in rows:
             self.add(block[row])
