@@ -708,7 +708,9 @@ def killer(mutant: Mutant, tests: Tests) -> str:
         found = in_a_child(stage, mutant, limit_s, stop=True, cache=cache)
         if found["code"] == -9:
             return "time"
-        if found["code"] == NO_SUCH_TEST:
+        if found["code"] == NO_SUCH_TEST:  # also where no test can be begun
+            if in_a_child(stage, None, limit_s, stop=True, cache=cache)["code"] != NO_SUCH_TEST:
+                return "import"
             raise SystemExit("tests have changed; take away what --kept holds of them")
         if found["code"]:
             return str((found.get("failed") or ["import"])[0])

@@ -10,6 +10,7 @@ import pytest
 from helpers_mrf import patterns
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.mean_field import MeanField
+from tactile_graph_mrf.descent.mean_sweep import softened
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 
@@ -152,3 +153,10 @@ def test_the_likeliest_state_has_a_line_where_it_is_likelier_than_not():
     assert labels[1, 1] == 0
     assert down[0].tolist() == [False, True]
     np.testing.assert_array_equal(across, mean.chances.across > 0.5)
+
+
+def test_however_much_the_labels_cost_their_chances_add_up_to_one():
+    chance = np.empty(4)
+    softened.loops(1e6 + np.array([2.0, 0.0, 5000.0, np.log(3.0)]), 1.0, chance)
+    weights = np.array([np.exp(-2.0), 1.0, 0.0, 1.0 / 3.0])
+    np.testing.assert_allclose(chance, weights / weights.sum(), rtol=1e-9)
