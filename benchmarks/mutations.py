@@ -818,7 +818,8 @@ def table(found: list[dict[str, Any]]) -> str:
     for family in dict.fromkeys(one["family"] for one in found):
         of = [one for one in found if one["family"] == family]
         killed = sum(bool(one["killed_by"]) for one in of)
-        same = sum(why.get(_key(one), "").startswith("same:") for one in of)
+        left = [one for one in of if not one["killed_by"]]
+        same = sum(why.get(_key(one), "").startswith("same:") for one in left)
         low, high = wilson(killed, len(of))
         shown = f"{killed} ({killed / len(of):.0%}) | {100 * low:.0f} to {100 * high:.0f} %"
         others = f"{killed / max(len(of) - same, 1):.0%}"
