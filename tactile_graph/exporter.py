@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, BinaryIO, Literal, NamedTuple, Protocol
 
 from tactile_graph.files import check_target
 
@@ -86,9 +86,13 @@ class Exporter(NamedTuple):
         Returns who takes the results.
     check : callable
         Refuses a name, or that something is not installed, before the work; raises `UsageError`.
+    joined : callable, optional
+        ``joined(parts, file)`` writes one file of those that several workers wrote, each of some
+        frames, in order. None where such files cannot be joined: one process then writes them.
     """
 
     called: str
     holds: Literal["records", "numbers", "images"]
     opened: Callable[[Export], Writer]
     check: Callable[[str], None] = check_plain
+    joined: Callable[[Iterator[bytes], BinaryIO], None] | None = None

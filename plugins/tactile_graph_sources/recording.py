@@ -19,11 +19,13 @@ from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
 from tactile_graph_sources.readers.garbage import stacks_without_garbage, without_garbage
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.labels import labels_of
 from tactile_graph_sources.readers.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.stores.in_ranges import ranges_of_stores
 
 Length = Annotated[float, Gt(0)]
 
@@ -145,6 +147,7 @@ def recording_stacked(
 
 
 recording.stacked = recording_stacked  # type: ignore[attr-defined]
+recording.ranges = ranges_of_stores  # type: ignore[attr-defined]
 
 
 def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
@@ -155,17 +158,6 @@ def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
     for one in paths:
         _check_file(one)
     return [*zip(paths, labels_of(paths) if len(paths) > 1 else [""], strict=True)]
-
-
-def labels_of(paths: list[Path]) -> list[str]:
-    """Return what frames of several files are labelled with: names, with folders if names recur."""
-    names = [path.name for path in paths]
-    longest = max(len(path.parts) for path in paths)
-    for n_parts in range(2, longest + 1):
-        if len({*names}) == len({*paths}):
-            break
-        names = ["/".join(path.parts[-n_parts:]) for path in paths]
-    return names
 
 
 class Opened(NamedTuple):

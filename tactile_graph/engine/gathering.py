@@ -10,6 +10,8 @@ import numpy as np
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack, in_stacks
 
+WORTH_BLOCKS = 2000
+"""Frames from which on blocks are sooner done, kernels that are not on disk yet included."""
 FIRST, MOMENT_S = 16, 0.1
 """Frames of the first block, and how long one may take: who waits sees that something happens."""
 SLOW_S, PATIENCE_S = 0.002, 0.02

@@ -50,3 +50,12 @@ def tactile_graph_exporters() -> Mapping[str, str]:
         ".zarr": "node_images:ZARR",
     }
     return {ending: f"tactile_graph.cli.output.{home}" for ending, home in forms.items()}
+
+
+@hookimpl
+def tactile_graph_executors() -> Mapping[str, str]:
+    """Offer where ``--workers`` and ``--on`` have frames worked on."""
+    return {
+        "processes": "tactile_graph.many.processes:PROCESSES",
+        "dask": "tactile_graph.many.dask_cluster:DASK",
+    }

@@ -121,6 +121,11 @@ def tactile_graph_exporters() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Ending of a file's name (``.csv``) -> import string of the `Exporter` by which runs write."""
 
 
+@hook_of("tactile_graph.many.executor_kind:ExecutorKind")
+def tactile_graph_executors() -> Mapping[str, str]:  # type: ignore[empty-body]
+    """Name for ``--on`` -> import string of the `ExecutorKind` that works on many frames."""
+
+
 @hook(Answer(wanted='its unit is needed, or "" where it is its own', imported=False))
 def tactile_graph_quantities() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Quantity, what values of an image mean -> its unit as tables print it; "" for none."""

@@ -62,3 +62,9 @@ def test_files_that_ask_for_too_much_are_refused_before_the_work() -> None:
 
 def test_hostile_frames_are_answered_or_refused() -> None:
     attacked("frames.py", "--tries", "48", "--pipelines", "circle-1", "circle-3", "rectangle-3")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes where Linux tells them")
+def test_killed_runs_with_workers_are_resumed_to_the_same_file() -> None:
+    pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+    attacked("workers.py", "--tries", "4")

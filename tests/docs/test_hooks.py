@@ -234,6 +234,18 @@ def test_an_exporter_writes_what_a_run_comes_to(plugin: Plugin, tmp_path: Path) 
     assert "did you mean 'md'?" in got.output
 
 
+def test_an_executor_is_named_by_on(plugin: Plugin, tmp_path: Path) -> None:
+    plugin("Executors")
+    one, two = tmp_path / "one.csv", tmp_path / "two.csv"
+    words = ["run", "circle-1", "--frames", "40", "-o"]
+    assert CliRunner().invoke(cli, [*words, str(one)]).exit_code == 0
+    got = CliRunner().invoke(cli, [*words, str(two), "--on", "threads"])
+    assert got.exit_code == 0, got.output
+    assert two.read_bytes() == one.read_bytes()
+    got = CliRunner().invoke(cli, [*words, str(two), "--on", "thread"])
+    assert "did you mean 'threads'?" in got.output
+
+
 def test_a_device_is_listed_and_recorded_with(plugin: Plugin, tmp_path: Path) -> None:
     plugin("Capture devices")
     listed = CliRunner().invoke(cli, ["ports"])

@@ -30,6 +30,7 @@ class MeanReading:
         readings: Annotated[int, Ge(1)] = 5,
         start_anew_s: Annotated[float, Gt(0)] | None = None,
     ) -> None:
+        self.remembers = readings
         self._kept: deque[NDArray[np.float64]] = deque(maxlen=readings)
         self._names: tuple[str, ...] = ()
         self._start_anew_s = start_anew_s

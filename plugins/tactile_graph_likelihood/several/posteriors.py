@@ -13,7 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
-from tactile_graph_likelihood.several.scene import Configuration, area_of
+from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
@@ -133,16 +133,15 @@ def posteriors_of(part: Found) -> list[Posterior]:
     covariance, from the information of all together, and by how far the other kinds, and other
     outlines that the search came upon, lie off.
     """
-    scene, every = part.scene, list[Kinds]()
-    found, _ = scene.settled(part.outlines)
-    for k in range(found.count):
-        every.append(kinds_of(scene, found, k))
-        found = found.with_one(k, every[-1].best)
-    found, matrix = scene.settled(found, None, 4)
+    scene = part.scene
+    found, matrix, every, sampled = _sampled(scene, part.outlines)
+    if any(
+        some.log_evidence == -math.inf for some in sampled
+    ):  # of kinds that others leave no room
+        found, matrix, every, sampled = _sampled(scene, part.outlines, as_found=True)
     together = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     out = []
-    for k, kinds in enumerate(every):
-        some = scene.sampled(found, k)
+    for k, (kinds, some) in enumerate(zip(every, sampled, strict=True)):
         if some.log_evidence == -math.inf:
             raise Degenerate("no outline near the likeliest one is possible: none can be told")
         n = some.points.shape[1]
@@ -163,6 +162,24 @@ def posteriors_of(part: Found) -> list[Posterior]:
             )
         )  # fmt: skip
     return out
+
+
+def _sampled(
+    scene: Search, outlines: Configuration, as_found: bool = False
+) -> tuple[Configuration, Values, list[Kinds], list[Sampled]]:
+    """Return outlines, each of its likeliest kind or as found, and what is known of each.
+
+    That is: the information of all together, each as every kind, and its points.
+    """
+    found, matrix = scene.settled(outlines)
+    every = list[Kinds]()
+    for k in range(found.count):
+        kinds = kinds_of(scene, found, k)
+        every.append(replace(kinds, best=found.only(k)) if as_found else kinds)
+        found = found.with_one(k, every[-1].best)
+    if not as_found:
+        found, matrix = scene.settled(found, None, 4)
+    return found, matrix, every, [scene.sampled(found, k) for k in range(found.count)]
 
 
 @dataclass(frozen=True, eq=False)

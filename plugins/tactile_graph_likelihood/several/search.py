@@ -88,7 +88,7 @@ class Search(Ladder):
             self.noted(begin)
         if anew or begin is None or not self.explained(self.every[-1]):
             sketches = self.together(self.beginnings(room), 0)
-            if not self.explained(self.noted(self.drawn(sketches.points, self.problem))):
+            if not self.explained(self.noted(self.begun(sketches))):
                 self.draw_ladder(sketches, room)
         better: Configuration | None = max(self.every, key=self.rank)
         while better is not None:
@@ -105,7 +105,14 @@ class Search(Ladder):
         top = max(it.rank for it in rungs)
         for sketches in rungs:
             if sketches.rank > top - NEAR:
-                self.noted(self.drawn(sketches.points, self.problem))
+                self.noted(self.begun(sketches))
+
+    def begun(self, sketches: Sketches) -> Configuration:
+        """Return outlines like sketches, without those that no touched element belongs to."""
+        found = self.drawn(sketches.points, self.problem)
+        own = self.owners(found)[0]
+        idle = [k for k in range(found.count) if not np.any(own == k)]
+        return found.without(*idle) if 0 < len(idle) < found.count else found
 
     def far_from(self, x_cm: float, y_cm: float) -> float:
         """Return the distance of a place from the nearest touched element, in cm."""

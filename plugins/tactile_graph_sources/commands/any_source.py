@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from tactile_graph.cli.arguments import COUNT
 from tactile_graph.engine.sources import open_source
 from tactile_graph.errors import Mark, UsageError
 from tactile_graph.pipeline.document import assignment
@@ -31,6 +32,13 @@ def frames_of_source(
         raise UsageError(f"--source {step}: this step is no source: it yields no frames")
     source = Source(signature, _checked(step, settings), Mark("<command line>", 1, 1))
     return open_source(source, seed, report)
+
+
+def as_many(step: str, settings: Mapping[str, Any], n_frames: int | None) -> dict[str, Any]:
+    """Return settings by which a source that makes its frames makes so many, unless they say."""
+    if n_frames is None or not any(s.name == COUNT for s in installed().step(step).settings):
+        return dict(settings)
+    return {COUNT: n_frames, **settings}
 
 
 def given_settings(texts: Sequence[str]) -> dict[str, Any]:

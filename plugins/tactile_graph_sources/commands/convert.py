@@ -38,7 +38,12 @@ OFFERS = "recording_writers"
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed of everything random.")  # fmt: skip
-@click.option("--frames", "n_frames", type=click.IntRange(min=1), help="Only the first so many.")
+@click.option(
+    "--frames",
+    "n_frames",
+    type=click.IntRange(min=1),
+    help="Only the first so many; a source that makes its frames makes as many.",
+)
 @click.option("--rows", type=click.IntRange(min=1), help="Rows, where the file cannot tell.")
 @click.option("--columns", type=click.IntRange(min=1), help="Columns, likewise.")
 @click.option("--pitch-cm", type=click.FloatRange(min=0, min_open=True), help="Pitch, likewise.")
@@ -72,7 +77,8 @@ def convert(
     writer: RecordingWriter = installed().load(OFFERS, target.suffix)
     report, kept = Report(), _Carried()
     try:
-        frames = _frames(recordings, source, settings, told, seed, report)
+        wanted = (source, settings, told, n_frames)
+        frames = _frames(recordings, *wanted, seed, report)
         frames = islice(frames, n_frames)
         if truth is not None:
             from tactile_graph_sources.readers.truth_file import with_truth
@@ -111,14 +117,17 @@ def _frames(
     source: str | None,
     settings: tuple[str, ...],
     told: dict[str, Any],
+    n_frames: int | None,
     seed: int,
     report: Report,
 ) -> Iterator[Frame]:
-    from tactile_graph_sources.commands.any_source import frames_of_source, given_settings
+    from tactile_graph_sources.commands.any_source import as_many, frames_of_source, given_settings
 
     given = {**given_settings(settings), **{k: v for k, v in told.items() if v is not None}}
     if source is None:
         given["path"] = [str(r) for r in recordings]
+    else:
+        given = as_many(source, given, n_frames)
     return frames_of_source(source or "recording", given, report, seed)
 
 

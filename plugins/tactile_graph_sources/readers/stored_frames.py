@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from tactile_graph.wires import Frame
@@ -15,7 +15,18 @@ from tactile_graph_sources.stores.layout import JOURNAL, METADATA, is_store
 def read(reading: Reading) -> Iterator[Frame]:
     """Yield the frames of a store as far as it is whole; raises what `read_store` raises."""
     reading.recognised(f"by the files in it, {METADATA} or {JOURNAL}")
-    for stored in read_store(reading.path, reading.report):
+    yield from as_told(reading, read_store(reading.path, reading.report))
+
+
+def as_told(reading: Reading, frames: Iterable[Frame]) -> Iterator[Frame]:
+    """Yield frames of a store as the settings tell of them; those of other sensors are left out.
+
+    Raises
+    ------
+    DataError
+        If shape, pitch, origin or quantity cannot be true, or are not what the settings say.
+    """
+    for stored in frames:
         image = stored.image
         if not reading.wants(stored.label):
             continue

@@ -173,8 +173,14 @@ class Stored:
             tuple(notes),
         )
 
-    def frames(self, piece: Piece) -> list[Frame]:
+    def frames(self, piece: Piece, low: int = 0, high: int | None = None) -> list[Frame]:
         """Return a piece's frames; doubtful if the journal vouches not for them or the attributes.
+
+        Parameters
+        ----------
+        piece : Piece
+        low, high : int, optional
+            Which of all frames, where not all of the piece's are wanted.
 
         Raises
         ------
@@ -183,7 +189,9 @@ class Stored:
         values, columns = self.values(piece), self.columns(piece)
         unsure = not self.sure or (self.journaled and piece.block is None)
         try:
-            frames = [self._frame(piece.low + i, v, columns, i) for i, v in enumerate(values)]
+            first, last = max(0, low - piece.low), (high or piece.high) - piece.low
+            wanted = enumerate(values[first:last], first)
+            frames = [self._frame(piece.low + i, v, columns, i) for i, v in wanted]
         except Exception as error:  # notes of an old store, which nothing vouches for
             raise Lost(f"the notes on them cannot be read: {_short(error)}") from error
         return [replace(f, doubtful=True) for f in frames] if unsure else frames

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from tactile_graph.exporter import Writer
 
 LONG_RUN = 200
-WORTH_BLOCKS = 2000
-"""Frames from which on blocks are sooner done, kernels that are not on disk yet included."""
 STALLED_S = 1.0
 
 
@@ -83,6 +81,24 @@ STALLED_S = 1.0
     "or a film, what was found drawn over every frame (.gif, .mp4).",
 )
 @click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Let N processes work on the frames, for -o FILE; the file is the one that one process "
+    "writes, and gets its name when it is whole.",
+)
+@click.option(
+    "--on",
+    metavar="ADDRESS",
+    help="Where the workers are: a Dask cluster's scheduler (tcp://host:8786), or an executor that "
+    "a plugin offers, NAME or NAME=ADDRESS.",
+)
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on where a run with workers ended, if recordings, pipeline and options are the same.",
+)
+@click.option(
     "--verify",
     is_flag=True,
     help="Look after every step whether it wrote into what others read; slower.",
@@ -101,6 +117,9 @@ def run(
     full: bool,
     long: bool,
     plot: str | None,
+    workers: int | None,
+    on: str | None,
+    resume: bool,
     verify: bool,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
@@ -110,8 +129,14 @@ def run(
     """
     lines = Output.of(output, form, full, long)
     _check_files(recordings, lines, plot)
+    divided = workers is not None or on is not None or resume
+    if divided:
+        _check_divided(lines, plot)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    _Run(opened, tuple(only), span, seed, lines, plot, verify).go()
+    one = _Run(opened, tuple(only), span, seed, lines, plot, verify)
+    if divided:
+        one.divided(workers, on, resume)
+    one.go()
 
 
 def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
@@ -123,6 +148,14 @@ def _check_files(recordings: Sequence[str], output: Output | None, plot: str | N
     for option, name in (("-o", output.name if output else None), ("--plot", plot)):
         if name is not None and any(Path(r).resolve() == Path(name).resolve() for r in recordings):
             raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
+
+
+def _check_divided(output: Output | None, plot: str | None) -> None:
+    """Refuse what workers have no place for."""
+    if output is None:
+        raise UsageError("--workers, --on and --resume are for files: give -o FILE.jsonl")
+    if plot is not None:
+        raise UsageError("--plot: workers draw nothing; run the first frames without --workers")
 
 
 @dataclass
@@ -143,6 +176,27 @@ class _Run:
     error: Exception | None = None
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
+
+    def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
+        """Let workers run it, and leave the command; say why if they cannot."""
+        from tactile_graph.cli.many.many_run import Asked, ManyRun, division_for
+        from tactile_graph.cli.terminal import console
+        from tactile_graph.many.executor_kind import place_of
+
+        assert self.output is not None  # it is refused without
+        place = place_of(on, workers or (None if on else 1))
+        asked = Asked(
+            self.pipeline, self.only, self.span, self.seed, self.output, self.verify, place, resume
+        )
+        division, ranges = division_for(asked)
+        say = console(stderr=True)
+        if division.why_not:
+            say.print(f"in one process: {division.why_not}", style="yellow", soft_wrap=True)
+            return
+        if division.by_recording:
+            text = "each recording by one worker: state starts anew with each"
+            say.print(text, style="yellow", soft_wrap=True)
+        click.get_current_context().exit(ManyRun(asked, division, ranges).go())
 
     def go(self) -> None:
         from tactile_graph.cli.interrupt import Interrupts
@@ -178,7 +232,7 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.gathering import flat
+        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
         if in_blocks and self.span.is_all:

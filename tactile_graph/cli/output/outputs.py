@@ -31,12 +31,15 @@ class Output:
         A file, or ``-`` for stdout.
     exporter : Exporter
     full, long : bool
+    ending : str
+        That files of the exporter have.
     """
 
     name: str
     exporter: Exporter
     full: bool
     long: bool
+    ending: str = USUAL
 
     @classmethod
     def of(cls, name: str | None, form: str | None, full: bool, long: bool) -> Output | None:
@@ -53,12 +56,13 @@ class Output:
                 if told:
                     raise UsageError(_no_place(option, SCREEN))
             return None
-        exporter: Exporter = installed().load(OFFERS, _ending(name, form))
+        ending = _ending(name, form)
+        exporter: Exporter = installed().load(OFFERS, ending)
         if long and exporter.holds != "numbers":
             raise UsageError(_no_place("--long", exporter.called, exporter.holds))
         if full and exporter.holds != "records":
             raise UsageError(_no_place("--full", exporter.called, exporter.holds))
-        return cls(name.rstrip(f"/{os.sep}") or name, exporter, full, long)
+        return cls(name.rstrip(f"/{os.sep}") or name, exporter, full, long, ending)
 
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable, Iterator
+from dataclasses import astuple, dataclass, field
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,19 +26,28 @@ from tactile_graph.wires.stacks import Stack
 MOST_TROUBLES = 20
 LOOKED_THROUGH = 100
 """Frames at the beginning in which nodes are asked what they assume, and have to say."""
+COUNTS = (
+    "n", "n_failed", "n_skipped", "n_lacking", "n_not_finite", "n_items_failed",
+)  # fmt: skip
 LONGEST_REASON = 300
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
 
 @dataclass
 class _Kept:
-    """How often something happened, and the first time in full."""
+    """How often something happened, and what is to be said of the first time."""
 
-    outcome: Any
+    text: str
+    item: tuple[int, ...]
     first_frame: int
     last_frame: int = -1
     n: int = 0
     """Frames; several items of one frame count once."""
+
+    def join(self, later: _Kept) -> None:
+        """Take in what came of later frames."""
+        self.n += later.n - (later.first_frame == self.last_frame)
+        self.last_frame = later.last_frame
 
 
 @dataclass
@@ -47,6 +56,12 @@ class _Error:
     n: int = 0
     total: float = 0.0
     most: float = 0.0
+
+    def join(self, later: _Error) -> None:
+        """Take in what came of later frames."""
+        self.n += later.n
+        self.total += later.total
+        self.most = max(self.most, later.most)
 
     def add(self, value: float) -> None:
         self.n += 1
@@ -69,6 +84,13 @@ class _Noticed:
         if text and not self.text:
             self.text, self.first_frame = text, frame
 
+    def join(self, later: _Noticed) -> None:
+        """Take in what came of later frames."""
+        if later.text and not self.text:
+            self.text, self.first_frame = later.text, later.first_frame
+        self.n += later.n
+        self.n_ran += later.n_ran
+
     @property
     def usual(self) -> bool:
         """Whether more than half of the frames were so: now and then it may be a faulty reading."""
@@ -83,9 +105,17 @@ class _Noticed:
 
 @dataclass
 class Tally:
-    """What a run came to so far."""
+    """What a run, or a part of one, came to so far.
+
+    Parameters
+    ----------
+    outputs : list of OutputColumns
+    n_looked : int
+        How many frames at the beginning are looked through.
+    """
 
     outputs: list[OutputColumns]
+    n_looked: int = LOOKED_THROUGH
     n: int = 0
     n_failed: int = 0
     n_skipped: int = 0
@@ -107,7 +137,7 @@ class Tally:
     def add(self, result: Result) -> None:
         """Count a frame."""
         self.n += 1
-        if self.n <= LOOKED_THROUGH:
+        if self.n <= self.n_looked:
             self._assumed(result)
             self._noticed(result)
         classes = {result.outcome(o.output).__class__ for o in self.outputs}
@@ -115,12 +145,12 @@ class Tally:
         self.n_skipped += Skipped in classes and Failed not in classes
         for failure in result.failures:
             key = (failure.origin, failure.reason.partition("\n")[0])
-            self._keep(self.failed, key, failure, result)
+            self._keep(self.failed, key, result, failure, _why)
         strange = False
         for output in self.outputs:
             outcome = result.outcome(output.output)
             if isinstance(outcome, Skipped):
-                self._keep(self.skipped, (output.output, outcome.origin), outcome, result)
+                self._keep(self.skipped, (output.output, outcome.origin), result, outcome)
             elif not isinstance(outcome, Failed):
                 values = values_of(result, output)
                 strange = self._look(output, values, result) or strange
@@ -129,7 +159,7 @@ class Tally:
         empty = [gap for found in result.gaps.values() for gap in found]
         for gap in empty:
             if isinstance(gap, Skipped):
-                self._keep(self.skipped, (gap.origin, gap.origin), gap, result)
+                self._keep(self.skipped, (gap.origin, gap.origin), result, gap)
         self.n_lacking += good and bool(empty)
         self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
         self.n_not_finite += strange and good and not empty
@@ -146,7 +176,7 @@ class Tally:
             alike.append(part)
             single[part.rows] = more[part.rows]
             single[part.rows[0]] = True  # the first of its kind says how it is told
-        single[: max(LOOKED_THROUGH - self.n, 0)] = True
+        single[: max(self.n_looked - self.n, 0)] = True
         rows = np.flatnonzero(single).tolist()
         for row in rows:
             self.add(block[row])
@@ -177,10 +207,17 @@ class Tally:
 
     @staticmethod
     def _keep(
-        where: dict[tuple[str, str], _Kept], key: tuple[str, str], outcome: Any, result: Result
+        where: dict[tuple[str, str], _Kept],
+        key: tuple[str, str],
+        result: Result,
+        outcome: Any,
+        said: Callable[[Any], str] = lambda outcome: str(outcome.reason),
     ) -> None:
         frame = result.frame.index
-        kept = where.setdefault(key, _Kept(outcome, frame))
+        kept = where.get(key)
+        if kept is None:
+            item = tuple(getattr(outcome, "item", ()))
+            kept = where[key] = _Kept(said(outcome), item, frame)
         kept.n += kept.last_frame != frame or kept.n == 0
         kept.last_frame = frame
 
@@ -203,7 +240,7 @@ class Tally:
         """Note each value that is no number and should be one; return whether there is any."""
         strange = [c.key for c in output.values if not _finite(values.get(c.key))]
         for key in strange:
-            self._keep(self.not_finite, (key, ""), values[key], result)
+            self._keep(self.not_finite, (key, ""), result, values[key], str)
         return bool(strange)
 
     def _compare(self, output: OutputColumns, values: dict[str, Any]) -> None:
@@ -228,6 +265,53 @@ class Tally:
             "assumed": {node: told for node, (told, _) in self.assumed.items()},
             "notices": {node: found.text for node, found in self.noticed.items() if found.usual},
         }
+
+    # -- of several parts --------------------------------------------------------------------
+
+    def join(self, later: Tally) -> None:
+        """Take in what later frames came to, counted elsewhere."""
+        for name in COUNTS:
+            setattr(self, name, getattr(self, name) + getattr(later, name))
+        for node, told in later.assumed.items():
+            self.assumed.setdefault(node, told)
+        _join(self.noticed, later.noticed)
+        for mine, its in (
+            (self.failed, later.failed),
+            (self.skipped, later.skipped),
+            (self.not_finite, later.not_finite),
+        ):
+            _join(mine, its)
+        for output, errors in later.errors.items():
+            _join(self.errors.setdefault(output, {}), errors)
+        self.seconds = time.perf_counter() - self.started
+
+    def kept(self) -> dict[str, Any]:
+        """Return all of it as plain data, which `of_kept` makes a tally of again."""
+        data: dict[str, Any] = {name: getattr(self, name) for name in COUNTS}
+        data["assumed"] = {node: [*told] for node, told in self.assumed.items()}
+        data["noticed"] = {node: astuple(n) for node, n in self.noticed.items()}
+        for name in ("failed", "skipped", "not_finite"):
+            data[name] = [[*key, *astuple(k)] for key, k in getattr(self, name).items()]
+        data["errors"] = {
+            output: {name: astuple(e) for name, e in errors.items()}
+            for output, errors in self.errors.items()
+        }
+        return data
+
+    @classmethod
+    def of_kept(cls, outputs: list[OutputColumns], data: dict[str, Any]) -> Tally:
+        """Return the tally that plain data tell of."""
+        tally = cls(outputs, **{name: data[name] for name in COUNTS})
+        tally.assumed = {node: (text, frame) for node, (text, frame) in data["assumed"].items()}
+        tally.noticed = {node: _Noticed(*n) for node, n in data["noticed"].items()}
+        for name in ("failed", "skipped", "not_finite"):
+            rows = {(a, b): _Kept(t, tuple(item), *n) for a, b, t, item, *n in data[name]}
+            setattr(tally, name, rows)
+        tally.errors = {
+            output: {name: _Error(*e) for name, e in errors.items()}
+            for output, errors in data["errors"].items()
+        }
+        return tally
 
     # -- in closing --------------------------------------------------------------------------
 
@@ -254,9 +338,9 @@ class Tally:
 
     def _outcomes(self) -> Iterator[Text]:
         for (node, _), kept in self.failed.items():
-            yield _labelled("failed", "red", f"{node} {_times(kept)}: {_why(kept.outcome)}")
+            yield _labelled("failed", "red", f"{node} {_times(kept)}: {kept.text}")
         for (key, _), kept in self.not_finite.items():
-            text = f"{key} {_times(kept)}: {kept.outcome}, which is no answer"
+            text = f"{key} {_times(kept)}: {kept.text}, which is no answer"
             yield _labelled("strange", "red", text)
         for node, (told, frame) in self.assumed.items():
             yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
@@ -265,7 +349,7 @@ class Tally:
                 yield _labelled("notice", "yellow", f"{node}: {found.text} ({found.times})")
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
-            text = f"{output} {_times(kept)}: {at}{kept.outcome.reason}"
+            text = f"{output} {_times(kept)}: {at}{kept.text}"
             yield _labelled("skipped", "yellow", text)
 
     def _last(self, interrupted: str) -> Text:
@@ -289,6 +373,17 @@ class Tally:
         return text
 
 
+_Part = TypeVar("_Part", _Kept, _Noticed, _Error)
+
+
+def _join(mine: dict[Any, _Part], later: dict[Any, _Part]) -> None:
+    for key, part in later.items():
+        if key in mine:
+            mine[key].join(part)
+        else:
+            mine[key] = part
+
+
 def _finite(value: Any) -> bool:
     return not isinstance(value, float | np.floating) or math.isfinite(value)
 
@@ -308,7 +403,7 @@ def _why(failure: Failed) -> str:
 
 def _times(kept: _Kept) -> str:
     first = f"frame {kept.first_frame}"
-    first += f" ({item_words(kept.outcome.item)})" if getattr(kept.outcome, "item", ()) else ""
+    first += f" ({item_words(kept.item)})" if kept.item else ""
     return f"in {first}" if kept.n == 1 else f"in {kept.n} frames, first in {first}"
 
 

@@ -6,7 +6,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
@@ -264,5 +264,21 @@ def _csv(export: Export) -> Writer:
     return LineFile(export.name, Csv(export.table))
 
 
-JSON_LINES = Exporter("JSON lines", "records", _json_lines)
-CSV = Exporter("CSV", "numbers", _csv)
+def _joined_lines(parts: Iterator[bytes], file: BinaryIO) -> None:
+    for part in parts:
+        file.write(part)
+        file.flush()  # whoever reads stdout waits for whole lines
+
+
+def _joined_csv(parts: Iterator[bytes], file: BinaryIO) -> None:
+    """Write lines under one line of names, the first part's."""
+
+    def without_names() -> Iterator[bytes]:
+        for i, part in enumerate(parts):
+            yield part if i == 0 else part[part.index(b"\n") + 1 :]
+
+    _joined_lines(without_names(), file)
+
+
+JSON_LINES = Exporter("JSON lines", "records", _json_lines, joined=_joined_lines)
+CSV = Exporter("CSV", "numbers", _csv, joined=_joined_csv)

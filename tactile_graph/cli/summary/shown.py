@@ -137,7 +137,9 @@ def _recordings(console: Console, summary: Summary) -> None:
     console.print(table)
     told = ["medians"] if kept else []
     if len(kept) < len(keys):
-        told.append(f"{len(keys) - len(kept)} quantities are not shown for want of width")
+        n = len(keys) - len(kept)
+        hidden = "1 quantity is" if n == 1 else f"{n} quantities are"
+        told.append(f"{hidden} not shown for want of width")
     if len(names) > len(chosen):
         told.append(f"{len(names) - len(chosen)} recordings more")
     console.print("; ".join(told) + " (--json gives all)\n", style="dim", soft_wrap=True)

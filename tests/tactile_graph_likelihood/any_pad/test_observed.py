@@ -160,3 +160,17 @@ def test_the_footprint_is_what_rises_above_the_noise():
     assert AboveNoise(deviations=8.0)(image_of(values)).level == pytest.approx(
         2.0 * found.level, rel=0.2
     )
+
+
+def test_the_rise_is_told_in_what_noise_reaches():
+    rng = np.random.default_rng(3)
+    values = rng.normal(0.0, 1e-3, (16, 16))
+    found = AboveNoise()(image_of(values))
+    assert found.rise < 1.5
+    pressed = values.copy()
+    pressed[4, 7] = 3.0 * (found.level - np.median(values))
+    assert AboveNoise()(image_of(pressed)).rise == pytest.approx(3.0, rel=0.1)
+    assert AboveNoise()(image_of(np.zeros((16, 16)))).rise == 0.0
+    alone = np.zeros((16, 16))
+    alone[2, 2] = 1.0
+    assert np.isfinite(AboveNoise()(image_of(alone)).rise)

@@ -92,6 +92,12 @@ def test_frames_of_any_source_are_converted_with_their_truth(tmp_path: Path) -> 
         np.testing.assert_array_equal(a.image.values, b.image.values)
 
 
+def test_a_source_that_makes_its_frames_makes_as_many_as_are_asked_for(tmp_path: Path) -> None:
+    args = ("--source", "simulate", "--with", "scene=discs", "--frames", 23)
+    assert "23 frames" in run(tmp_path / "a.npz", *args)
+    assert "2 frames" in run(tmp_path / "b.npz", *args, "--with", "frames=2")
+
+
 def test_truth_of_a_file_is_attached(tmp_path: Path, made: list[Frame]) -> None:
     truth = tmp_path / "truth.csv"
     truth.write_text("frames,kind,x_cm,y_cm,radius_cm,name\n0-2,circle,1,2,0.5,cup\n3-5,none,,,,\n")

@@ -1,0 +1,149 @@
+"""Kill runs with workers at random moments, whole or a worker of them, and resume to the same file.
+
+    python benchmarks/attacks/workers.py                   # 20 kills of each kind
+    python benchmarks/attacks/workers.py --tries 400       # 200 of each
+
+A run of `circle-1` with two workers over a store gets SIGKILL at a moment drawn at random, until it
+ends by itself: after each kill no process of it may be left, the output must not stand under its
+name, and `--resume` goes on. Or one of its workers gets SIGKILL, again and again, and the run must
+end by itself. The file must be, to the byte, the one that one process writes.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from attempts import Attempt, parser_of, told
+
+FRAMES = 4000
+LONGEST_S = 3.0
+MOST_KILLS = 5
+"""Of one run; then it is let end."""
+GONE_S = 10.0
+NAME = "out.csv"
+RUN = ("run", "circle-1", "frames.zarr")
+
+
+def begun(folder: Path, *words: str) -> subprocess.Popen[bytes]:
+    """Return a command in a session of its own."""
+    nowhere = subprocess.DEVNULL
+    return subprocess.Popen(
+        ["nice", "-n", "10", sys.executable, "-P", "-m", "tactile_graph", *words],
+        cwd=folder, stdout=nowhere, stderr=nowhere, start_new_session=True,
+    )  # fmt: skip
+
+
+def processes(session: int) -> dict[int, int]:
+    """Return the living processes of a session, and whose children they are."""
+    found = {}
+    for place in Path("/proc").iterdir():
+        with suppress(OSError, ValueError):
+            rest = (place / "stat").read_text().rpartition(")")[2].split()
+            if int(rest[3]) == session and rest[0] != "Z":
+                found[int(place.name)] = int(rest[1])
+    return found
+
+
+def workers(run: int) -> list[int]:
+    """Return the processes that work for a run: children of its children."""
+    living = processes(run)
+    return [p for p, parent in living.items() if living.get(parent) == run]
+
+
+def left_of(run: int) -> list[int]:
+    """Return what processes of a killed run are left after some seconds."""
+    until = time.monotonic() + GONE_S
+    while processes(run) and time.monotonic() < until:
+        time.sleep(0.05)
+    return list(processes(run))
+
+
+class Killing:
+    """A folder with a store, and the file that one process makes of it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._let_end("convert", "frames.zarr", "--source", "simulate", "--with",
+                      f"frames={FRAMES}")  # fmt: skip
+        self._let_end(*RUN, "-o", "one.csv")
+        self.whole = (folder / "one.csv").read_bytes()
+
+    def _let_end(self, *words: str) -> None:
+        if begun(self.folder, *words).wait():
+            raise RuntimeError(f"{' '.join(words)} fails even when it is let end")
+
+    def _begun(self, *more: str) -> subprocess.Popen[bytes]:
+        return begun(self.folder, *RUN, "--workers", "2", "-o", NAME, *more)
+
+    def the_whole(self, rng: random.Random) -> tuple[str, str]:
+        """Kill a run, and those that resume it; return what came of it, and what is wrong."""
+        output = self.folder / NAME
+        output.unlink(missing_ok=True)
+        run, n_kills = self._begun(), 0
+        while n_kills < MOST_KILLS:
+            with suppress(subprocess.TimeoutExpired):
+                run.wait(rng.random() * LONGEST_S)
+                break
+            os.kill(run.pid, signal.SIGKILL)
+            run.wait()
+            n_kills += 1
+            if left := left_of(run.pid):
+                return "LEFT", f"{len(left)} processes are left {GONE_S:g} s after the kill"
+            if output.exists() and output.read_bytes() != self.whole:
+                return "CUT", "what stands under its name is not whole"
+            run = self._begun("--resume")
+        return self._ended(run, f"{n_kills} kills")
+
+    def a_worker(self, rng: random.Random) -> tuple[str, str]:
+        """Kill workers of a run; return what came of it, and what is wrong."""
+        (self.folder / NAME).unlink(missing_ok=True)
+        run, n_kills = self._begun(), 0
+        while run.poll() is None and n_kills < MOST_KILLS:
+            time.sleep(rng.random() * LONGEST_S / 2)
+            at_work = workers(run.pid)
+            if at_work:
+                with suppress(ProcessLookupError):
+                    os.kill(rng.choice(at_work), signal.SIGKILL)
+                    n_kills += 1
+        return self._ended(run, f"{n_kills} kills")
+
+    def _ended(self, run: subprocess.Popen[bytes], came: str) -> tuple[str, str]:
+        code = run.wait()
+        if code:
+            return "FAILED", f"it ends with {code} after {came}"
+        same = (self.folder / NAME).read_bytes() == self.whole
+        hidden = [p.name for p in self.folder.glob(f".{NAME}*")]
+        if not same:
+            return "OTHER", f"another file than one process writes, after {came}"
+        return came, f"{hidden} are left" if hidden else ""
+
+
+def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
+    """Yield what came of killing runs, and their workers, in turn."""
+    rng = random.Random(seed)
+    with tempfile.TemporaryDirectory() as folder:
+        killing = Killing(Path(folder))
+        for i in range(n_tries):
+            what = "a worker" if i % 2 else "the whole"
+            since = time.monotonic()
+            came, why = (killing.a_worker if i % 2 else killing.the_whole)(rng)
+            yield Attempt(what, came, why, time.monotonic() - since)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Attack, and return 1 if anything was lost, cut or left running."""
+    args = parser_of(__doc__ or "", 40).parse_args(arguments)
+    return told(attack(args.tries, args.seed), args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

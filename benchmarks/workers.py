@@ -1,0 +1,177 @@
+"""Frames a second of `run --workers`, beside joblib and Dask's bag over the same function.
+
+    python benchmarks/workers.py                           # circle-3, 20,000 frames
+    python benchmarks/workers.py --frames 1000000 --only memory
+
+All read the same store and write JSON lines. joblib and Dask's bag are given, as people write it, a
+function that reads a range of frames with the library and returns their lines; the lines are
+joined in order. Kernels are compiled before, and each is run once before it counts; times are of
+the whole command or call, workers' start included. Memory is the most that all processes of a run
+held together (proportional set size), sampled.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+MB = 1e6
+LOOK_S = 0.25
+PORTION = 1000
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-P", "-m", "tactile_graph", *words]
+
+
+def ran(*words: str) -> None:
+    subprocess.run(command(*words), check=True, stderr=subprocess.DEVNULL)
+
+
+# -- the same by others' means ------------------------------------------------------------------
+
+
+def lines_of(store: str, pipeline: str, low: int) -> str:
+    """Return the lines of a range of frames: what joblib and Dask are given to do."""
+    from tactile_graph import load
+    from tactile_graph.cli.output.writers import JsonLines
+    from tactile_graph_sources.stores.in_ranges import ranges_of_stores
+
+    ranges = ranges_of_stores(Path(store))
+    assert ranges is not None
+    frames = ranges.read(low, min(low + PORTION, ranges.n_frames))
+    lines = JsonLines()
+    return "".join(lines.line(result) for result in load(pipeline).stream(frames))
+
+
+def joblib_run(store: str, pipeline: str, n_frames: int, n_workers: int, output: str) -> None:
+    import joblib
+
+    lows = range(0, n_frames, PORTION)
+    work = (joblib.delayed(lines_of)(store, pipeline, low) for low in lows)
+    with Path(output).open("w") as file:
+        file.writelines(joblib.Parallel(n_workers, return_as="generator")(work))
+
+
+def bag_run(store: str, pipeline: str, n_frames: int, n_workers: int, output: str) -> None:
+    import dask
+    import dask.bag
+
+    lows = list(range(0, n_frames, PORTION))
+    bag = dask.bag.from_sequence(lows, partition_size=1).map(partial(lines_of, store, pipeline))
+    with dask.config.set(scheduler="processes", num_workers=n_workers):
+        Path(output).write_text("".join(bag.compute()))
+
+
+# -- measured ----------------------------------------------------------------------------------
+
+
+def seconds(act: Callable[[], Any]) -> float:
+    begun = time.perf_counter()
+    act()
+    return time.perf_counter() - begun
+
+
+def held_mb(session: int) -> float:
+    """Return what the processes of a session hold, pages that they share counted once."""
+    total = 0
+    for place in Path("/proc").iterdir():
+        with suppress(OSError, ValueError):
+            rest = (place / "stat").read_text().rpartition(")")[2].split()
+            if int(rest[3]) == session:
+                rollup = (place / "smaps_rollup").read_text().splitlines()
+                total += sum(int(line.split()[1]) for line in rollup if line.startswith("Pss:"))
+    return total * 1024 / MB
+
+
+@contextmanager
+def watched(session: int) -> Iterator[list[float]]:
+    """Sample the memory of a session while it lasts."""
+    samples: list[float] = []
+    over = threading.Event()
+
+    def look() -> None:
+        while not over.wait(LOOK_S):
+            samples.append(held_mb(session))
+
+    thread = threading.Thread(target=look)
+    thread.start()
+    try:
+        yield samples
+    finally:
+        over.set()
+        thread.join()
+
+
+def memory_of(*words: str) -> dict[str, float]:
+    """Return how much a command held at most in each quarter of its time."""
+    process = subprocess.Popen(command(*words), stderr=subprocess.DEVNULL, start_new_session=True)
+    begun = time.perf_counter()
+    with watched(process.pid) as samples:
+        code = process.wait()
+    if code:
+        raise RuntimeError(f"{' '.join(words)} ended with {code}")
+    quarter = max(1, len(samples) // 4)
+    parts = {f"quarter {k + 1}": max(samples[k * quarter :][:quarter]) for k in range(4)}
+    return {"seconds": time.perf_counter() - begun, **parts}
+
+
+def speeds(store: str, args: argparse.Namespace, folder: Path) -> dict[str, float]:
+    """Return frames a second of each way, and check that all write the same."""
+    run = ("run", args.pipeline, store, "-o")
+    given = (store, args.pipeline, args.frames)
+    ways: dict[str, Callable[[str], Any]] = {
+        "one process": lambda out: ran(*run, out),
+        "--workers 1": lambda out: ran(*run, out, "--workers", "1"),
+        "--workers 2": lambda out: ran(*run, out, "--workers", "2"),
+        "joblib, 1": lambda out: joblib_run(*given, 1, out),
+        "joblib, 2": lambda out: joblib_run(*given, 2, out),
+        "dask.bag, 2": lambda out: bag_run(*given, 2, out),
+    }
+    found, contents = {}, set()
+    for name, way in ways.items():
+        out = str(folder / "out.jsonl")
+        least = min(seconds(partial(way, out)) for _ in range(1 + args.rounds))
+        found[name] = args.frames / least
+        contents.add(Path(out).read_bytes())
+        print(f"{name:12} {found[name]:9.0f} frames/s", flush=True)
+    print("all write the same" if len(contents) == 1 else "NOT all write the same", flush=True)
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--frames", type=int, default=20_000)
+    parser.add_argument("--pipeline", default="circle-3")
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--only", choices=("speed", "memory"))
+    parser.add_argument("--json")
+    args = parser.parse_args()
+    found: dict[str, Any] = {"pipeline": args.pipeline, "frames": args.frames}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        store = str(folder / "frames.zarr")
+        ran("convert", store, "--source", "simulate", "--with", f"frames={args.frames}")
+        if args.only != "memory":
+            found["frames a second"] = speeds(store, args, folder)
+        if args.only != "speed":
+            out = str(folder / "memory.jsonl")
+            found["megabytes"] = memory_of("run", args.pipeline, store, "--workers", "2", "-o", out)
+            told = ", ".join(f"{k} {v:.0f}" for k, v in found["megabytes"].items())
+            print(f"memory of --workers 2, MB: {told}", flush=True)
+    if args.json:
+        Path(args.json).write_text(json.dumps(found, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

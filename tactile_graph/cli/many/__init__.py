@@ -1,0 +1,1 @@
+"""``run`` with workers: what they do, what is kept of it, how it is gone on with."""

@@ -1,0 +1,217 @@
+"""What a worker does for ``run``: frames of a portion through a pipeline, to a part of a file."""
+
+from __future__ import annotations
+
+import pickle
+import tempfile
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.cli.output.outputs import Output
+from tactile_graph.cli.output.tally import LOOKED_THROUGH, Tally
+from tactile_graph.compiled import warm_up
+from tactile_graph.engine.block import Block
+from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.gathering import WORTH_BLOCKS
+from tactile_graph.errors import DataError, TactileGraphError
+from tactile_graph.exporter import Writer, write_block
+from tactile_graph.many.division import Division, Settling
+from tactile_graph.many.portion import Portion, unpacked
+from tactile_graph.plugins.registry import installed
+from tactile_graph.steps.ranges import Irregular, Ranges
+from tactile_graph.wires.frame import Frame
+
+if TYPE_CHECKING:
+    from tactile_graph.api.result import Result
+    from tactile_graph.engine.runner import Runner
+
+MOST_KEPT = 2
+"""Jobs that a worker keeps ready."""
+FARTHER = 4
+"""Times that is gone back when state was not settled by as many frames as it remembers."""
+
+
+class Job(NamedTuple):
+    """What is the same for all portions of a run.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+    asked : tuple of str
+    seed : int
+    verify : bool
+    ending : str
+        Of the name of the file that is written.
+    full, long : bool
+        As of `Output`.
+    source : tuple of (str, dict), optional
+        Source step and settings, where workers read the frames themselves.
+    division : Division
+    start : int
+        Place in the source of the run's first frame.
+    """
+
+    pipeline: Pipeline
+    asked: tuple[str, ...]
+    seed: int
+    verify: bool
+    ending: str
+    full: bool
+    long: bool
+    source: tuple[str, dict[str, Any]] | None
+    division: Division
+    start: int
+
+
+class Done(NamedTuple):
+    """What a portion came to.
+
+    Attributes
+    ----------
+    n_frames : int
+        How many frames were run; fewer than the portion has where ``error`` is told.
+    part : bytes
+        The file that they make alone.
+    tally : Tally
+    quantity : str
+        Of the last frame.
+    seconds : float
+        How long it took.
+    error : Exception or None
+        What ended it early.
+    irregular : bool
+        Whether the frames could not be read on their own.
+    """
+
+    n_frames: int = 0
+    part: bytes = b""
+    tally: Tally | None = None
+    quantity: str = ""
+    seconds: float = 0.0
+    error: Exception | None = None
+    irregular: bool = False
+
+
+_ready = threading.local()
+"""Jobs made ready, of each thread: a runner serves one."""
+
+
+def done(given: bytes, portion: Portion) -> Done:
+    """Return what a portion comes to; called in the workers, with a pickled `Job`."""
+    kept: OrderedDict[bytes, _Bench] = _ready.__dict__.setdefault("benches", OrderedDict())
+    if given not in kept:
+        kept[given] = _Bench(pickle.loads(given))
+        while len(kept) > MOST_KEPT:
+            kept.popitem(last=False)
+    begun = time.perf_counter()
+    came = kept[given].done(portion)
+    return came._replace(seconds=time.perf_counter() - begun)
+
+
+class _Bench:
+    """A job made ready."""
+
+    def __init__(self, job: Job) -> None:
+        warm_up()
+        self.job = job
+        self.columns = columns_of(job.pipeline, job.asked)
+        self.runner = self._new_runner()
+        self.ranges: Ranges | None = None
+        if job.source is not None:
+            step, settings = job.source
+            self.ranges = installed().step(step).target.ranges(**settings)  # type: ignore[attr-defined]
+
+    def _new_runner(self) -> Runner[Result]:
+        return self.job.pipeline.runner(self.job.asked, self.job.seed, self.job.verify)
+
+    def done(self, portion: Portion) -> Done:
+        """Return what a portion comes to."""
+        start = portion.low - self.job.start
+        tally = Tally(self.columns, n_looked=max(0, LOOKED_THROUGH - start))
+        ended: list[Exception] = []
+        quantity = ""
+        try:
+            with self._written() as (writer, part):
+                try:
+                    for came in self._results(portion):
+                        if isinstance(came, Block):
+                            tally.add_block(came)
+                            write_block(writer, came)
+                            quantity = came.frames.images.quantity
+                        else:
+                            tally.add(came)
+                            writer.write(came)
+                            quantity = came.frame.image.quantity
+                except Irregular:
+                    raise
+                except Exception as error:  # what was done before is kept
+                    ended.append(_for_the_way(error))
+        except Irregular:
+            return Done(irregular=True)
+        tally.outputs = []  # columns hold functions, and who asked knows them
+        return Done(tally.n, part[0], tally, quantity, error=ended[0] if ended else None)
+
+    def _results(self, portion: Portion) -> Iterator[Result | Block[Result]]:
+        if self.runner.stateful:
+            self.runner = self._settled(portion)
+        frames, pipeline = self._frames(portion), self.job.pipeline
+        if portion.high - self.job.start >= WORTH_BLOCKS:
+            return pipeline.blocks(frames, self.runner)
+        return pipeline.results(frames, self.runner)
+
+    def _settled(self, portion: Portion) -> Runner[Result]:
+        """Return a runner whose state is that of one that ran all frames before."""
+        memory = self.job.division.memory
+        back = sum(memory.values())
+        while True:
+            low = max(portion.start, portion.low - back)
+            runner, settling = self._new_runner(), Settling(memory)
+            before = Portion(low, portion.low, without=portion.without)
+            for frame in self._frames(before) if memory else ():
+                settling.add(runner(frame))
+            if settling.done or low == portion.start or not memory:
+                return runner
+            back *= FARTHER
+
+    def _frames(self, portion: Portion) -> Iterator[Frame]:
+        if portion.sent is not None:
+            frames: Iterator[Frame] = iter(unpacked(portion.sent)[: portion.n_frames])
+        else:
+            assert self.ranges is not None  # or they would have been sent
+            frames = self.ranges.read(portion.low, portion.high)
+        for place, frame in enumerate(frames, portion.low):
+            if place not in portion.without:
+                yield frame
+
+    @contextmanager
+    def _written(self) -> Iterator[tuple[Writer, list[bytes]]]:
+        """Give what takes results, and where their file is as bytes at the end."""
+        job = self.job
+        part: list[bytes] = []
+        with tempfile.TemporaryDirectory(prefix="tactile-graph-") as folder:
+            path = Path(folder, f"part{job.ending}")
+            output = Output.of(str(path), job.ending[1:], job.full, job.long)
+            assert output is not None
+            writer, _ = output.writer(job.pipeline, job.asked)
+            try:
+                yield writer, part
+            finally:
+                writer.close()
+            part.append(path.read_bytes())
+
+
+def _for_the_way(error: Exception) -> Exception:
+    """Return an error as it can be sent to another process."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        if isinstance(error, TactileGraphError):
+            return TactileGraphError(str(error))
+        return DataError("a worker", f"{type(error).__name__}: {error}")
+    return error

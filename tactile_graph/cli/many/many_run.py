@@ -1,0 +1,307 @@
+"""``run --workers`` from its first frame, or where an earlier one ended, to its closing lines."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.cli.arguments import Span
+from tactile_graph.cli.endings import SOME_FAILED
+from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.many.job import Done, Job, done
+from tactile_graph.cli.many.made_of import changed, device, made_of
+from tactile_graph.cli.many.unfinished import Unfinished
+from tactile_graph.cli.output.outputs import Output
+from tactile_graph.cli.output.progress import Bar
+from tactile_graph.cli.output.tally import Tally
+from tactile_graph.cli.terminal import console
+from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.table import make_table, units_of
+from tactile_graph.errors import UsageError
+from tactile_graph.files import uninterrupted, whole_file
+from tactile_graph.many.division import Division, division_of
+from tactile_graph.many.executor_kind import Place
+from tactile_graph.many.feed import Feed, absolute, ranges_of
+from tactile_graph.many.in_order import InOrder
+from tactile_graph.many.portion import Portion, packed
+from tactile_graph.provenance import provenance, sidecar, write_provenance
+from tactile_graph.steps.injected import Report
+from tactile_graph.steps.ranges import Ranges
+
+KILLER = "workers died of it each time: left out"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a run with workers."""
+
+    pipeline: Pipeline
+    only: tuple[str, ...]
+    span: Span
+    seed: int
+    output: Output
+    verify: bool
+    place: Place
+    resume: bool
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """What is asked of the pipeline."""
+        return self.only or tuple(self.pipeline.outputs)
+
+
+def division_for(asked: Asked) -> tuple[Division, Ranges | None]:
+    """Return how the frames may be divided, and what reads them in any order."""
+    ranges = ranges_of(asked.pipeline.source)
+    plan = asked.pipeline.runner(asked.only, asked.seed).plan
+    why_not = ""
+    if asked.output.exporter.joined is None:
+        why_not = f"parts of {asked.output.exporter.called} files cannot be joined"
+    return (Division({}, why_not=why_not) if why_not else division_of(plan, ranges)), ranges
+
+
+@dataclass
+class ManyRun:
+    """One run: portions of frames to workers, what they come to into one file."""
+
+    asked: Asked
+    division: Division
+    ranges: Ranges | None
+    interrupted: KeyboardInterrupt | None = None
+    error: Exception | None = None
+    left_out: list[int] = field(default_factory=list)
+    quantity: str = "raw"
+
+    def go(self) -> int:
+        """Run, say what came of it, and return the exit code."""
+        asked = self.asked
+        self.report = Report()
+        span = (asked.span.start, asked.span.stop)
+        self.feed = Feed(asked.pipeline, asked.seed, self.report, span, self.division, self.ranges)
+        self.columns = columns_of(asked.pipeline, asked.outputs)
+        self.tally = Tally(self.columns)
+        self.people, self.stderr = console(stderr=True), console(stderr=True)
+        self.bar = Bar(self.stderr, asked.pipeline.name)
+        self.low = asked.span.start
+        self.n_before = 0
+        name = asked.output.name
+        self.unfinished = Unfinished(name) if Unfinished.possible(name) else None
+        self._of = made_of(asked.pipeline, self._options()) if self.unfinished else {}
+        if asked.resume and self._is_done():
+            self.people.print(f"{name}: is done already", style="dim")
+            return 0
+        self._begin()
+        with Interrupts() as interrupts:
+            try:
+                self._run(interrupts.held)
+            finally:
+                if self.unfinished is not None:
+                    self.unfinished.close()
+        return self._close()
+
+    # -- what was done before ------------------------------------------------------------------
+
+    def _options(self) -> dict[str, Any]:
+        asked = self.asked
+        output = asked.output
+        span = [asked.span.start, asked.span.stop]
+        return {
+            "asked": asked.outputs, "seed": asked.seed, "span": span, "form": output.ending,
+            "full": output.full, "long": output.long, "memory": self.division.by_recording,
+        }  # fmt: skip
+
+    def _is_done(self) -> bool:
+        """Return whether the output stands there, whole, made of the same."""
+        import json
+
+        name = self.asked.output.name
+        try:
+            data = json.loads(sidecar(name).read_bytes())
+            return bool(data["made_of"] == self._of and data["bytes"] == Path(name).stat().st_size)
+        except (OSError, ValueError, KeyError, TypeError):
+            return False
+
+    def _begin(self) -> None:
+        """Begin anew, or find where an earlier run ended."""
+        if self.asked.resume:
+            self._refuse_what_cannot_go_on()
+        if self.unfinished is None:
+            return
+        before = self.unfinished.read() if self.asked.resume else None
+        if before is None:
+            self.unfinished.begin(self._of)
+            return
+        other = changed(before, self._of)
+        if other:
+            self.unfinished.close()
+            raise UsageError(
+                f"--resume: {self.asked.output.name} was begun with other content: {other}; "
+                "without --resume it is begun anew"
+            )
+        if self.unfinished.high is not None and self.unfinished.so_far is not None:
+            self._go_on(self.unfinished.high, self.unfinished.so_far)
+
+    def _refuse_what_cannot_go_on(self) -> None:
+        if self.unfinished is None:
+            raise UsageError(f"--resume: what went to {self.asked.output.name} is not known")
+        port = device(self.asked.pipeline)
+        if port:
+            raise UsageError(f"--resume: {port} gives its frames only once")
+
+    def _go_on(self, high: int, so_far: Mapping[str, Any]) -> None:
+        self.low = high
+        self.tally = Tally.of_kept(self.columns, so_far["tally"])
+        self.quantity = so_far["quantity"]
+        self.n_before = self.tally.n
+        for place in so_far["left_out"]:
+            self._leave_out(place)
+        self.people.print(f"going on from frame {high}", style="dim")
+
+    # -- the frames ----------------------------------------------------------------------------
+
+    def _run(self, held: Any) -> None:
+        output = self.asked.output
+        try:
+            if self.unfinished is None:
+                self._join(self._parts(held), None)
+                return
+            for _ in self._parts(held):
+                pass
+            if self.error is None:
+                with uninterrupted():
+                    self._join(self.unfinished.parts(), output.name)
+                    self._provenance()
+                    self.unfinished.remove()
+        except KeyboardInterrupt as error:
+            self.interrupted = error
+        finally:
+            self.bar.stop()
+
+    def _parts(self, held: Any) -> Iterator[bytes]:
+        """Yield what each portion came to, when it is kept."""
+        asked = self.asked
+        given = pickle.dumps(self._job())
+        with InOrder(asked.place, done, given, self._leave_out, self.left_out) as workers:
+            again = True
+            while again:
+                again = False
+                for portion, came in self._done(workers):
+                    if came.irregular:
+                        self.feed.send()
+                        workers.drop()
+                        again = True
+                        break
+                    with held:
+                        self._take(portion, came)
+                    yield came.part
+                    if came.error is not None:
+                        self.error = came.error
+                        return
+        if self.low == asked.span.start and self.error is None:
+            yield self._without_frames(given, held)
+
+    def _without_frames(self, given: bytes, held: Any) -> bytes:
+        """Return what the output is where no frame came."""
+        if self.asked.span.start:
+            got = self.ranges.n_frames if self.ranges else self.report.counts["frames"]
+            start = self.asked.span.start
+            raise UsageError(f"--frames {start}:…: the source gave only {got} frames")
+        nothing = Portion(self.low, self.low, packed([]))
+        came = done(given, nothing)
+        with held:
+            self._take(nothing, came)
+        return came.part
+
+    def _done(self, workers: InOrder[Done]) -> Iterator[tuple[Portion, Done]]:
+        try:
+            yield from workers.results(self.feed.portions(self.low, workers.n_workers))
+        except UsageError:
+            raise
+        except Exception as error:  # of the source, or of a cluster that is gone
+            self.error = error
+
+    def _job(self) -> Job:
+        asked, source = self.asked, self.asked.pipeline.source
+        reading = None
+        if self.feed.in_place and source is not None:
+            reading = (source.name, absolute(source.signature.arguments(source.settings)))
+        return Job(
+            asked.pipeline, asked.outputs, asked.seed, asked.verify, asked.output.ending,
+            asked.output.full, asked.output.long, reading, self.division, asked.span.start,
+        )  # fmt: skip
+
+    def _take(self, portion: Portion, came: Done) -> None:
+        assert came.tally is not None  # it is no irregular one
+        self.tally.join(came.tally)
+        self.quantity = came.quantity or self.quantity
+        self.feed.took(came.n_frames, came.seconds)
+        self.low = portion.high if came.error is None else portion.low + came.n_frames
+        if self.unfinished is not None:
+            so_far = {
+                "tally": self.tally.kept(), "quantity": self.quantity, "left_out": self.left_out,
+            }  # fmt: skip
+            self.unfinished.add(self.low, came.part, so_far)
+        self.bar.at(self.tally.n, self.asked.span.expected(self.report.n_expected))
+
+    def _leave_out(self, place: int) -> None:
+        self.left_out.append(place)
+        self.report.count("frames left out, of which workers died")
+        self.report.trouble(f"frame {place}", KILLER)
+
+    def _join(self, parts: Iterator[bytes], name: str | None) -> None:
+        joined = self.asked.output.exporter.joined
+        assert joined is not None  # or the frames would not have been divided
+        if name is None:
+            joined(parts, sys.stdout.buffer)
+            return
+        with whole_file(name) as file:
+            joined(parts, file)
+            self.n_bytes = file.tell()
+
+    # -- the end -------------------------------------------------------------------------------
+
+    def _close(self) -> int:
+        if self.tally.n or self.error is None:
+            came = self.interrupted
+            self.tally.close(self.people, self.report, words_of(came) if came else "")
+            self._say_where()
+        if self.error is not None:
+            raise self.error
+        if self.interrupted is not None:
+            return code_of(self.interrupted)
+        tally = self.tally
+        failed = tally.n_failed or tally.n_items_failed or tally.not_finite or self.left_out
+        return SOME_FAILED if failed else 0
+
+    def _say_where(self) -> None:
+        name = self.asked.output.name
+        if self.interrupted is None and self.error is None:
+            text = "" if name == "-" else f"wrote {name}"
+        elif self.unfinished is not None:
+            text = f"{self.tally.n} frames are kept: --resume goes on with {name}"
+        else:
+            text = ""
+        if text:
+            self.people.print(text, style="dim", soft_wrap=True)
+
+    def _provenance(self) -> None:
+        asked = self.asked
+        if self.feed.in_place:
+            self.report.counts["frames"] += self.low
+        units = None
+        if asked.output.exporter.holds == "numbers":
+            table = make_table(asked.pipeline, asked.outputs, asked.output.long)
+            units = units_of(table, self.quantity)
+        data = provenance(
+            asked.pipeline, asked.seed, self.report,
+            command=["tactile-graph", *sys.argv[1:]], complete=True,
+            asked=list(asked.outputs), columns=units,
+            frames={"from": asked.span.start, "to": asked.span.stop}, result=self.tally.data(),
+            made_of=self._of, bytes=self.n_bytes,
+        )  # fmt: skip
+        write_provenance(asked.output.name, data)

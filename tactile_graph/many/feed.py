@@ -1,0 +1,144 @@
+"""A source's frames in portions: by number where workers read them, sent along where not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.many.division import Division
+from tactile_graph.many.portion import Portion, packed
+from tactile_graph.pipeline.graph import Source
+from tactile_graph.steps.injected import Report
+from tactile_graph.steps.ranges import Ranges
+from tactile_graph.wires.frame import Frame
+
+GOAL_S = 0.5
+"""How long a worker should take over a portion: long beside the way to it, short for people."""
+FIRST, MOST = 16, 4096
+GROWTH = 4
+"""Times that a portion may be longer than the one before."""
+MOST_BYTES = 1_000_000
+"""Of the frames that are sent with a portion."""
+
+
+def ranges_of(source: Source | None) -> Ranges | None:
+    """Return what reads a source's frames in any order; None if nothing does."""
+    offered = getattr(source.signature.target, "ranges", None) if source is not None else None
+    if source is None or offered is None:
+        return None
+    found: Ranges | None = offered(**source.signature.arguments(source.settings))
+    return found
+
+
+def absolute(settings: dict[str, Any]) -> dict[str, Any]:
+    """Return a source's settings with paths that hold in any folder."""
+
+    def of(value: Any) -> Any:
+        if isinstance(value, list):
+            return [of(v) for v in value]
+        return value.absolute() if isinstance(value, Path) else value
+
+    return {name: of(value) for name, value in settings.items()}
+
+
+class Feed:
+    """The portions of a run.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    seed : int
+        Of the source, if it takes one.
+    report : Report
+        Receives what the source has to say.
+    span : (int, int or None)
+        Which frames, by their place in the source.
+    division : Division
+    ranges : Ranges, optional
+    """
+
+    def __init__(
+        self,
+        pipeline: Pipeline,
+        seed: int,
+        report: Report,
+        span: tuple[int, int | None],
+        division: Division,
+        ranges: Ranges | None,
+    ) -> None:
+        self._pipeline, self._seed, self._report = pipeline, seed, report
+        self._division, self._ranges = division, ranges
+        low, high = span
+        self.start = low
+        self._stop = high
+        self._size = FIRST
+        if ranges is not None:
+            n = ranges.n_frames
+            self._stop = n if high is None else min(high, n)
+            report.expect(n)
+
+    @property
+    def in_place(self) -> bool:
+        """Whether workers read the frames themselves."""
+        return self._ranges is not None
+
+    def portions(self, low: int, n_workers: int) -> Iterator[Portion]:
+        """Yield the portions from the frame at a place on."""
+        if self._ranges is not None:
+            return self._read(low, n_workers, self._ranges)
+        return self._sent(low)
+
+    def send(self) -> None:
+        """Send frames from now on: they cannot be read in any order."""
+        self._ranges = None
+        self._report.n_expected = None  # the source will say so itself
+
+    def took(self, n_frames: int, seconds: float) -> None:
+        """Learn from how long a portion took how long the next ones should be."""
+        if n_frames > 0 and seconds > 0.0:
+            wanted = int(GOAL_S * n_frames / seconds)
+            self._size = max(1, min(wanted, GROWTH * max(n_frames, FIRST), MOST))
+
+    def _read(self, low: int, n_workers: int, ranges: Ranges) -> Iterator[Portion]:
+        stop = ranges.n_frames if self._stop is None else self._stop
+        start = 0
+        for n in ranges.recordings:
+            end = min(start + n, stop)
+            whole = self._division.by_recording
+            while low < end:
+                size = n if whole else self._whole_chunks(low, stop, n_workers, ranges.together)
+                high = min(low + size, end)
+                yield Portion(low, high, start=low if whole else self.start)
+                low = high
+            start += n
+
+    def _whole_chunks(self, low: int, stop: int, n_workers: int, together: int) -> int:
+        """Return how long a portion is: of whole chunks, and shorter towards the end."""
+        size = min(self._size, max(1, (stop - low) // (2 * n_workers)))
+        if size < together:
+            return min(size, together - low % together)
+        return (low + size) // together * together - low
+
+    def _sent(self, low: int) -> Iterator[Portion]:
+        with closing(self._pipeline.frames(self._seed, self._report)) as frames:  # type: ignore[type-var]
+            wanted = islice(frames, low, self._stop)
+            while True:
+                taken = self._taken(wanted)
+                if not taken:
+                    return
+                yield Portion(low, low + len(taken), packed(taken))
+                low += len(taken)
+
+    def _taken(self, frames: Iterator[Frame]) -> list[Frame]:
+        taken: list[Frame] = []
+        n_bytes = 0
+        for frame in islice(frames, self._size):
+            taken.append(frame)
+            n_bytes += frame.image.values.nbytes
+            if n_bytes >= MOST_BYTES:
+                break
+        return taken

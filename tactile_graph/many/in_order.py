@@ -1,0 +1,223 @@
+"""Portions of frames done by workers, what they come to in order, whatever becomes of a worker.
+
+No more portions are under way than the workers can use, so that memory stays flat however far the
+frames come ahead of what is written. What a worker had when it died is done again. A frame at which
+workers die each time is found by halving, told, and left out.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Future
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from tactile_graph.errors import DataError
+from tactile_graph.many.executor_kind import Opened, Place
+from tactile_graph.many.portion import Portion
+
+AHEAD = 2
+"""Portions under way for each worker: one that it does, and one that waits for it."""
+TOLERATED = 2
+"""Deaths with a portion under way before it is done with no other beside it."""
+DEADLY = 2
+"""Deaths over the same frames, alone, by which these are to blame."""
+BROKE = (BrokenExecutor, OSError, EOFError)
+"""What an executor raises that is given work and cannot have it done any more."""
+Done = TypeVar("Done")
+
+
+@dataclass
+class _Under:
+    """A portion under way."""
+
+    portion: Portion
+    future: Future[Any]
+    n_deaths: int = 0
+
+
+class InOrder(Generic[Done]):
+    """An executor at work on portions.
+
+    Parameters
+    ----------
+    place : Place
+        Where; it is opened when the first portion comes.
+    work : callable
+        A function of a module, called by workers with ``given`` and a portion.
+    given : bytes
+        What is the same for all of them.
+    left_out : callable
+        Told the place of each frame that is left out because workers died of it.
+    without : iterable of int
+        Places of frames that are known to be left out.
+    """
+
+    def __init__(
+        self,
+        place: Place,
+        work: Callable[[bytes, Portion], Done],
+        given: bytes,
+        left_out: Callable[[int], None],
+        without: Iterable[int] = (),
+    ) -> None:
+        self._place = place
+        self._work = work
+        self._given = given
+        self._tell = left_out
+        self._opened: Opened | None = None
+        self._under: deque[_Under] = deque()
+        self._without = frozenset(without)
+        self._why = ""
+        self.n_deaths = 0
+        """How often a worker died."""
+
+    @property
+    def n_workers(self) -> int:
+        """How many portions are done at the same time."""
+        return self._at_work().n_workers
+
+    def __enter__(self) -> InOrder[Done]:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._opened is not None:
+            self._opened.end()
+            self._opened = None
+
+    def results(self, portions: Iterator[Portion]) -> Iterator[tuple[Portion, Done]]:
+        """Yield each portion and what it came to, in order; errors of the work are raised.
+
+        A portion is taken only when there is room for it: when what an earlier one came to was
+        taken.
+        """
+        more = True
+        while more or self._under:
+            while more and len(self._under) < AHEAD * self.n_workers + 1:
+                portion = next(portions, None)
+                more = portion is not None
+                if portion is not None:
+                    self._under.append(self._submitted(portion))
+            if self._under:
+                done = self._first_done()
+                yield self._under.popleft().portion, done
+
+    def drop(self) -> None:
+        """Forget the portions under way: others are to come in their place."""
+        while self._under:
+            self._under.pop().future.cancel()
+
+    # -- what becomes of a portion -------------------------------------------------------------
+
+    def _at_work(self) -> Opened:
+        if self._opened is None:
+            self._opened = self._place.opened()
+        return self._opened
+
+    def _submitted(self, portion: Portion, n_deaths: int = 0) -> _Under:
+        portion = portion.leaving_out(self._without)
+        try:
+            future = self._at_work().executor.submit(self._work, self._given, portion)
+        except BROKE as error:  # since, which the portions under way do not know
+            future = Future()
+            future.set_exception(BrokenExecutor(str(error)))
+        return _Under(portion, future, n_deaths)
+
+    def _first_done(self) -> Done:
+        """Return what the first portion under way came to, done again for as long as it takes."""
+        first = self._under[0]
+        while True:
+            try:
+                result: Done = first.future.result()
+                return result
+            except self._at_work().died as death:
+                self._mend(death)
+            if first.n_deaths >= TOLERATED:
+                return self._alone(first)
+            first = self._under[0]
+
+    def _mend(self, death: BaseException) -> None:
+        """Open another executor where this one broke, and submit again what was lost with it."""
+        self.n_deaths += 1
+        opened = self._at_work()
+        broken = isinstance(death, BrokenExecutor)
+        if broken:
+            opened.end()
+            self._opened = None
+        for under in self._under:
+            if (broken and not _has_result(under.future)) or _died(under.future, opened.died):
+                again = self._submitted(under.portion, under.n_deaths + 1)
+                under.portion, under.future = again.portion, again.future
+                under.n_deaths = again.n_deaths
+
+    # -- which frame is to blame ---------------------------------------------------------------
+
+    def _alone(self, under: _Under) -> Done:
+        """Return what a portion comes to with no other beside it, so that nobody else can die."""
+        for other in list(self._under)[1:]:
+            other.future.cancel()
+        result = self._blameless(under)
+        for other in list(self._under)[1:]:
+            if not _has_result(other.future):
+                again = self._submitted(other.portion)
+                other.portion, other.future, other.n_deaths = again.portion, again.future, 0
+        return result
+
+    def _blameless(self, under: _Under) -> Done:
+        portion = under.portion
+        while True:
+            for _ in range(DEADLY):
+                lived, result = self._tried(portion)
+                if lived and result is not None:
+                    under.portion = portion
+                    return result
+            place = self._deadly_place(portion)
+            if place is not None:
+                self._without |= {place}
+                self._tell(place)
+                portion = portion.leaving_out(self._without)
+
+    def _deadly_place(self, portion: Portion) -> int | None:
+        """Return the frame without which the frames before it kill nobody; None if none does.
+
+        The fewest first frames that kill are found by halving; the last of them is to blame.
+
+        Raises
+        ------
+        DataError
+            If workers die without any frame.
+        """
+        if not any(self._tried(portion.first(0))[0] for _ in range(DEADLY)):
+            raise DataError("workers", f"they die before their first frame, {self._why}")
+        lives, kills = 0, portion.n_frames
+        while kills - lives > 1:
+            half = (lives + kills) // 2
+            if self._tried(portion.first(half))[0]:
+                lives = half
+            else:
+                kills = half
+        again = self._tried(portion.first(kills))[0]  # or somebody else killed it in the meantime
+        return None if again else portion.low + kills - 1
+
+    def _tried(self, portion: Portion) -> tuple[bool, Done | None]:
+        """Return whether a worker lives through a portion, and what it came to."""
+        while True:
+            try:
+                under = self._submitted(portion)
+                return True, under.future.result()
+            except self._at_work().died as death:
+                self.n_deaths += 1
+                self._why = str(death)
+                if isinstance(death, BrokenExecutor):
+                    self._at_work().end()
+                    self._opened = None
+                return False, None
+
+
+def _has_result(future: Future[Any]) -> bool:
+    return future.done() and not future.cancelled() and future.exception() is None
+
+
+def _died(future: Future[Any], died: tuple[type[BaseException], ...]) -> bool:
+    return future.done() and not future.cancelled() and isinstance(future.exception(), died)

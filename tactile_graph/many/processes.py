@@ -1,0 +1,78 @@
+"""The executor ``processes``: workers on this machine, that end with the process they are of."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing.connection import Connection
+from multiprocessing.context import BaseContext
+
+from tactile_graph.errors import UsageError
+from tactile_graph.many.executor_kind import ExecutorKind, Opened
+from tactile_graph.plugins.registry import restrict, selected
+
+
+def opened(address: str, n_workers: int | None) -> Opened:
+    """Return so many processes, of one for each core if nobody said how many.
+
+    Raises
+    ------
+    UsageError
+        If an address is given: they are here.
+    """
+    if address:
+        raise UsageError(f"--on processes={address}: processes are on this machine; no address")
+    n = n_workers or os.cpu_count() or 1
+    context = _context()
+    # Workers have no other end of it: when it closes, or this process dies, they see its end.
+    lifeline, held = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(n, context, _begin, (lifeline, selected()))
+
+    def end() -> None:
+        held.close()
+        pool.shutdown(wait=False, cancel_futures=True)
+        lifeline.close()
+
+    return Opened(pool, n, end)
+
+
+def _context() -> BaseContext:
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(_imported())
+    return context
+
+
+def _imported() -> list[str]:
+    """Return what this process has imported, for workers to be forked from one that has it too.
+
+    That process runs no threads. Of other packages it imports the outermost module only.
+    """
+    names = [n for n in sys.modules if n.startswith("tactile_graph") and n != "tactile_graph.cli"]
+    others = {n.partition(".")[0] for n in sys.modules} - sys.stdlib_module_names
+    return names + sorted(n for n in others if n.isidentifier() and not n.startswith("_"))
+
+
+def _begin(lifeline: Connection, selection: str) -> None:
+    """Get a worker ready: it is ended by its lifeline, not by Ctrl-C, and prints to stderr."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    if sys.stderr is not None:
+        os.dup2(2, 1)  # stdout may be kept for programs
+    restrict(selection)
+
+
+def _end_with(lifeline: Connection) -> None:
+    try:
+        lifeline.recv_bytes()
+    except (EOFError, OSError):
+        os._exit(1)
+
+
+PROCESSES = ExecutorKind("local processes", opened)

@@ -1,0 +1,138 @@
+"""What tests of many frames share: executors that do as they are told, and a plugin that kills."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from concurrent.futures import BrokenExecutor, Executor, Future
+from pathlib import Path
+from typing import Any
+
+from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
+
+PLUGIN = '''
+import os
+import time
+from collections import deque
+
+from tactile_graph import Frame, Image, hookimpl
+
+
+@hookimpl
+def tactile_graph_steps():
+    return {"deadly": "deadly:deadly", "counted": "deadly:Counted", "lately": "deadly:Lately"}
+
+
+def deadly(frame: Frame, *, at: list[int] = [], slow_s: float = 0.0) -> Image:
+    """Give the image, or kill the process."""
+    if frame.index in at:
+        os.kill(os.getpid(), 9)
+    time.sleep(slow_s)
+    return frame.image
+
+
+class Lately:
+    """Give the mean total of the last few frames that it ran on."""
+
+    def __init__(self, *, frames: int = 5) -> None:
+        self.totals = deque(maxlen=frames)
+        self.remembers = frames
+
+    def __call__(self, frame: Frame) -> float:
+        """Return it."""
+        self.totals.append(frame.image.total)
+        return float(sum(self.totals) / len(self.totals))
+
+
+class Counted:
+    """Count frames for ever, so that no frame can do without those before it."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(self, frame: Frame) -> float:
+        """Return how many frames came."""
+        self.n += 1
+        return float(self.n)
+'''
+PIPELINE = """
+pipeline: deadly
+about: Kills whoever runs some of its frames
+source: {step: sample}
+nodes:
+  image: {step: deadly, in: frame}
+  footprint: {step: threshold, in: image, with: {level_v: 0.01}}
+outputs: [footprint]
+"""
+
+
+def write_plugin(folder: Path) -> None:
+    """Write the plugin, as if it were installed there, and a pipeline of its step."""
+    about = folder / "deadly-0.0.dist-info"
+    about.mkdir()
+    (folder / "deadly.py").write_text(PLUGIN)
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: deadly\nVersion: 0.0\n")
+    (about / "entry_points.txt").write_text("[tactile_graph]\ndeadly = deadly\n")
+    (folder / "deadly.yaml").write_text(PIPELINE)
+
+
+def command(*words: str) -> list[str]:
+    """Return the words that run the command line in a process of its own."""
+    return [sys.executable, "-P", "-m", "tactile_graph", *words]
+
+
+def surroundings(folder: Path) -> dict[str, str]:
+    """Return the environment in which the plugin of a folder is installed."""
+    return {**os.environ, "PYTHONPATH": str(folder)}
+
+
+def ran(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a folder, and return what came of it."""
+    return subprocess.run(
+        command(*words), cwd=folder, env=surroundings(folder), capture_output=True, text=True,
+        timeout=300, check=False,
+    )  # fmt: skip
+
+
+class Here(Executor):
+    """Does at once what it is given; frames among ``deadly`` break it for good.
+
+    Parameters
+    ----------
+    deadly : set of int
+    chance : list of int
+        Frames that break it once each, and are taken out then.
+    """
+
+    def __init__(self, deadly: set[int], chance: list[int]) -> None:
+        self.deadly, self.chance, self.broken = deadly, chance, False
+
+    def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        if self.broken:
+            raise BrokenExecutor
+        future: Future[Any] = Future()
+        portion = args[1]
+        frames = set(range(portion.low, portion.high)) - portion.without
+        once = [f for f in self.chance if f in frames]
+        if once:
+            self.chance.remove(once[0])
+        self.broken = bool(once or frames & self.deadly)
+        if self.broken:
+            future.set_exception(BrokenExecutor())
+        else:
+            try:
+                future.set_result(function(*args))
+            except Exception as error:
+                future.set_exception(error)
+        return future
+
+
+def place(deadly: set[int] | None = None, chance: list[int] | None = None, n: int = 2) -> Place:
+    """Return an executor in this process, opened as often as it breaks."""
+    once = chance if chance is not None else []
+
+    def opened(address: str, n_workers: int | None) -> Opened:
+        return Opened(Here(deadly or set(), once), n, lambda: None)
+
+    return Place(ExecutorKind("this process", opened), "", n)

@@ -1,0 +1,283 @@
+"""``run --workers``: the file that one process writes, whatever becomes of the workers."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from helpers_many import command, ran, surroundings, write_plugin
+from tactile_graph.cli import cli
+
+pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+DISCS = ("--source", "simulate", "--with", "scene=discs")
+LATELY = """
+pipeline: lately
+about: Remembers a few frames, of those in which anything lies there
+source: {step: sample}
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  mean: {step: lately, in: frame, when: footprint.count > 8, with: {frames: 4}}
+  counted: {step: deadly, in: frame}
+outputs: [mean]
+"""
+ENDLESS = """
+pipeline: endless
+about: Counts for ever
+source: {step: sample}
+nodes:
+  n: {step: counted, in: frame}
+outputs: [n]
+"""
+unlike_windows = pytest.mark.skipif(sys.platform == "win32", reason="sends POSIX's signals")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return where a store lies, and a plugin is installed."""
+    path = tmp_path_factory.mktemp("many")
+    write_plugin(path)
+    (path / "lately.yaml").write_text(LATELY)
+    (path / "endless.yaml").write_text(ENDLESS)
+    for name, seed in (("a.zarr", "1"), ("b.zarr", "2")):
+        got = ran(path, "convert", name, *DISCS, "--with", "frames=700", "--seed", seed)
+        assert got.returncode == 0, got.stderr
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(folder: Path) -> bytes:
+    """Return what one process writes of the recording that runs are killed over."""
+    return written(folder, "whole.csv", "deadly.yaml", "a.zarr")[0]
+
+
+def written(folder: Path, name: str, *words: str) -> tuple[bytes, str]:
+    """Return what a run wrote, and what it said."""
+    got = ran(folder, "run", *words, "-o", name)
+    assert got.returncode == 0, got.stderr
+    return (folder / name).read_bytes(), got.stderr
+
+
+# -- the same file -----------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", [
+    ("circle-1", "a.zarr", "b.zarr"),
+    ("circle-1", *DISCS, "--frames", "300"),
+    ("circle-1", "a.zarr", "--frames", "90:501"),
+    ("lately.yaml", "a.zarr", "b.zarr", "--frames", "3:1200"),
+], ids=["in place", "sent", "a span", "few remembered"])  # fmt: skip
+@pytest.mark.parametrize("ending", [".csv", ".jsonl"])
+def test_two_workers_write_what_one_process_does(
+    folder: Path, words: tuple[str, ...], ending: str
+) -> None:
+    one, _ = written(folder, f"one{ending}", *words)
+    two, _ = written(folder, f"two{ending}", *words, "--workers", "2")
+    assert one == two
+    meta = [json.loads((folder / f"{n}{ending}.meta.json").read_text()) for n in ("one", "two")]
+    assert meta[0]["result"] == meta[1]["result"]
+    assert meta[0]["source"]["counts"]["frames"] == meta[1]["source"]["counts"]["frames"]
+
+
+@pytest.fixture(scope="module")
+def pressed(folder: Path) -> Path:
+    """Return a recording long enough for blocks, of which few frames say more than their values.
+
+    A disc comes and goes; one cell has no reading once.
+    """
+    k = np.arange(2600)
+    row, column = np.mgrid[:16, :16]
+    x, y = 7.5 + 2.0 * np.sin(k / 50.0), 7.5 + np.cos(k / 30.0)
+    away = np.hypot(column - x[:, None, None], row - y[:, None, None])
+    values = np.where(away < 4.3, 0.3, 0.0) * (k % 70 < 60)[:, None, None]
+    values += 1e-4 * np.random.default_rng(0).random(values.shape)
+    values[2200, 3, 3] = np.nan
+    grid = {"pitch_cm": np.array((1.3, 1.3)), "origin_cm": np.zeros(2), "quantity": "volt"}
+    np.savez(folder / "c.npz", values=values, time_s=0.02 * k, **grid)  # type: ignore[arg-type]
+    got = ran(folder, "convert", "c.npz", "c.zarr")
+    assert got.returncode == 0, got.stderr
+    return folder / "c.npz"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "ending"), [("c.npz", ".csv"), ("c.zarr", ".jsonl")])
+def test_workers_run_blocks_as_one_process_does(
+    folder: Path, pressed: Path, name: str, ending: str
+) -> None:
+    one, _ = written(folder, f"b1{ending}", "circle-3", name)
+    two, _ = written(folder, f"b2{ending}", "circle-3", name, "--workers", "2")
+    assert one == two
+    assert one.count(b"skipped") > 300
+    meta = [json.loads((folder / f"{n}{ending}.meta.json").read_text()) for n in ("b1", "b2")]
+    assert meta[0]["result"] == meta[1]["result"]
+
+
+@pytest.mark.slow
+def test_parquet_holds_the_same_rows(folder: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet", reason="the 'parquet' extra is missing")
+    for name, more in (("one.parquet", ()), ("two.parquet", ("--workers", "2"))):
+        written(folder, name, "circle-1", "a.zarr", *more)
+    one, two = (parquet.read_table(folder / n) for n in ("one.parquet", "two.parquet"))
+    assert one.equals(two, check_metadata=True)
+
+
+@pytest.mark.slow
+def test_lines_go_to_stdout_as_they_come(folder: Path) -> None:
+    words = ("run", "circle-1", "a.zarr", "--frames", "50", "-o", "-", "--format", "csv")
+    assert ran(folder, *words).stdout == ran(folder, *words, "--workers", "2").stdout
+
+
+@pytest.mark.slow
+def test_no_frames_make_an_empty_file(folder: Path) -> None:
+    words = ("circle-1", "--source", "simulate", "--with", "frames=0")
+    assert written(folder, "e1.csv", *words)[0] == written(folder, "e2.csv", *words, "--workers",
+                                                            "2")[0]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_endless_state_goes_by_recording_or_in_one_process_and_is_told(folder: Path) -> None:
+    _, said = written(folder, "n1.csv", "endless.yaml", "a.zarr", "--workers", "2")
+    assert "in one process: n keeps state" in said
+    both, said = written(folder, "n2.csv", "endless.yaml", "a.zarr", "b.zarr", "--workers", "2")
+    assert "state starts anew with each" in said
+    counts = [float(row.split(b",")[-1]) for row in both.splitlines()[1:]]
+    assert counts == [*range(1, 701), *range(1, 701)]
+
+
+# -- what is refused ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    (("--workers", "2"), "are for files: give -o FILE.jsonl"),
+    (("--workers", "2", "-o", "a.csv", "--plot", "a.svg"), "workers draw nothing"),
+    (("--workers", "0", "-o", "a.csv"), "not in the range x>=1"),
+    (("--on", "nowhere", "-o", "a.csv"), "is no executor"),
+    (("--resume", "-o", "-"), "what went to - is not known"),
+])  # fmt: skip
+def test_what_workers_have_no_place_for_is_refused(words: tuple[str, ...], told: str) -> None:
+    got = CliRunner().invoke(cli, ["run", "circle-1", *words])
+    assert got.exit_code == 2
+    assert told in " ".join(got.output.split()) or told in str(got.exception)
+
+
+# -- what becomes of workers and of the run ----------------------------------------------------
+
+
+class Running:
+    """A run in a process of its own."""
+
+    def __init__(self, folder: Path, name: str, *more: str) -> None:
+        self.folder, self.name = folder, name
+        self.words = ("run", "deadly.yaml", "a.zarr", "--workers", "2", "-o", name, *more)
+        self.process = subprocess.Popen(
+            command(*self.words), cwd=folder, env=surroundings(folder), stderr=subprocess.PIPE,
+            text=True, start_new_session=True,
+        )  # fmt: skip
+
+    def wait_until(self, so: Callable[[], bool]) -> None:
+        until = time.monotonic() + 120.0
+        while not so():
+            assert self.process.poll() is None, self.process.stderr and self.process.stderr.read()
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
+    def keeps_something(self) -> bool:
+        journal = self.folder / f".{self.name}.journal"
+        return journal.exists() and journal.read_bytes().count(b"\n") > 3
+
+    def workers(self) -> list[int]:
+        """Return the processes that work for it."""
+        listed = subprocess.run(
+            ["ps", "-eo", "pid,ppid,sid"], capture_output=True, text=True, check=True
+        ).stdout
+        rows = [tuple(map(int, line.split())) for line in listed.splitlines()[1:]]
+        own = self.process.pid
+        first = {pid for pid, parent, _ in rows if parent == own}
+        return [pid for pid, parent, _ in rows if parent in first]
+
+    def session(self) -> list[int]:
+        """Return all processes of it that are left."""
+        listed = subprocess.run(
+            ["ps", "-eo", "pid,sid,stat"], capture_output=True, text=True, check=True
+        ).stdout
+        rows = [line.split() for line in listed.splitlines()[1:]]
+        return [int(p) for p, s, stat in rows if int(s) == self.process.pid and "Z" not in stat]
+
+    def end(self) -> str:
+        _, said = self.process.communicate(timeout=240)
+        return said
+
+    def all_gone(self) -> bool:
+        until = time.monotonic() + 20.0
+        while self.session() and time.monotonic() < until:
+            time.sleep(0.1)
+        return not self.session()
+
+
+@pytest.mark.slow
+def test_a_deadly_frame_is_told_and_left_out(folder: Path, whole: bytes) -> None:
+    got = ran(folder, "run", "deadly.yaml", "a.zarr", "--frames", "200", "--workers", "2",
+              "--set", "image.at=[150]", "-o", "d.csv")  # fmt: skip
+    assert got.returncode == 1
+    assert "frame 150: workers died of it each time: left out" in got.stderr
+    rows = whole.splitlines(keepends=True)[:201]
+    assert (folder / "d.csv").read_bytes() == b"".join(rows[:151] + rows[152:])
+
+
+@pytest.mark.slow
+@unlike_windows
+def test_killed_workers_lose_nothing(folder: Path, whole: bytes) -> None:
+    running = Running(folder, "k.csv", "--set", "image.slow_s=0.01")
+    for _ in range(2):
+        running.wait_until(lambda: len(running.workers()) == 2)
+        time.sleep(0.5)
+        os.kill(running.workers()[0], signal.SIGKILL)
+        time.sleep(0.3)
+    assert "700 frames" in running.end()
+    assert (folder / "k.csv").read_bytes() == whole
+
+
+@pytest.mark.slow
+@unlike_windows
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_an_ended_run_ends_its_workers_and_goes_on_with_resume(
+    folder: Path, whole: bytes, number: signal.Signals
+) -> None:
+    name = f"{number.name}.csv"
+    running = Running(folder, name, "--set", "image.slow_s=0.005")
+    running.wait_until(running.keeps_something)
+    running.process.send_signal(number)
+    said = running.end()
+    assert running.all_gone()
+    assert not (folder / name).exists()
+    if number != signal.SIGKILL:
+        assert running.process.returncode == 128 + number
+        assert re.search(rf"\d+ frames are kept: --resume goes on with {name}", said)
+    got = ran(folder, *running.words, "--resume")
+    assert "going on from frame" not in got.stdout
+    assert "700 frames" in got.stderr, got.stderr
+    assert (folder / name).read_bytes() == whole
+    assert "is done already" in ran(folder, *running.words, "--resume").stderr
+
+
+@pytest.mark.slow
+@unlike_windows
+def test_what_has_changed_since_is_not_gone_on_with(folder: Path) -> None:
+    running = Running(folder, "c.csv", "--set", "image.slow_s=0.01")
+    running.wait_until(running.keeps_something)
+    running.process.send_signal(signal.SIGINT)
+    running.end()
+    got = ran(folder, *(w.replace("0.01", "0.0") for w in running.words), "--resume")
+    assert got.returncode == 2
+    assert "c.csv was begun with other content: the pipeline or its settings" in got.stderr

@@ -1,0 +1,103 @@
+"""Portions done by workers: in order, no more at a time than there is use for, none lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from threading import Event
+from typing import Any
+
+import pytest
+
+from helpers_many import place
+from tactile_graph.errors import DataError
+from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
+from tactile_graph.many.in_order import AHEAD, InOrder
+from tactile_graph.many.portion import Portion
+
+SIZE = 10
+
+
+def frames(given: bytes, portion: Portion) -> list[int]:
+    """Return which frames came: what a worker does here."""
+    return [k for k in range(portion.low, portion.high) if k not in portion.without]
+
+
+def portions(n: int) -> Iterator[Portion]:
+    return (Portion(k, k + SIZE) for k in range(0, n * SIZE, SIZE))
+
+
+def done(where: Place, n: int = 6) -> tuple[list[int], list[int]]:
+    """Return the frames that came back, and those that were left out."""
+    left_out: list[int] = []
+    with InOrder(where, frames, b"", left_out.append) as workers:
+        came = [k for _, got in workers.results(portions(n)) for k in got]
+    return came, left_out
+
+
+def test_what_portions_come_to_comes_in_order_and_whole() -> None:
+    assert done(place()) == (list(range(60)), [])
+
+
+def test_a_worker_that_is_killed_loses_nothing() -> None:
+    assert done(place(chance=[3, 17, 17, 58])) == (list(range(60)), [])
+
+
+@pytest.mark.parametrize("deadly", [{0}, {59}, {25}, {20, 29}, {3, 4, 5, 33}])
+def test_deadly_frames_are_found_told_and_left_out(deadly: set[int]) -> None:
+    came, left_out = done(place(deadly))
+    assert came == [k for k in range(60) if k not in deadly]
+    assert left_out == sorted(deadly)
+
+
+def test_chance_deaths_beside_a_deadly_frame_blame_no_other() -> None:
+    came, left_out = done(place({12}, chance=[11, 13, 14, 40]))
+    assert (came, left_out) == ([k for k in range(60) if k != 12], [12])
+
+
+def test_workers_that_die_without_any_frame_end_it_and_blame_none() -> None:
+    class Down(Executor):
+        def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+            raise EOFError("no process to be had")
+
+    down = Place(ExecutorKind("down", lambda a, n: Opened(Down(), 2, lambda: None)), "", 2)
+    with pytest.raises(DataError, match="die before their first frame, no process to be had"):
+        done(down)
+
+
+def test_an_error_of_the_work_is_raised_in_its_turn() -> None:
+    def broken(given: bytes, portion: Portion) -> list[int]:
+        if portion.low == 30:
+            raise ValueError("no such frame")
+        return frames(given, portion)
+
+    with InOrder(place(), broken, b"", [].append) as workers:
+        results = workers.results(portions(6))
+        came = [k for _ in range(3) for k in next(results)[1]]
+        with pytest.raises(ValueError, match="no such frame"):
+            next(results)
+    assert came == list(range(30))
+
+
+def test_no_more_portions_are_taken_than_workers_have_use_for() -> None:
+    go_on = Event()
+    taken = []
+
+    def work(given: bytes, portion: Portion) -> list[int]:
+        go_on.wait(10)
+        return frames(given, portion)
+
+    def watched() -> Iterator[Portion]:
+        for portion in portions(50):
+            taken.append(portion.low)
+            yield portion
+
+    pool = ThreadPoolExecutor(2)
+    where = Place(ExecutorKind("threads", lambda a, n: Opened(pool, 2, pool.shutdown)), "", 2)
+    most = 0
+    with InOrder(where, work, b"", [].append) as workers:
+        go_on.set()
+        for portion, _ in workers.results(watched()):
+            most = max(most, (taken[-1] - portion.low) // SIZE + 1)
+    assert most <= AHEAD * 2 + 1
+    assert len(taken) == 50
