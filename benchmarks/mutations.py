@@ -708,7 +708,9 @@ def killer(mutant: Mutant, tests: Tests) -> str:
         found = in_a_child(stage, mutant, limit_s, stop=True, cache=cache)
         if found["code"] == -9:
             return "time"
-        if found["code"] == NO_SUCH_TEST:
+        if found["code"] == NO_SUCH_TEST:  # also where no test can be begun
+            if in_a_child(stage, None, limit_s, stop=True, cache=cache)["code"] != NO_SUCH_TEST:
+                return "import"
             raise SystemExit("tests have changed; take away what --kept holds of them")
         if found["code"]:
             return str((found.get("failed") or ["import"])[0])
@@ -816,7 +818,8 @@ def table(found: list[dict[str, Any]]) -> str:
     for family in dict.fromkeys(one["family"] for one in found):
         of = [one for one in found if one["family"] == family]
         killed = sum(bool(one["killed_by"]) for one in of)
-        same = sum(why.get(_key(one), "").startswith("same:") for one in of)
+        left = [one for one in of if not one["killed_by"]]
+        same = sum(why.get(_key(one), "").startswith("same:") for one in left)
         low, high = wilson(killed, len(of))
         shown = f"{killed} ({killed / len(of):.0%}) | {100 * low:.0f} to {100 * high:.0f} %"
         others = f"{killed / max(len(of) - same, 1):.0%}"

@@ -87,6 +87,6 @@ def _below_zero(seen: NDArray[np.float64], times: float) -> tuple[float, float]:
     n_spare = 1 + int(SPARE_SHARE * seen.size) if seen.size >= LEAST_CELLS else 0
     lowest = np.sort(np.partition(seen, n_spare)[: n_spare + 1]).tolist()
     for this, following in zip(lowest[:-1][::-1], lowest[1:][::-1], strict=True):
-        if this < 0.0 and this < times * min(0.0, following):
+        if this < times * min(0.0, following):
             return max(0.0, -following), following
     return max(0.0, -lowest[0]), -np.inf

@@ -88,3 +88,42 @@ def test_noise_alone_leaves_every_cell_valid_and_nothing_stands_out():
         made = compress(Image(values))
         assert made.image.valid is None
         assert not made.stands_out
+
+
+@pytest.mark.parametrize(("n_cells", "is_broken"), [(31, False), (32, True)])
+def test_of_fewer_than_32_cells_none_is_called_broken(n_cells: int, is_broken: bool) -> None:
+    values = np.linspace(0.1, 1.0, n_cells)[None, :]
+    values[0, 4] = -3.0
+    made = compress(Image(values))
+    assert made.stands_out == is_broken
+    if is_broken:
+        assert np.flatnonzero(~made.image.valid[0]).tolist() == [4]
+    else:
+        assert made.image.valid is None
+
+
+@pytest.mark.parametrize(("n_broken", "n_left_out"), [(2, 2), (3, 3), (4, 0)])
+def test_one_cell_in_a_hundred_and_one_more_may_be_broken(n_broken: int, n_left_out: int) -> None:
+    values = np.linspace(-0.1, 1.0, 200)[None, :]
+    values[0, 50 : 50 + n_broken] = -3.0
+    made = compress(Image(values))
+    found = 0 if made.image.valid is None else np.count_nonzero(~made.image.valid)
+    assert found == n_left_out
+
+
+@pytest.mark.parametrize(("factor", "is_broken"), [(3.9, False), (4.0, False), (4.1, True)])
+def test_broken_reads_more_than_so_many_times_as_low(factor: float, is_broken: bool) -> None:
+    values = np.linspace(0.1, 1.0, 64)[None, :]
+    values[0, 3], values[0, 7] = -0.125, -0.125 * factor
+    made = compress(Image(values), share=0.005, times=4.0)
+    noise = 0.125 if is_broken else 0.125 * factor
+    assert (made.image.valid is not None) == is_broken
+    assert made.image.values[0, -1] == np.arcsinh(1.0 / noise)
+
+
+def test_no_cell_is_broken_where_all_read_above_zero() -> None:
+    values = np.linspace(0.5, 1.0, 64)[None, :]
+    values[0, 0] = 1e-3
+    made = compress(Image(values))
+    assert made.image.valid is None
+    assert made.image.values[0, 0] == pytest.approx(np.arcsinh(0.2))

@@ -138,3 +138,19 @@ def test_blocks_that_are_all_off_leave_a_part_whole():
 def test_a_full_pad_is_one_contact():
     mask = mask_of(np.ones((40, 60)))
     assert [c.n_cells for c in SPLIT(image_of(np.ones((40, 60))), mask).contacts] == [2400]
+
+
+@pytest.mark.parametrize(("working_cells", "shape"), [(64, (8, 8)), (16, (4, 4)), (7, (2, 2))])
+def test_so_many_cells_at_most_are_on_in_what_is_split(working_cells, shape):
+    seen = []
+
+    def whole(cells):
+        seen.append(cells.values.copy())
+        return cells.on.astype(np.int32)
+
+    values = np.arange(64.0).reshape(8, 8)
+    labels = split_by_scale(cells_of(np.ones((8, 8), bool), values), whole, working_cells)
+    assert (labels == 1).all()
+    n = 8 // shape[0]
+    blocks = values.reshape(shape[0], n, shape[1], n).mean(axis=(1, 3))
+    np.testing.assert_array_equal(seen[0], blocks)

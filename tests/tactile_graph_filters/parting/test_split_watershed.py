@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from helpers_filters import drawn, image_of, mask_of, masks
 from helpers_objects import discs, footprint
 from tactile_graph.errors import DataError, RuleError
-from tactile_graph_filters.parting.split_watershed import split_watershed
+from tactile_graph_filters.parting.split_watershed import _flooded, split_watershed
 
 PAIR = discs(40, 60, (20, 18, 12), (20, 41, 12))
 
@@ -83,3 +83,15 @@ def test_different_shapes_are_refused():
 def test_nan_in_the_mask_is_refused():
     with pytest.raises(DataError, match="row 0, column 0: must be a number, got nan"):
         split_watershed(image_of([[np.nan, 1.0]]), drawn("##"))
+
+
+def test_each_cell_belongs_to_the_peak_it_climbs_to():
+    height = np.array([[9.0, 8.0, 7.0, 6.0, 5.0, 1.0, 9.0]])
+    labels = _flooded(height, height > 0, 0.5)[0].tolist()
+    assert labels[:5] == [1] * 5
+    assert labels[6] == 2
+
+
+def test_cells_that_touch_at_a_corner_are_flooded_from_one_peak():
+    height = np.array([[9.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 3.0]])
+    np.testing.assert_array_equal(_flooded(height + 1e-9, height > 0, 0.5), np.diag([1, 1, 1]))

@@ -18,7 +18,12 @@ from tactile_graph_filters.parting.hull_terms import (
 )
 from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.split_contacts import SplitContacts
-from tactile_graph_filters.parting.straight_cuts import joined_and_cut
+from tactile_graph_filters.parting.straight_cuts import (
+    best_join,
+    boxes_of,
+    cut_best,
+    joined_and_cut,
+)
 from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
@@ -118,7 +123,9 @@ def test_the_odds_weigh_what_the_terms_say():
     assert terms["inverse of fewer cells"] == 0.25
     assert terms["log of fewer cells"] == pytest.approx(np.log(4))
     assert terms["log of all cells"] == pytest.approx(np.log(16))
-    assert log_odds(*settings) == pytest.approx(WEIGHTS @ list(terms.values()))
+    fitted = [3.68, 3.08, 2.44, 9.55, -1.42, -0.659, -3.24, -22.6, -1.84, -0.211]
+    assert log_odds(*settings) == pytest.approx(np.dot(fitted, list(terms.values())))
+    assert WEIGHTS.tolist() == fitted
 
 
 def test_low_readings_along_the_cut_make_it_likelier():
@@ -159,6 +166,78 @@ def test_no_piece_is_smaller_than_three_cells():
     assert len(sizes) > 4
     assert min(sizes) >= 3
     assert sum(sizes) == mask.count
+
+
+def patchy(seed):
+    """Three groups of uneven readings side by side, 5 rows of 9 cells, a few of them off."""
+    rng = np.random.default_rng(seed)
+    owner = np.repeat([1, 2, 3], 3)[None, :].repeat(5, 0).astype(np.int32)
+    owner[rng.random(owner.shape) < 0.12] = 0
+    values = np.where(owner > 0, 0.1 + rng.random(owner.shape), 0.0)
+    return Partition(owner, values, rng.random(owner.shape) < 0.95)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_the_two_that_are_least_likely_two_objects_are_joined_first(seed):
+    cells = patchy(seed)
+    every = {}
+    for a, b in ((1, 2), (1, 3), (2, 3)):
+        both = plainly(hull_terms)(cells, a, b, LEVELS)
+        every[a, b] = plainly(log_odds)(cells, a, b, LEVELS, both)
+    least = min((1, 2), (2, 3), key=every.__getitem__)  # 1 and 3 lie 3 cells apart
+    assert plainly(best_join)(cells, 3, LEVELS, 1e3) == least
+    assert plainly(best_join)(cells, 3, LEVELS, every[least]) == (0, 0)
+    cells.owner[:, 3] = 0
+    upright = Partition(*(np.ascontiguousarray(part.T) for part in cells))
+    for one in (cells, upright):
+        one.owner[one.owner == 3] = 0
+        assert plainly(best_join)(one, 3, LEVELS, 1e3) == (1, 2)
+
+
+@pytest.mark.parametrize(("gap", "pair"), [(2, (1, 2)), (3, (0, 0))])
+def test_groups_more_than_two_cells_apart_are_not_joined(gap, pair):
+    owner = np.zeros((3, 6 + gap), np.int32)
+    owner[:, :3], owner[:, -3:] = 1, 2
+    for turned in (owner, np.ascontiguousarray(owner.T)):
+        cells = Partition(turned, (turned > 0) * 1.0, turned >= 0)
+        assert plainly(best_join)(cells, 2, LEVELS, 1e3) == pair
+
+
+def test_boxes_hold_each_group_and_nothing_where_there_is_none():
+    owner = np.zeros((5, 7), np.int32)
+    owner[1, 2] = owner[3, 4] = 1
+    owner[0, 6] = 3
+    boxes = plainly(boxes_of)(owner, 3)
+    assert boxes[1:].tolist() == [[1, 3, 2, 4], [5, -1, 7, -1], [0, 0, 6, 6]]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_turned", [False, True])
+@pytest.mark.parametrize("seed", range(2))
+def test_the_likeliest_of_all_straight_cuts_is_made(seed, is_turned):
+    cells = patchy(seed)
+    cells.owner[cells.owner == 2] = 1  # and 3 is somebody else's
+    if is_turned:
+        cells = Partition(*(np.ascontiguousarray(part.T[::-1]) for part in cells))
+    rows, columns = np.nonzero(cells.owner == 1)
+    both = plainly(hull_terms)(cells, 1, 1, LEVELS)
+    every = {}
+    for angle in np.arange(8) * np.pi / 8:
+        across = np.cos(angle) * columns + np.sin(angle) * rows
+        for at in np.arange(across.min() + 0.25, across.max(), 0.5):
+            near = across < at
+            if 3 <= near.sum() <= near.size - 3 and near.tobytes() not in every:
+                owner = cells.owner.copy()
+                owner[rows[near], columns[near]] = 4
+                cut = Partition(owner, cells.values, cells.known)
+                every[near.tobytes()] = plainly(log_odds)(cut, 4, 1, LEVELS, both), owner
+    best, wanted = max(every.values(), key=lambda one: one[0])
+    before = cells.owner.copy()
+    assert not plainly(cut_best)(cells, 1, 4, LEVELS, best)
+    np.testing.assert_array_equal(cells.owner, before)
+    assert plainly(cut_best)(cells, 1, 4, LEVELS, best - 1e-6)
+    np.testing.assert_array_equal(cells.owner, wanted)
 
 
 @pytest.mark.parametrize("scene", ["six", "rectangle-2"])

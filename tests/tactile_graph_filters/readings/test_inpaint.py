@@ -4,6 +4,7 @@ import pytest
 import tactile_graph_filters.readings.inpaint as module
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask, same_grid
 from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Image
 from tactile_graph_filters.readings.inpaint import inpaint
 
 
@@ -67,3 +68,11 @@ def test_an_image_without_holes_is_returned_as_it_is():
 def test_nothing_valid_is_degenerate():
     with pytest.raises(Degenerate, match="no cell of the image is valid, so there is nothing"):
         inpaint(image_of([[0.0]], valid=[[False]]))
+
+
+def test_the_nearest_cell_is_told_in_centimetres_not_in_cells():
+    values = np.array([[7.0, 0.0], [5.0, 5.0]])
+    valid = np.array([[True, False], [True, True]])
+    for pitch, wanted in (((1.0, 3.0), 7.0), ((3.0, 1.0), 5.0)):
+        image = Image(values, pitch_cm=pitch, valid=valid)
+        assert inpaint(image, method="nearest").values[0, 1] == wanted

@@ -11,7 +11,14 @@ import references_filters as references
 from helpers_filters import image_of, same_grid
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
-from tactile_graph_filters.thresholds.threshold import Threshold, any_at_least, at_least
+from tactile_graph.wires.stacks import ImageStack
+from tactile_graph_filters.thresholds.threshold import (
+    Threshold,
+    any_at_least,
+    at_least,
+    footprint,
+    footprints,
+)
 
 VALUES = [[0.0, 0.01, 0.02], [-1.0, 5.0, 0.009]]
 
@@ -179,3 +186,19 @@ def test_it_compares_as_the_reference_does(values, level):
     assert counts == {-1 if np.isnan(values).any() else int(np.sum(values >= level))}
     assert np.array_equal(outs[0], outs[1])
     assert np.array_equal(outs[0], outs[2])
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("plain_kernels")
+def test_footprints_of_a_stack_are_those_of_its_frames():
+    values = np.random.default_rng(2).random((4, 3, 5))
+    values[1, 0, 0] = np.nan
+    valid = np.ones(values.shape, bool)
+    valid[2], valid[3, 1] = False, False
+    for known, done in ((None, [True, False, True, True]), (valid, [True, False, False, True])):
+        answered = footprints(ImageStack(values, valid=known), 0.4)
+        assert answered.done.tolist() == done
+        for k in np.flatnonzero(done):
+            one = footprint(Image(values[k], valid=None if known is None else known[k]), 0.4)
+            assert np.array_equal(answered.values.values[k], one.values)
+            assert answered.values.counts[k] == one.count

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_graph.wires import Image
-from tactile_graph_mrf.contours.close_lines import close_lines
+from tactile_graph_mrf.contours.close_lines import _Field, close_lines
 from tactile_graph_mrf.contours.line_regions import line_regions
 from tactile_graph_mrf.energy.line_field import LineField
 
@@ -102,3 +102,12 @@ def test_lines_are_only_added_and_twice_is_as_once(seed: int) -> None:
 def test_narrow_images(shape: tuple[int, int]) -> None:
     image = Image(np.arange(float(np.prod(shape))).reshape(shape))
     assert close_lines(image, LineField.none(image)).count == 0
+
+
+def test_the_rim_joins_its_corners_all_around() -> None:
+    image = Image(np.zeros((2, 3)))
+    field = _Field(image, LineField.of(image, np.zeros((1, 3), bool), np.zeros((2, 2), bool)), 0.0)
+    around = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 3), (2, 3), (2, 2), (2, 1), (2, 0), (1, 0)]
+    for k, corner in enumerate(around):
+        assert set(field.on(corner)) == {around[k - 1], around[(k + 1) % 10]}, corner
+    assert field.on((1, 1)) == []

@@ -154,3 +154,12 @@ def test_cells_at_rest_are_left_out_and_little_is_lost_by_it():
     thorough = graduated(problem, bends, Relaxation(400, 1.6, 0.0))[-1]
     assert np.abs(graduated(problem, bends, Relaxation(400, 1.6))[-1] - thorough).max() < 0.02
     assert np.abs(graduated(problem, bends, Relaxation(400, 1.6, 5e-4))[-1] - thorough).mean() < 0.2
+
+
+def test_beyond_both_ends_of_the_scale_the_influence_is_that_of_the_ends():
+    table = influence(Model(n_levels=12, lambda_d=1.0, lines="none"), 3, 2.0)
+    assert table.shape == (3, 13)
+    np.testing.assert_allclose(table[:, 1:11], 1.0)  # 2 d / 2 d, but for the last, one-sided step
+    np.testing.assert_array_equal(table[:, 0], table[:, 1])
+    np.testing.assert_array_equal(table[:, -1], table[:, -2])
+    assert (table[:, -1] < 1.0).all()

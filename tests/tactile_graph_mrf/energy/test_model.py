@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter, ValidationError
 
 from helpers_modes import plainly
 from helpers_mrf import RHO, counted, picture
@@ -153,3 +154,24 @@ def test_values_of_any_size_have_levels(scale):
     problem = prepare(Model(), Image(np.array([[-1.0, 0.0, 1.0]]) * scale))
     np.testing.assert_allclose(problem.observed, [[0, 99.5, 199]], atol=1e-6)
     np.testing.assert_allclose(problem.restored(problem.observed).values[0, 2], scale)
+
+
+def test_a_start_is_the_data_and_their_mean_where_there_are_none():
+    values = np.array([[0.0, 9.0, 9.0], [9.0, 0.0, 6.0]])
+    valid = np.array([[1, 1, 1], [1, 0, 1]], bool)
+    start = prepare(Model(n_levels=10), Image(values, valid=valid)).start()
+    np.testing.assert_array_equal(start, [[0, 9, 9], [9, 7, 6]])  # of 33 / 5
+    nowhere = prepare(Model(n_levels=10), Image(values), Mask(np.zeros((2, 3), bool)))
+    np.testing.assert_array_equal(nowhere.start(), np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize("name", ["lambda_d", "lambda_l", "lambda_prior", "one", "end"])
+def test_weights_and_costs_are_told_their_bounds(name):
+    high = 1e12 if name.startswith("lambda") else 1e6
+    low = 0.0 if name.startswith("lambda") else -1e6
+    adapter = TypeAdapter(Model)
+    for value in (low, high):
+        assert getattr(adapter.validate_python({name: value}), name) == value
+    for value in (low - 1.0, 1.0000001 * high):
+        with pytest.raises(ValidationError, match=r"should be (less|greater) than or equal to"):
+            adapter.validate_python({name: value})
