@@ -23,12 +23,13 @@ def opened(address: str, n_workers: int | None) -> Opened:
     if not address:
         raise UsageError("--on dask: give the scheduler's address: --on tcp://host:8786")
     try:
-        import distributed
+        from distributed import Client
         from distributed.scheduler import KilledWorker
     except ImportError:
         raise UsageError(MISSING) from None
+    connected: Any = Client  # which is not annotated
     try:
-        client: Any = distributed.Client(address, timeout=PATIENCE_S, set_as_default=False)
+        client = connected(address, timeout=PATIENCE_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise UsageError(f"--on {address}: no scheduler answers there: {error}") from error
     # Not pure: what a call comes to is not kept for others, and a second one is done again.
