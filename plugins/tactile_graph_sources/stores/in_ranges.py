@@ -36,7 +36,7 @@ def ranges_of_stores(path: Path | list[Path], **settings: Any) -> Ranges | None:
 
     Parameters
     ----------
-    path, settings
+    path, **settings
         Of the source ``recording``. With one that may leave out frames anywhere, or is about
         files that are no stores, there is no such way either.
     """

@@ -112,6 +112,23 @@ class Tally:
     outputs : list of OutputColumns
     n_looked : int
         How many frames at the beginning are looked through.
+    n, n_failed, n_skipped : int
+        Frames, those of which an output failed, and those of which one was skipped and none failed.
+    n_lacking : int
+        Frames with all outputs, in the lists of which items failed or were skipped.
+    n_not_finite : int
+        Frames with all outputs and items, of which one holds NaN or infinity.
+    n_items_failed : int
+    assumed : dict
+        What a node took that nobody said, and in which frame first.
+    noticed : dict
+        By node, what it has to say of its answers.
+    failed, skipped, not_finite : dict
+        By node and reason, how often and where first.
+    errors : dict
+        By output and quantity, against the truth.
+    started, seconds : float
+        On the clock of `time.perf_counter`, and from then to the last frame.
     """
 
     outputs: list[OutputColumns]
@@ -120,12 +137,9 @@ class Tally:
     n_failed: int = 0
     n_skipped: int = 0
     n_lacking: int = 0
-    """Frames with all outputs, in the lists of which items failed or were skipped."""
     n_not_finite: int = 0
-    """Frames with all outputs and items, of which one holds NaN or infinity."""
     n_items_failed: int = 0
     assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
-    """What a node took that nobody said, and in which frame first."""
     noticed: dict[str, _Noticed] = field(default_factory=dict)
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
