@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import json
 import os
 import resource
@@ -27,6 +28,7 @@ pytestmark = pytest.mark.usefixtures("hand_made")
 @contextmanager
 def full_at(n_bytes: int) -> Iterator[None]:
     """Let no file be larger, as if the disc were full then."""
+    gc.collect()  # files that other tests left open are closed while there is room
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, before[1]))
     try:
