@@ -207,7 +207,7 @@ def source_named(
         base = own.given
     base.update(assignment("--with", text) for text in given)
     wanted = {text.partition("=")[0].strip() for text in given}
-    if not recordings and COUNT not in wanted and span.stop is not None and _counts(step):
+    if not recordings and COUNT not in wanted and span.stop is not None and takes_count(step):
         base[COUNT] = span.stop
     if own is not None and step == own.name and not (recordings or given or COUNT in base):
         return None
@@ -226,7 +226,8 @@ def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
     return named, str(found.offer("readers", named).target)
 
 
-def _counts(step: str) -> bool:
+def takes_count(step: str) -> bool:
+    """Return whether a step is there that is told how many frames to make."""
     found = registry.installed()
     return found.has("steps", step) and any(s.name == COUNT for s in found.step(step).settings)
 

@@ -173,12 +173,6 @@ class Block(Sequence[ResultT], Generic[ResultT]):
             rows = np.flatnonzero(own & (self._group[of] == number))
             yield group, np.array([rows, self._place[of[rows]]])
 
-    def alone_rows(self) -> Rows:
-        """Return the places of the frames that are in no group, and repeat none of one."""
-        own = self.repeats.of >= 0
-        of = np.where(own, self.repeats.of, 0)
-        return np.flatnonzero(~own | (self._group[of] < 0))
-
 
 def first_settled(slot: int, groups: Sequence[Group], alone: Mapping[int, State]) -> int:
     """Return the place of the first frame for which a slot is settled."""

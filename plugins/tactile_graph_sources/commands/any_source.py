@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from tactile_graph.cli.arguments import COUNT
+from tactile_graph.cli.arguments import COUNT, takes_count
 from tactile_graph.engine.sources import open_source
 from tactile_graph.errors import Mark, UsageError
 from tactile_graph.pipeline.document import assignment
@@ -36,7 +36,7 @@ def frames_of_source(
 
 def as_many(step: str, settings: Mapping[str, Any], n_frames: int | None) -> dict[str, Any]:
     """Return settings by which a source that makes its frames makes so many, unless they say."""
-    if n_frames is None or not any(s.name == COUNT for s in installed().step(step).settings):
+    if n_frames is None or not takes_count(step):
         return dict(settings)
     return {COUNT: n_frames, **settings}
 
