@@ -56,7 +56,10 @@ def test_the_survey_says_where_groups_lie_and_what_they_share(seed: int, half: f
             at = np.flatnonzero(row)
             assert groups.right[a, i] == (at[-1] if at.size else -1)
             assert groups.left[a, i] == (at[0] if at.size else cells.owner.shape[1])
-    assert groups.alive.all()
+    assert groups.alive.tolist() == [True] * (COUNT + 1)
+    assert groups.cost.tolist() == [0.0] * (COUNT + 1)
+    assert groups.union.shape == wanted.shape
+    assert groups.left.shape == groups.right.shape == (COUNT + 1, cells.owner.shape[0])
     assert np.isnan(groups.union).all()
 
 
