@@ -10,17 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
 import yaml
 
+from helpers_answers import Case, alike, answer
 from helpers_ellipses import drawn
-from helpers_modes import answered_by
-from tactile_graph.errors import TactileGraphError
 from tactile_graph.wires import Circle, Image, Mask, Points, Polygon
 from tactile_graph_fitters.circle.fit_circle import fit_circle
 from tactile_graph_fitters.circle.fit_circle_hyper import fit_circle_hyper
@@ -116,7 +114,9 @@ MASKS: dict[str, Mask] = {
     "whole": shape(broken=0.0),
     "broken": shape(broken=0.25),
     "nearly square": shape(broken=0.1, angle=0.9, size=(4.0, 3.4)),
-    "apart": parts("##........", "###....##.", ".##....##.", "..........", "...###....", "#........."),
+    "apart": parts(
+        "##........", "###....##.", ".##....##.", "..........", "...###....", "#........."
+    ),
     "row": parts("........", ".######.", "........"),
     "cell": parts("...", ".#.", "..."),
     "off": parts("...", "..."),
@@ -154,14 +154,6 @@ DISCS = {
 }
 
 
-class Case(NamedTuple):
-    """A fitter, what it is given, and a name."""
-
-    name: str
-    fit: Callable[..., Any]
-    given: tuple[Any, ...]
-
-
 def of_points(fit: Callable[..., Any], *names: str, **settings: Any) -> list[Case]:
     """Return a fitter's cases on sets of points, on all of them unless named."""
     told = "".join(f" {k}={v}" for k, v in settings.items())
@@ -185,9 +177,7 @@ def sweep_about_axis(points: Points) -> Any:
 
 def simplified(name: str, **settings: Any) -> Case:
     told = "".join(f" {k}={v}" for k, v in settings.items())
-    return Case(
-        f"simplify {name}{told}", SimplifyPolygon(**settings), (Polygon(SETS[name]),)
-    )
+    return Case(f"simplify {name}{told}", SimplifyPolygon(**settings), (Polygon(SETS[name]),))
 
 
 FEW = ("arc", "cluster", "strays", "square", "line", "one place", "one", "tiny", "not finite")
@@ -231,48 +221,6 @@ CASES = [
     Case("fit_circle_load with its gap", FitCircleLoad(gap_cm=0.0, shows_from=1.0),
          (DISCS["uneven"],)),
 ]  # fmt: skip
-
-
-def answer(case: Case) -> Any:
-    """Return what a fitter gives, as YAML keeps it; of a refusal its words."""
-    with answered_by("plain"):
-        try:
-            return told(case.fit(*case.given))
-        except TactileGraphError as error:
-            return f"{type(error).__name__}: {error}"
-
-
-def told(found: Any) -> Any:
-    if isinstance(found, np.ndarray):
-        if found.dtype == bool:
-            return ["".join(".#"[int(on)] for on in row) for row in found]
-        return [told(one) for one in found]
-    if isinstance(found, (bool, np.bool_)):
-        return bool(found)
-    if isinstance(found, (int, np.integer)):
-        return int(found)
-    if isinstance(found, (float, np.floating)):
-        return float(f"{found:.10g}") + 0.0
-    if isinstance(found, Mask):
-        return {"origin_cm": told(found.origin_cm), "cells": told(found.values)}
-    if isinstance(found, Polygon):
-        return told(found.xy_cm)
-    if hasattr(found, "_asdict"):
-        return {name: told(one) for name, one in found._asdict().items()}
-    if is_dataclass(found):
-        return {f.name: told(getattr(found, f.name)) for f in fields(found)}
-    return [told(one) for one in found] if isinstance(found, tuple) else found
-
-
-def alike(one: Any, other: Any) -> bool:
-    """Return whether two answers are the same but for the last digits of numbers."""
-    if isinstance(one, dict):
-        return one.keys() == other.keys() and all(alike(v, other[k]) for k, v in one.items())
-    if isinstance(one, list):
-        return len(one) == len(other) and all(map(alike, one, other))
-    if isinstance(one, float):
-        return one == pytest.approx(other, rel=1e-8, abs=1e-8)
-    return bool(one == other)
 
 
 ANSWERS = yaml.safe_load(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}

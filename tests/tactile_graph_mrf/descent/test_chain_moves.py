@@ -10,6 +10,7 @@ import pytest
 
 from helpers_modes import plainly
 from helpers_mrf import tiny
+from tactile_graph.wires import Image
 from tactile_graph_mrf.descent.chain_moves import (
     PROPOSALS,
     Chain,
@@ -17,7 +18,6 @@ from tactile_graph_mrf.descent.chain_moves import (
     held_costs,
     propose,
 )
-from tactile_graph.wires import Image
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 from tactile_graph_mrf.energy.state import State
@@ -112,7 +112,7 @@ def test_of_equal_ways_the_present_labels_stay() -> None:
 
 
 @pytest.mark.parametrize("expected", [None, 6.0])
-def test_the_datum_proposed_is_that_which_the_unary_cost_is_least_at(expected: float | None) -> None:
+def test_the_mean_proposed_is_of_what_the_unary_cost_is_least_at(expected: float | None) -> None:
     """Of data and expected load together; without either, what is read there."""
     values = np.array([[0.0, 8.0, 2.0]])
     wanted = None if expected is None else Image(np.full((1, 3), expected))
