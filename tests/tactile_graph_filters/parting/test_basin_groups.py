@@ -14,6 +14,7 @@ from tactile_graph_filters.parting.joined_basins import (
     _cost_plain,
     _cuts_plain,
     _joined_plain,
+    _near,
     joined,
 )
 from tactile_graph_filters.parting.partition import Partition
@@ -95,6 +96,7 @@ def test_only_groups_within_reach_are_joined(
     groups = plainly(surveyed)(cells.owner, 2, cells.values, rules[4])
     groups.cost[1:] = 50.0
     assert plainly(best_pair)(cells, groups, rules) == pair
+    assert _near(_boxes(cells.owner, 2), [1, 2]) == ([pair] if pair[0] else [])
     groups.alive[2] = False
     assert plainly(best_pair)(cells, groups, rules) == (0, 0)
 
