@@ -81,8 +81,9 @@ def test_another_shape_is_refused():
 
 
 def test_nan_is_refused():
-    with pytest.raises(DataError, match="row 0, column 0: must be a number, got nan"):
-        FindBad()(image_of([[math.nan]]))
+    for value in (math.nan, math.inf, -math.inf):
+        with pytest.raises(DataError, match=f"row 0, column 1: must be a number, got {value}"):
+            FindBad()(image_of([[1.0, value]]))
 
 
 def test_an_element_only_a_few_times_as_noisy_as_the_others_is_found():
