@@ -15,7 +15,8 @@ tests that are too slow for that judge the survivors, each with a copy of the ma
 A sample is drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
 A number of at most a millionth is a bound on rounding, and taken a million times as large, since
-half as much again tells nothing; one in the shape of ``np.empty``, which is mere room, one smaller.
+half as much again tells nothing (below `NEVER_REACHED` it only keeps from dividing by nothing, and
+is left out); one in the shape of ``np.empty``, which is mere room, one smaller.
 
 Left out: annotations, texts, what only draws, prints or writes, flags that only refuse what no
 right code does (``strict`` of a zip, ``frozen``), the 1 of ``reshape(-1)`` (any negative number
@@ -59,6 +60,8 @@ GUARDS = ("strict", "frozen")
 THESIS_WAYS = ("circle-1", "circle-2", "circle-3", "rectangle-1", "rectangle-2", "identify")
 ROUNDING, BEYOND_ROUNDING = 1e-6, 1e6
 """The largest bound on rounding, and what is none any more, in such bounds."""
+NEVER_REACHED = 1e-100
+"""Numbers below it only keep a division or a logarithm from 0."""
 UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
 BY_MACHINE_CODE = ("thesis", "pipelines")
@@ -216,6 +219,8 @@ def _changed(node: ast.AST) -> Iterator[tuple[str, Any]]:
         other_op = ast.Or() if isinstance(node.op, ast.And) else ast.And()
         yield "condition", _but(node, op=other_op)
     elif isinstance(node, ast.Constant) and type(node.value) in (int, float, bool):
+        if 0.0 < abs(node.value) < NEVER_REACHED:
+            return
         kind = "flag" if type(node.value) is bool else "number"
         yield kind, _but(node, value=_other(node.value))
     elif isinstance(node, (ast.If, ast.IfExp, ast.While)):

@@ -144,3 +144,12 @@ def test_loops_cut_the_same_basins(seed: int, sigma: float) -> None:
         count = _basins_plain(values, on, taps_of(sigma), one)
         assert basins.loops(values, on, taps_of(sigma), other) == count
         np.testing.assert_array_equal(other, one)
+
+
+def test_groups_that_do_not_touch_make_no_chain() -> None:
+    for numbers in ((1, 2, 0, 3), (3, 1, 0, 2), (2, 0, 3, 1), (1, 0, 2, 0)):
+        owner = np.repeat(np.array([numbers], np.int32), 4, axis=0)
+        cells = Partition(owner, (owner > 0) * 1.0, owner > 0)
+        groups = plainly(surveyed)(owner, 3, cells.values, 0.5)
+        groups.cost[1:] = 50.0
+        assert plainly(best_three)(cells, groups, rules_of(cells)) == (0, 0, 0)
