@@ -219,7 +219,7 @@ def _changed(node: ast.AST) -> Iterator[tuple[str, Any]]:
         other_op = ast.Or() if isinstance(node.op, ast.And) else ast.And()
         yield "condition", _but(node, op=other_op)
     elif isinstance(node, ast.Constant) and type(node.value) in (int, float, bool):
-        if 0.0 < abs(node.value) < NEVER_REACHED:
+        if type(node.value) is float and 0.0 < abs(node.value) < NEVER_REACHED:
             return
         kind = "flag" if type(node.value) is bool else "number"
         yield kind, _but(node, value=_other(node.value))

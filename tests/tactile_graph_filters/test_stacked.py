@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from helpers_filters import ELEMENTS, random_mask
-from tactile_graph.wires.stacks import MaskStack
+from helpers_filters import ELEMENTS, image_of, random_mask
+from tactile_graph.wires.stacks import ImageStack, MaskStack
 from tactile_graph_filters.morphology.close import Close
 from tactile_graph_filters.morphology.dilate import Dilate
 from tactile_graph_filters.morphology.elements import parse_element
@@ -15,6 +15,7 @@ from tactile_graph_filters.morphology.erosion import make_plan
 from tactile_graph_filters.morphology.open import Open
 from tactile_graph_filters.morphology.packed import combined, doubled
 from tactile_graph_filters.morphology.subdivide import subdivide, subdivide_stacked
+from tactile_graph_filters.thresholds.threshold import Threshold
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
@@ -82,3 +83,17 @@ def test_a_step_that_turns_all_cells_over_reads_no_other_plane():
     plan = make_plan(parse_element("square3"), parse_element("square3"))
     turned = plan[plan[:, 1] < 0]
     assert turned[:, 1:].tolist() == [[-1, 0, 0, 0, 0, 0]]
+
+
+@pytest.mark.parametrize("quantity", ["volt", "gram"])
+@pytest.mark.parametrize("settings", [{"level_v": 0.5}, {"level": 0.5}], ids=str)
+def test_levels_of_frames_are_those_of_each(settings, quantity):
+    """A level in volts alone says nothing of grams: those frames are left to the step."""
+    values = np.random.default_rng(3).random((3, 4, 5))
+    images = [image_of(each, quantity) for each in values]
+    found = Threshold(**settings).stacked(ImageStack.of(images))
+    if quantity == "gram" and "level_v" in settings:
+        assert found is NotImplemented
+    else:
+        assert found.done.all()
+        assert_same(found.values, [Threshold(**settings)(image) for image in images])
