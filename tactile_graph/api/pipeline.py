@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tactile_graph.api.result import Result
     from tactile_graph.api.results import Results
     from tactile_graph.engine.block import Block
+    from tactile_graph.engine.options import Decider
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
     from tactile_graph.live.live_stream import LiveStream
@@ -212,16 +213,22 @@ class Pipeline(Graph):
                 yield block
 
     def runner(
-        self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False
+        self,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+        verify: bool = False,
+        decider: Decider | None = None,
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
-        With ``verify`` a step fails that writes into what others read; this costs time.
+        With ``verify`` a step fails that writes into what others read; this costs time. A
+        ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or
+        what was `tactile_graph.live.Recorded` of one.
         """
         from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner
 
-        return Runner(self, tuple(only or self.outputs), seed, Result, verify)
+        return Runner(self, tuple(only or self.outputs), seed, Result, verify, decider)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""
