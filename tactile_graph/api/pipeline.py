@@ -154,6 +154,8 @@ class Pipeline(Graph):
         only: Sequence[str] | None = None,
         seed: int = 0,
         deadline_us: float | None = None,
+        capacity: int = 64,
+        unread: int = 1024,
     ) -> LiveStream[Result]:
         """Return the results of frames as these come, for ``async for``; it may be closed early.
 
@@ -169,12 +171,19 @@ class Pipeline(Graph):
         only, seed
             As in `run`.
         deadline_us : float, optional
-            Microseconds from a frame's arrival within which its result is wanted.
+            Microseconds from a frame's arrival within which its result is wanted: what would not
+            be done in time is skipped.
+        capacity, unread : int
+            How many frames may wait to be answered, and how many results to be taken, before the
+            oldest go.
         """
         from tactile_graph.live.live_run import LiveRun
         from tactile_graph.live.live_stream import LiveStream
 
-        return LiveStream(LiveRun(self, source, only=only, seed=seed, deadline_us=deadline_us))
+        run = LiveRun(
+            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity
+        )
+        return LiveStream(run, unread)
 
     def results(
         self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]

@@ -8,7 +8,7 @@ oldest is shed, and counted. The loop stands in the caller's thread.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from threading import Condition, Thread
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
@@ -228,6 +228,8 @@ class LiveRun(Generic[ResultT]):
             self._error = error
         finally:
             self._waiting.end()
+            if isinstance(self._source, Generator):
+                self._source.close()  # a port is free again, a file closed
 
     def _one_more(self) -> bool:
         with self._may_go:
