@@ -17,6 +17,7 @@ from tactile_graph.engine.options import Decider
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
 from tactile_graph.errors import UsageError
+from tactile_graph.live.beside import Beside
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps.injected import Report
@@ -108,6 +109,8 @@ class LiveRun(Generic[ResultT]):
         self._steps = 0
         self._may_go = Condition()
         self.n_lost = 0
+        self.beside: Beside | None = None
+        """A variant that is given the newest frames, in what time is left."""
 
     # -- what others may ask of it -------------------------------------------------------------
 
@@ -219,6 +222,8 @@ class LiveRun(Generic[ResultT]):
         begun_ns = self._clock()
         result = runner(frame)
         done_ns = self._clock()
+        if self.beside is not None:
+            self.beside.offer(result, (done_ns - begun_ns) / 1e3)
         decisions = () if deadline is None else result.decisions
         return LiveResult(
             result, arrived_ns, begun_ns, done_ns, self.n_shed, self.n_lost, decisions
