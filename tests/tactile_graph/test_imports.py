@@ -21,6 +21,7 @@ PUBLIC = (
     "tactile_graph.exporter",
     "tactile_graph.files",
     "tactile_graph.foreign_text",
+    "tactile_graph.live",
     "tactile_graph.locks",
     "tactile_graph.many",
     "tactile_graph.compiled",
