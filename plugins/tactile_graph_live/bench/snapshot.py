@@ -35,7 +35,7 @@ class Photographer:
     """
 
     def __init__(self, pipeline: Any, version: int) -> None:
-        self.version = version
+        self.pipeline, self.version = pipeline, version
         self.shown: Collection[str] = ()
         self._table = make_table(pipeline, tuple(pipeline.outputs), True)
         self._range = Range()
@@ -69,6 +69,14 @@ class Photographer:
             gap=frame.gap,
         )
 
+    def forget_range(self) -> None:
+        """Begin the range of colours anew: readings mean something else from here on."""
+        self._range = Range()
+
+    def like(self, pad: Plain) -> None:
+        """Colour frames as one was coloured that has been taken down before."""
+        self._range.widen(pad["low"], pad["high"])
+
     def rows(self, result: Result) -> Iterable[Plain]:
         """Yield a row for each object that was found, as plain data."""
         for number, row in enumerate(self._table.rows(result)):
@@ -100,12 +108,18 @@ class Range:
     def of(self, image: Image) -> tuple[float, float]:
         """Return lowest and highest value so far of images of this kind."""
         kind = (image.shape, image.quantity)
+        if self._of and kind != self._of:
+            self._low = self._high = 0.0
         if kind != self._of:
-            self._of, self._low, self._high = kind, 0.0, 0.0
+            self._of = kind
         values = image.filled(0.0)
         self._low = min(self._low, float(values.min(initial=0.0)))
         self._high = max(self._high, float(values.max(initial=0.0)))
         return self._low, self._high
+
+    def widen(self, low: float, high: float) -> None:
+        """Have the range hold these."""
+        self._low, self._high = min(self._low, low), max(self._high, high)
 
 
 def _fared(story: Any) -> Plain:

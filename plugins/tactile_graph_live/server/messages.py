@@ -133,8 +133,8 @@ class Graph:
     nodes: tuple[Node, ...]
     outputs: tuple[str, ...]
     columns: tuple[Column, ...]
-    took_ms: float
-    """From the file's change (or what was set) to this message."""
+    took_ms: float = 0.0
+    """From when the change was seen until it ran."""
 
 
 @dataclass(frozen=True)
