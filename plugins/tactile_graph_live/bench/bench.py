@@ -120,7 +120,9 @@ class Bench:
             self._run.n_waiting == 0 or now >= self._next_picture_ns + LATEST_NS
         ):
             self._next_picture_ns = max(self._next_picture_ns + PICTURE_NS, now)
-            snapshot = self._looking(live).snapshot(live.result, live.latency_us)
+            snapshot = self._looking(live).snapshot(
+                live.result, live.latency_us, arrived_s=live.arrived_ns / 1e9
+            )
             self._outbox.show(wire.Snapshot(snapshot, live.arrived_ns))
         if now >= self._next_summary_ns:
             self._summarise("running")
@@ -136,7 +138,10 @@ class Bench:
     def _row(self, live: Live) -> wire.Row:
         frame = live.result.frame
         rows = tuple(self._looking(live).rows(live.result))
-        return wire.Row(frame.index, frame.time_s, frame.label, live.latency_us, rows)
+        return wire.Row(
+            frame.index, frame.time_s, frame.label, frame.device_time_s, live.arrived_ns / 1e9,
+            live.latency_us, rows,
+        )  # fmt: skip
 
     def tick(self) -> None:
         """Say how it is going although no frame comes; called now and then by another thread."""

@@ -41,7 +41,11 @@ class Photographer:
         self._range = Range()
 
     def snapshot(
-        self, result: Result, latency_us: float | None = None, back_s: float = 0.0
+        self,
+        result: Result,
+        latency_us: float | None = None,
+        back_s: float = 0.0,
+        arrived_s: float | None = None,
     ) -> messages.Frame:
         """Return what the page shows of a result."""
         frame = result.frame
@@ -67,6 +71,8 @@ class Photographer:
             back_s=back_s,
             label=visible(frame.label),
             gap=frame.gap,
+            device_time_s=frame.device_time_s,
+            arrived_s=arrived_s,
         )
 
     def forget_range(self) -> None:

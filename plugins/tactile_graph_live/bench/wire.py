@@ -60,11 +60,13 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Row:
-    """What one frame came to, for programs."""
+    """What one frame came to, for programs; ``arrived_s`` is by ``time.perf_counter``."""
 
     frame: int
     time_s: float | None
     label: str
+    device_time_s: float | None
+    arrived_s: float
     latency_us: float
     rows: tuple[dict[str, Any], ...]
 

@@ -182,6 +182,10 @@ class Frame:
         Nodes that were skipped for the deadline.
     back_s : float
         How long ago it came; over 0 where it is shown again.
+    device_time_s : float or None
+        The pad's own time, where it sends one.
+    arrived_s : float or None
+        When it was here, by the clock (``time.perf_counter``) of the machine that serves the page.
     """
 
     index: int
@@ -198,6 +202,8 @@ class Frame:
     back_s: float = 0.0
     label: str = ""
     gap: bool = False
+    device_time_s: float | None = None
+    arrived_s: float | None = None
 
 
 @dataclass(frozen=True)
