@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -102,14 +102,20 @@ class Page:
 
         address, _, query = command.address.partition("?")
         url = f"ws{address.removeprefix('http')}{path}" + (f"?{query}" if query else "")
-        self.socket = connect(url, max_size=None, compression=None, additional_headers=headers)
+        self._open = ExitStack()
+        self.socket = self._open.enter_context(
+            connect(url, max_size=None, compression=None, additional_headers=headers)
+        )
         self.got: list[dict[str, Any]] = []
 
     def __enter__(self) -> Page:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.socket.close()
+        self.close()
+
+    def close(self) -> None:
+        self._open.close()
 
     def ask(self, kind: str, **fields: Any) -> None:
         self.socket.send(json.dumps({"type": kind, **fields}))

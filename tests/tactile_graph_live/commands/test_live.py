@@ -37,6 +37,15 @@ def command(folder: Path) -> Iterator[Command]:
         yield found
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Command]:
+    """Return a command for tests that leave it as it is."""
+    folder = tmp_path_factory.mktemp("shared")
+    (folder / "mine.yaml").write_text(PIPELINE)
+    with running(folder, "mine.yaml", "--rate", "40") as found:
+        yield found
+
+
 def fetched(address: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
     """Return status, headers and body of an answer."""
     names = {k.replace("_", "-"): v for k, v in headers.items()}
@@ -245,8 +254,8 @@ def test_tare_takes_off_what_lies_there(command: Command) -> None:
         page.until("pulse", tared=False)
 
 
-def test_programs_take_every_result_in_order(command: Command) -> None:
-    with Page(command, "results") as program:
+def test_programs_take_every_result_in_order(shared: Command) -> None:
+    with Page(shared, "results") as program:
         rows = [program.next() for _ in range(60)]
     numbers = [r["frame"] for r in rows]
     assert numbers == list(range(numbers[0], numbers[0] + 60))
@@ -265,10 +274,10 @@ def test_results_go_out_as_osc(folder: Path) -> None:
     assert any(b"/circle/0/radius_cm\0" in g for g in got)
 
 
-def test_one_that_reads_nothing_is_dropped_and_harms_nobody(command: Command) -> None:
-    with socket.create_connection(("127.0.0.1", command.port)) as deaf, Page(command) as page:
+def test_one_that_reads_nothing_is_dropped_and_harms_nobody(shared: Command) -> None:
+    with socket.create_connection(("127.0.0.1", shared.port)) as deaf, Page(shared) as page:
         deaf.sendall(
-            f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{command.port}\r\nUpgrade: websocket\r\n"
+            f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{shared.port}\r\nUpgrade: websocket\r\n"
             "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
             "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode()
         )
@@ -280,8 +289,8 @@ def test_one_that_reads_nothing_is_dropped_and_harms_nobody(command: Command) ->
 @pytest.mark.parametrize(
     "sent", ["no json", "[]", "[" * 5000, '{"type": "nope"}', '{"type": "set", "node": 1}', "{}"]
 )
-def test_nonsense_from_a_page_stops_nothing(command: Command, sent: str) -> None:
-    with Page(command) as page, Page(command) as other:
+def test_nonsense_from_a_page_stops_nothing(shared: Command, sent: str) -> None:
+    with Page(shared) as page, Page(shared) as other:
         page.until("frame")
         page.socket.send(sent)
         other.until("frame")
@@ -291,30 +300,30 @@ def test_nonsense_from_a_page_stops_nothing(command: Command, sent: str) -> None
 # -- who may ask ---------------------------------------------------------------------------------
 
 
-def test_the_page_is_served_with_its_policy(command: Command) -> None:
-    status, headers, body = fetched(command.address)
+def test_the_page_is_served_with_its_policy(shared: Command) -> None:
+    status, headers, body = fetched(shared.address)
     assert (status, b"<!doctype html>" in body.lower()) == (200, True)
     assert headers["content-security-policy"].startswith("default-src 'none'")
-    assert fetched(f"{command.address}index.html")[0] == 200
+    assert fetched(f"{shared.address}index.html")[0] == 200
 
 
 @pytest.mark.parametrize(
     "path", ["../pyproject.toml", "%2e%2e/commands/live.py", "..%2f..%2f__init__.py", "mine.yaml",
              "page/index.html", "__init__.py", "index.html%00.js", "/etc/passwd"]
 )  # fmt: skip
-def test_nothing_else_is_served(command: Command, path: str) -> None:
-    assert fetched(f"{command.address}{path}")[0] in (403, 404)
+def test_nothing_else_is_served(shared: Command, path: str) -> None:
+    assert fetched(f"{shared.address}{path}")[0] in (403, 404)
 
 
-def test_other_sites_and_rebound_names_are_refused(command: Command) -> None:
+def test_other_sites_and_rebound_names_are_refused(shared: Command) -> None:
     from websockets.exceptions import InvalidStatus
 
-    assert fetched(command.address, Host="evil.example")[0] == 403
-    assert fetched(command.address, Origin="http://evil.example")[0] == 403
+    assert fetched(shared.address, Host="evil.example")[0] == 403
+    assert fetched(shared.address, Origin="http://evil.example")[0] == 403
     for path in ("live", "results"):
         with pytest.raises(InvalidStatus):
-            Page(command, path, {"Origin": "http://evil.example"})
-    Page(command, headers={"Origin": f"http://127.0.0.1:{command.port}"}).socket.close()
+            Page(shared, path, {"Origin": "http://evil.example"})
+    Page(shared, headers={"Origin": f"http://127.0.0.1:{shared.port}"}).close()
 
 
 def test_an_address_that_others_reach_wants_the_token_that_is_printed(folder: Path) -> None:
@@ -406,8 +415,8 @@ def test_without_the_extra_it_says_what_to_install(
     assert "pip install 'tactile-graph[live]'" in done.output
 
 
-def test_every_message_is_json_without_nan(command: Command) -> None:
-    with Page(command) as page:
+def test_every_message_is_json_without_nan(shared: Command) -> None:
+    with Page(shared) as page:
         for _ in range(40):
             page.next()
         for message in page.got:
