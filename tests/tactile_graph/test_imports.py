@@ -16,6 +16,7 @@ PUBLIC = (
     "tactile_graph",
     "tactile_graph.wires",
     "tactile_graph.steps",
+    "tactile_graph.docstring",
     "tactile_graph.errors",
     "tactile_graph.exporter",
     "tactile_graph.files",
