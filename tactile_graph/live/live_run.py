@@ -159,9 +159,10 @@ class LiveRun(Generic[ResultT]):
             Frames that it is run on before, with a state of their own: kernels are then compiled
             when the first frame comes. Not for pipelines that write.
         """
-        trial = pipeline.runner(self._only, self._seed)
-        for frame in tried_on:
-            trial(frame)
+        if frames := list(tried_on):
+            trial = pipeline.runner(self._only, self._seed)
+            for frame in frames:
+                trial(frame)
         ready = self._made_ready(pipeline)
         self._pipeline = pipeline
         self._ready = ready
