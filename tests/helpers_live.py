@@ -22,6 +22,14 @@ nodes:
   circle: {step: fit_circle, in: boundary}
 outputs: [circle]
 """
+COUNTS = """\
+pipeline: counts
+nodes:
+  above: {step: threshold_otsu, in: frame}
+  boundary: {step: boundary_scan, in: above.mask, when: above.mask.count > 2}
+  circle: {step: fit_circle, in: boundary}
+outputs: [circle]
+"""
 PATIENCE_S = 30.0
 
 
