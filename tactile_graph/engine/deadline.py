@@ -77,8 +77,9 @@ class Expected:
         """Take a time into account."""
         time, usual = log(max(ns, 1.0)), self._usual_for(kind)
         strayed = 0.0 if usual is None else time - usual
-        known = self._usual.get(kind)
-        self._usual[kind] = time if known is None else known + FOLLOWS * strayed
+        # After many refusals nothing of late is known: then this one time counts for all.
+        follows = max(FOLLOWS, 1.0 - exp(-self._faded))
+        self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
         self._faded = 0.0
         self._strayed.append(strayed)
         insort(self._strayed_in_order, strayed)
