@@ -77,7 +77,11 @@ class Bench:
         )
         self._player.hold(self._held)
         self._run: LiveRun[Result] = LiveRun(
-            self._pipeline, self._frames(), seed=order.seed, deadline_us=order.deadline_us
+            self._pipeline,
+            self._frames(),
+            seed=order.seed,
+            deadline_us=order.deadline_us,
+            capacity=order.capacity,
         )
         self._run.beside = self._beside
         self._tally.begin()

@@ -33,6 +33,8 @@ class Order:
         Whether what is played ends, instead of starting over.
     unpaced : bool
         Whether frames are taken as fast as they come.
+    capacity : int
+        How many frames may wait for the pipeline; then the oldest is shed.
     selection : str
         The plugins that are chosen.
     beside : bytes
@@ -46,6 +48,7 @@ class Order:
     rate_hz: float | None = None
     once: bool = False
     unpaced: bool = False
+    capacity: int = 16
     selection: str = ""
     beside: bytes = b""
 
