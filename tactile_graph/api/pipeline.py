@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tactile_graph.engine.block import Block
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
+    from tactile_graph.live.live_stream import LiveStream
     from tactile_graph.wires.frame_stack import FrameStack
 
 
@@ -145,6 +146,34 @@ class Pipeline(Graph):
         asked = tuple(only or self.outputs)
         given = self.frames(seed) if frames is None else frames
         return Results(self, asked, self.results(given, runner))
+
+    def live(
+        self,
+        source: Iterable[Frame] | None = None,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+        deadline_us: float | None = None,
+    ) -> LiveStream[Result]:
+        """Return the results of frames as these come, for ``async for``; it may be closed early.
+
+        Frames are read and answered by threads of their own, in order; those that come too fast are
+        shed, the oldest first, as `LiveResult` says. For a loop without ``async`` there is
+        `tactile_graph.live.LiveRun`.
+
+        Parameters
+        ----------
+        source : iterable of Frame, optional
+            The pipeline's own source if not given. Read as fast as it gives frames: for a recording
+            see `tactile_graph.live.paced`.
+        only, seed
+            As in `run`.
+        deadline_us : float, optional
+            Microseconds from a frame's arrival within which its result is wanted.
+        """
+        from tactile_graph.live.live_run import LiveRun
+        from tactile_graph.live.live_stream import LiveStream
+
+        return LiveStream(LiveRun(self, source, only=only, seed=seed, deadline_us=deadline_us))
 
     def results(
         self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]

@@ -1,0 +1,192 @@
+"""``LiveRun``: a source read by a thread of its own, each frame answered as soon as may be.
+
+The reader does nothing but take frames and stamp them, so that a frame's arrival is known however
+long the one before it takes. Frames wait in a queue of bounded length; when one too many comes the
+oldest is shed, and counted. The loop stands in the caller's thread.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from threading import Condition, Thread
+from typing import Any, Generic, Protocol, TypeVar
+
+from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.runner import Runner
+from tactile_graph.live.live_result import LiveResult
+from tactile_graph.live.waiting import Arrival, Waiting
+from tactile_graph.steps.injected import Report
+from tactile_graph.wires.frame import Frame
+
+ResultT = TypeVar("ResultT", bound=Outcomes)
+Clock = Callable[[], int]
+CAPACITY = 64
+"""Frames that may wait: at 1 kHz a stall of 64 ms costs none."""
+
+
+class Runnable(Protocol[ResultT]):
+    """What a live run needs of a pipeline."""
+
+    def runner(self, only: Sequence[str] | None = ..., seed: int = ...) -> Runner[ResultT]:
+        """Return a callable of frames that keeps state."""
+
+    def frames(self, seed: int = ..., report: Report | None = ...) -> Iterator[Frame]:
+        """Return the frames of the pipeline's own source."""
+
+
+class LiveRun(Generic[ResultT]):
+    """Iterate over it: the result of each frame, as it comes, with its times.
+
+    All of its methods may be called from other threads than the one that iterates. It can be
+    iterated over once.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    source : iterable of Frame, optional
+        The pipeline's own source if not given. Read as fast as it gives frames: a recording wants
+        `paced`.
+    only : sequence of str, optional
+        Nodes or ``node.field`` to ask for instead of the pipeline's outputs.
+    seed : int
+        Seed of the steps that take randomness, and of the source.
+    deadline_us : float, optional
+        Microseconds from a frame's arrival within which its result is wanted.
+    capacity : int
+        How many frames may wait.
+    report : Report, optional
+        Receives what the pipeline's own source has to say.
+    clock : callable
+        Nanoseconds now.
+    """
+
+    def __init__(
+        self,
+        pipeline: Runnable[ResultT],
+        source: Iterable[Frame] | None = None,
+        *,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+        deadline_us: float | None = None,
+        capacity: int = CAPACITY,
+        report: Report | None = None,
+        clock: Clock = time.perf_counter_ns,
+    ) -> None:
+        self.report = report or Report()
+        self.deadline_us = deadline_us
+        self._only, self._seed, self._clock = only, seed, clock
+        self._runner = pipeline.runner(only, seed)
+        self._source = pipeline.frames(seed, self.report) if source is None else source
+        self._waiting = Waiting(capacity)
+        self._error: BaseException | None = None
+        self._stopped = False
+        self._paused = False
+        self._steps = 0
+        self._may_go = Condition()
+        self.n_lost = 0
+
+    # -- what others may ask of it -------------------------------------------------------------
+
+    @property
+    def n_shed(self) -> int:
+        """How many frames were shed since the run began."""
+        return self._waiting.n_shed
+
+    @property
+    def n_waiting(self) -> int:
+        """How many frames wait now."""
+        return len(self._waiting)
+
+    @property
+    def paused(self) -> bool:
+        """Whether frames are let pass without a result."""
+        return self._paused
+
+    def swap(self, pipeline: Runnable[ResultT]) -> None:
+        """Run another pipeline from the next frame on, over the same source.
+
+        It is made ready in the caller's thread, so that no frame waits for that. Its stateful steps
+        start anew.
+        """
+        self._runner = pipeline.runner(self._only, self._seed)
+
+    def pause(self) -> None:
+        """Let frames pass without a result until `resume` or `step`; they do not count as shed."""
+        self._paused = True
+        self._waiting.clear()
+
+    def resume(self) -> None:
+        """Go on with the next frame that comes."""
+        with self._may_go:
+            self._paused = False
+            self._may_go.notify_all()
+
+    def step(self) -> None:
+        """While paused: answer one more frame, the next that comes."""
+        with self._may_go:
+            self._steps += 1
+            self._may_go.notify_all()
+
+    def stop(self) -> None:
+        """End the run after the frame that is under way."""
+        with self._may_go:
+            self._stopped = True
+            self._may_go.notify_all()
+        self._waiting.end()
+
+    # -- the loop ------------------------------------------------------------------------------
+
+    def run(self, publish: Callable[[LiveResult[ResultT]], Any]) -> None:
+        """Hand each result to a callable, until the source ends or `stop`."""
+        for live in self:
+            publish(live)
+
+    def __iter__(self) -> Iterator[LiveResult[ResultT]]:
+        """Yield results as frames come.
+
+        Raises
+        ------
+        Exception
+            What the source raised, after the frames it gave before.
+        """
+        reader = Thread(target=self._read, name="tactile-graph reader", daemon=True)
+        reader.start()
+        try:
+            while not self._stopped and not self._waiting.over:
+                arrival = self._waiting.take()
+                if arrival is not None and not self._stopped:
+                    yield self._answered(arrival)
+        finally:
+            self.stop()
+        if self._error is not None:
+            raise self._error
+
+    def _answered(self, arrival: Arrival) -> LiveResult[ResultT]:
+        frame, arrived_ns = arrival
+        self.n_lost += frame.gap
+        begun_ns = self._clock()
+        result = self._runner(frame)
+        done_ns = self._clock()
+        return LiveResult(result, arrived_ns, begun_ns, done_ns, self.n_shed, self.n_lost)
+
+    # -- the reader ----------------------------------------------------------------------------
+
+    def _read(self) -> None:
+        try:
+            for frame in self._source:
+                arrival = Arrival(frame, self._clock())
+                if self._stopped:
+                    break
+                if not self._paused or self._one_more():
+                    self._waiting.put(arrival)
+        except BaseException as error:  # a source may raise anything; it is raised where it is read
+            self._error = error
+        finally:
+            self._waiting.end()
+
+    def _one_more(self) -> bool:
+        with self._may_go:
+            asked = self._steps > 0
+            self._steps -= asked
+            return asked
