@@ -39,7 +39,7 @@ export class NodeList {
     for (const [name, row] of this.rows) if (!names.has(name)) this.drop(name, row);
     boxes.forEach((box, i) => {
       const row = this.rows.get(box.name) ?? this.row(box.name);
-      write(row.step, box.step || (box.role === "frame" ? "what the source gives" : ""));
+      write(row.step, box.role === "frame" ? "what the source gives" : box.step);
       row.element.classList.toggle("output", outputs.has(box.name));
       mark(row.element, "title", about.get(box.name)?.about ?? "");
       row.rail.replaceWith((row.rail = railOf(drawn.rows[i], drawn.count)));

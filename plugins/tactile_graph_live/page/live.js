@@ -162,6 +162,17 @@ startKeys({
   d: () => byId("theme").click(),
   escape: () => card.close(),
 });
+/** Spread the cards over columns where there is room; reading order is that of the eye either way. */
+function arrange() {
+  const places = wide.matches ? WIDE : { left: NARROW };
+  for (const [column, cards] of Object.entries(places)) byId(column).append(...cards.map(byId));
+}
+
+const NARROW = ["pad", "graph", "node", "results", "contacts", "timing", "settings", "file"];
+const WIDE = { left: ["pad", "file"], middle: ["graph", "settings"], right: ["node", "results", "contacts", "timing"] };
+const wide = matchMedia("(min-width: 781px)");
+wide.addEventListener("change", arrange);
+arrange();
 setInterval(count, 1000);
 setInterval(() => {
   if (document.hidden || !shown) return;

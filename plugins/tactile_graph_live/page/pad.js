@@ -6,12 +6,14 @@ import { told, ticks } from "./numbers.js";
 import { View, drawGrid, drawNumbers, drawShapes, extentOf, heatStops, valueAt } from "./paint.js";
 import { colour, remember, remembered } from "./theme.js";
 
-const MARGIN = { left: 38, top: 8, right: 66, bottom: 34 };
+const MARGIN = { left: 38, top: 8, right: 72, bottom: 34 };
 const TRAIL_S = 2;
 const READOUT_MS = 200;
 const LONGEST_GAP_S = 0.5;
 const LONGEST_JUMP_CM = 3;
 const MOST_PLACES = 90;
+const LEAST_PX = 160;
+const MOST_OF_WINDOW = 0.6;
 
 export class Pad {
   constructor() {
@@ -31,7 +33,8 @@ export class Pad {
         this.draw();
       });
     }
-    new ResizeObserver(() => this.draw()).observe(this.canvas);
+    new ResizeObserver(() => this.resized()).observe(this.canvas);
+    addEventListener("resize", () => this.resized());
   }
 
   /** Whether any object left a trail. */
@@ -43,20 +46,32 @@ export class Pad {
   paint(frame) {
     const before = this.frame?.pad;
     this.frame = frame;
-    const grid = frame.pad;
-    if (!before || before.rows !== grid.rows || before.columns !== grid.columns) this.shape(grid);
+    if (!before || String(gridOf(before)) !== String(gridOf(frame.pad))) this.begin();
     this.follow(frame);
     this.draw();
     if (performance.now() - this.toldAt > READOUT_MS) this.tell();
   }
 
-  /** Give the canvas the height that suits the pad. */
-  shape(grid) {
-    const { left, top, right, bottom } = extentOf(grid);
-    const ratio = Math.min(1.6, Math.max(0.35, (bottom - top) / (right - left)));
-    this.canvas.style.setProperty("--ratio", ratio);
+  resized() {
+    this.shape();
+    this.draw();
+  }
+
+  /** Another pad: nothing of the one before holds. */
+  begin() {
     this.cell = null;
     this.trails.clear();
+    this.shape();
+  }
+
+  /** Give the canvas the height that suits the pad and the window. */
+  shape() {
+    if (!this.frame) return;
+    const { left, top, right, bottom } = extentOf(this.frame.pad);
+    const across = this.canvas.clientWidth - MARGIN.left - MARGIN.right;
+    const ideal = (across * (bottom - top)) / (right - left) + MARGIN.top + MARGIN.bottom;
+    const height = Math.max(LEAST_PX, Math.min(ideal, MOST_OF_WINDOW * window.innerHeight));
+    this.canvas.style.height = `${Math.round(height)}px`;
   }
 
   /** Remember where objects were, for as long as their trail is shown. */
@@ -127,7 +142,7 @@ export class Pad {
       const x = Math.round(view.x(tick)) + 0.5;
       context.moveTo(x, foot);
       context.lineTo(x, foot + 4);
-      context.fillText(told(tick), x, foot + 6);
+      context.fillText(String(tick), x, foot + 6);
     }
     context.textAlign = "right";
     context.textBaseline = "middle";
@@ -135,7 +150,7 @@ export class Pad {
       const y = Math.round(view.y(tick)) + 0.5;
       context.moveTo(side - 4, y);
       context.lineTo(side, y);
-      context.fillText(told(tick), side - 6, y);
+      context.fillText(String(tick), side - 6, y);
     }
     context.stroke();
     context.textBaseline = "alphabetic";
@@ -161,10 +176,10 @@ export class Pad {
     const span = grid.high - grid.low || 1;
     for (const tick of ticks(grid.low, grid.high, view.height / 60)) {
       const y = view.top + view.height * (1 - (tick - grid.low) / span);
-      context.fillText(told(tick), x + width + 5, Math.max(view.top + 5, y));
+      context.fillText(String(tick), x + width + 5, Math.max(view.top + 5, y));
     }
     context.save();
-    context.translate(x + width + 42, view.top + view.height / 2);
+    context.translate(x + width + 44, view.top + view.height / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
     context.fillText(measured(grid), 0, 0);
@@ -252,6 +267,8 @@ export class Pad {
   }
 }
 
+
+const gridOf = (pad) => [pad.rows, pad.columns, ...pad.pitch_cm, ...pad.origin_cm];
 
 const measured = (grid) => (grid.unit && grid.unit !== grid.quantity ? `${grid.quantity}, ${grid.unit}` : grid.quantity || "");
 

@@ -1,9 +1,10 @@
 // Settings as controls: a slider with its range and unit, a box for the number, a way back.
 
 import { byId, make, mark, write } from "./dom.js";
-import { told } from "./numbers.js";
+import { named, told } from "./numbers.js";
 
 const SEND_MS = 60;
+const FIRST_OPEN = 3;
 let count = 0;
 
 export class Settings {
@@ -25,7 +26,7 @@ export class Settings {
     nodes.forEach((node, i) => {
       let group = [...home.children].find((other) => other.dataset.node === node.name);
       if (!group) {
-        group = make("details", { "data-node": node.name, open: i < 4 },
+        group = make("details", { "data-node": node.name, open: i < FIRST_OPEN },
           make("summary", {}, make("b", {}, node.name), " ", make("span", { class: "soft" })), make("div"));
       }
       write(group.querySelector("summary .soft"), node.step);
@@ -90,10 +91,10 @@ class Control {
     }
     this.reset = make("button", { type: "button", class: "quiet reset", "aria-label": `Reset ${node}, ${setting.name}`, title: "Back to what the file says" }, "↺");
     this.reset.addEventListener("click", () => this.back());
-    const help = setting.help ? [make("p", { class: "help", id: `${id}-help` }, setting.help)] : [];
+    const help = setting.help ? [make("p", { class: "help", id: `${id}-help`, title: setting.help }, setting.help.replaceAll("`", ""))] : [];
     if (help.length) for (const input of this.inputs) mark(input, "aria-describedby", `${id}-help`);
     this.element = make("div", { class: `setting ${setting.kind}` },
-      make("label", { for: id }, setting.name.replaceAll("_", " "), ...(setting.unit ? [" ", make("span", { class: "unit" }, setting.unit)] : [])),
+      make("label", { for: id }, setting.unit ? named(setting.name)[0] : setting.name.replaceAll("_", " "), ...(setting.unit ? [" ", make("span", { class: "unit" }, setting.unit)] : [])),
       make("div", { class: "inputs" }, ...this.inputs), this.reset, ...help);
     this.original = setting.changed ? undefined : setting.value;
   }
