@@ -5,6 +5,7 @@ import { named, told } from "./numbers.js";
 
 const SEND_MS = 60;
 const FIRST_OPEN = 3;
+const HANDS_OFF_MS = 600;
 let count = 0;
 
 export class Settings {
@@ -13,6 +14,7 @@ export class Settings {
     this.set = set;
     this.unset = unset;
     this.controls = new Set();
+    this.ofFile = new Map();
     byId("reset-all").addEventListener("click", unset);
   }
 
@@ -40,7 +42,7 @@ export class Settings {
 
   /** Fill an element with a node's settings; controls that are there keep their focus. */
   fill(home, node) {
-    const key = node ? JSON.stringify([node.name, node.settings.map(({ value, changed, ...rest }) => rest)]) : "";
+    const key = node ? JSON.stringify([node.name, node.settings.map((s) => [s.name, s.kind, s.choices, s.unit, s.help])]) : "";
     if (home.dataset.key !== key) {
       home.dataset.key = key;
       for (const control of this.controls) if (control.home === home) this.controls.delete(control);
@@ -48,23 +50,23 @@ export class Settings {
       home.replaceChildren(...made.map((control) => control.element));
       if (node && !made.length) home.append(make("p", { class: "soft" }, "No settings."));
     }
-    for (const setting of node?.settings ?? []) this.show(node.name, setting);
+    for (const setting of node?.settings ?? []) this.show(node.name, setting, false);
   }
 
-  show(node, setting) {
+  /** Have all controls of a setting show what runs. */
+  show(node, setting, refused) {
+    const key = `${node} ${setting.name}`;
+    if (!setting.changed) this.ofFile.set(key, setting.value);
     for (const control of this.controls) {
-      if (control.node === node && control.name === setting.name) control.take(setting);
+      if (control.node !== node || control.name !== setting.name) continue;
+      control.take(setting, this.ofFile.get(key), refused);
     }
   }
 
   /** Put all controls back to what runs: what was asked for was refused. */
   refuse() {
     for (const node of this.graph?.nodes ?? []) {
-      for (const setting of node.settings) {
-        for (const control of this.controls) {
-          if (control.node === node.name && control.name === setting.name) control.take(setting, true);
-        }
-      }
+      for (const setting of node.settings) this.show(node.name, setting, true);
     }
   }
 
@@ -96,7 +98,6 @@ class Control {
     this.element = make("div", { class: `setting ${setting.kind}` },
       make("label", { for: id }, setting.unit ? named(setting.name)[0] : setting.name.replaceAll("_", " "), ...(setting.unit ? [" ", make("span", { class: "unit" }, setting.unit)] : [])),
       make("div", { class: "inputs" }, ...this.inputs), this.reset, ...help);
-    this.original = setting.changed ? undefined : setting.value;
   }
 
   changed(input) {
@@ -122,20 +123,27 @@ class Control {
   }
 
   back() {
-    if (this.original === undefined) return;
-    for (const input of this.inputs) put(input, this.original);
-    this.send(this.original);
+    for (const input of this.inputs) put(input, this.ofFile);
+    this.send(this.ofFile);
   }
 
-  /** Show what runs; not over the hand of who is just now dragging. */
-  take(setting, refused = false) {
-    if (!setting.changed) this.original = setting.value;
-    if (this.original === undefined && "file_value" in setting) this.original = setting.file_value;
+  /** Show what runs; not over the hand of who is just now dragging, unless that was refused. */
+  take(setting, ofFile, refused) {
+    this.ofFile = ofFile;
     this.element.classList.toggle("changed", setting.changed);
-    this.reset.disabled = !setting.changed || this.original === undefined;
-    if (!refused && performance.now() - this.touchedAt < 600) return;
-    for (const input of this.inputs) put(input, setting.value);
+    this.reset.disabled = !setting.changed || ofFile === undefined;
+    if (!refused && performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    for (const input of this.inputs) {
+      if (input.type === "range") widen(input, setting);
+      put(input, setting.value);
+    }
   }
+}
+
+/** Let a slider reach a value that is beyond its ends; they stay where they are otherwise. */
+function widen(slider, { value, slider_low: low, slider_high: high }) {
+  if (value < Number(slider.min)) slider.min = Math.min(low, value);
+  if (value > Number(slider.max)) slider.max = Math.max(high, value);
 }
 
 function makeInputs(setting, id, name) {
