@@ -157,7 +157,9 @@ class Double:
 
     def heard(self, kind: str, within_s: float = 5.0) -> Plain:
         """Return the newest that pages asked of a kind; waits for it, and forgets all."""
-        wait_for(lambda: any(a["type"] == kind for a in self.asked), f"a page asks {kind}", within_s)
+        wait_for(
+            lambda: any(a["type"] == kind for a in self.asked), f"a page asks {kind}", within_s
+        )
         found = [a for a in self.asked if a["type"] == kind][-1]
         self.asked.clear()
         return found
@@ -169,6 +171,12 @@ def wait_for(holds: Callable[[], bool], what: str, within_s: float = 5.0) -> Non
     while not holds():
         assert time.monotonic() < end, f"not within {within_s:g} s: {what}"
         time.sleep(0.01)
+
+
+def drawn(page: Any, words: str) -> None:
+    """Wait until a frame is drawn that is told so (``frame 7``)."""
+    told = page.locator("#when")
+    wait_for(lambda: words in told.inner_text().split(" · "), f"{words} is drawn")
 
 
 def free_port() -> int:

@@ -3,6 +3,9 @@
 
 export const byId = (id) => document.getElementById(id);
 
+/** Return what a message has under a name; a name like `constructor` finds nothing inherited. */
+export const own = (record, name) => (Object.hasOwn(record, name) ? record[name] : undefined);
+
 /** Return a new element with attributes and children; a child that is no element is text. */
 export function make(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);

@@ -1,6 +1,6 @@
 // The graph as the page's table of contents: a row for each node, its wires as rails beside it.
 
-import { byId, make, mark, write } from "./dom.js";
+import { byId, make, mark, own, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { drawPicture, extentOf } from "./paint.js";
@@ -92,14 +92,15 @@ export class NodeList {
     const extent = extentOf(frame.pad);
     let longest = 1;
     for (const [name, row] of this.rows) {
-      const story = name === "frame" ? { outcome: "ran", reason: "", us: null } : frame.nodes[name];
+      const story = name === "frame" ? { outcome: "ran", reason: "", us: null } : own(frame.nodes, name);
       const ran = story && (story.outcome === "ran" || story.outcome === "failed") && story.us !== null;
       if (ran) row.us = row.us === null ? story.us : row.us + SMOOTHING * (story.us - row.us);
       longest = Math.max(longest, row.us ?? 0);
       setBadge(row.fate, fateOf(story));
       if (row.element.dataset.fate !== fateOf(story)) row.element.dataset.fate = fateOf(story);
-      if (this.inSight.has(name)) this.thumb(row, frame.pictures[name], extent);
-      if (words) write(row.reason, story?.outcome === "ran" ? notesOf(frame.pictures[name]) : story?.reason ?? "");
+      const shapes = own(frame.pictures, name);
+      if (this.inSight.has(name)) this.thumb(row, shapes, extent);
+      if (words) write(row.reason, story?.outcome === "ran" ? notesOf(shapes) : story?.reason ?? "");
     }
     if (words) this.times(frame, longest);
   }
@@ -114,8 +115,9 @@ export class NodeList {
   times(frame, longest) {
     let total = 0;
     for (const [name, row] of this.rows) {
-      const us = frame.nodes[name]?.us ?? null;
-      const ran = frame.nodes[name]?.outcome === "ran";
+      const story = own(frame.nodes, name);
+      const us = story?.us ?? null;
+      const ran = story?.outcome === "ran";
       if (ran && us !== null) total += row.us ?? us;
       write(row.time, row.us !== null && ran ? duration(row.us) : "\u00a0");
       row.bar.style.setProperty("--share", ran ? ((row.us ?? 0) / longest).toFixed(3) : 0);

@@ -1,7 +1,7 @@
 // A running pad in the browser: messages come in, the newest frame is drawn when the screen is ready.
 
 import { Connection } from "./connection.js";
-import { byId, mark, show, write } from "./dom.js";
+import { byId, mark, own, show, write } from "./dom.js";
 import { NodeList } from "./graph.js";
 import { startKeys } from "./keys.js";
 import { NodeCard } from "./node.js";
@@ -144,7 +144,7 @@ function connected(up) {
   if (up) look([...nodes.inSight]);
 }
 
-const connection = new Connection((message) => TAKE[message.type]?.(message), connected);
+const connection = new Connection((message) => own(TAKE, message?.type)?.(message), connected);
 startTheme(() => {
   pad.draw();
   status.chart();

@@ -1,6 +1,6 @@
 // One node, large: its picture, how it fared and why, what it may be set to.
 
-import { byId, make, mark, show, write } from "./dom.js";
+import { byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { drawPicture, extentOf } from "./paint.js";
@@ -58,8 +58,8 @@ export class NodeCard {
 
   paint(frame) {
     if (this.name === null) return;
-    const story = this.name === "frame" ? { outcome: "ran", reason: "", us: null } : frame.nodes[this.name];
-    const shapes = frame.pictures[this.name];
+    const story = this.name === "frame" ? { outcome: "ran", reason: "", us: null } : own(frame.nodes, this.name);
+    const shapes = own(frame.pictures, this.name);
     const { left, top, right, bottom } = extentOf(frame.pad);
     this.canvas.style.setProperty("--ratio", Math.min(1.4, Math.max(0.35, (bottom - top) / (right - left))));
     const drawn = shapes ? drawPicture(this.canvas, shapes, extentOf(frame.pad), 1) : undefined;

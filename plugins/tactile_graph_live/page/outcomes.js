@@ -16,7 +16,7 @@ const SHAPES = {
 export function fateOf(story) {
   if (!story) return "skipped";
   if (story.outcome === "skipped" && story.reason === "deadline") return "deadline";
-  return story.outcome in WORDS ? story.outcome : "skipped";
+  return Object.hasOwn(WORDS, story.outcome) ? story.outcome : "skipped";
 }
 
 /** Return a new badge, as yet without an outcome. */

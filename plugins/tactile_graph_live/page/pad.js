@@ -2,7 +2,7 @@
 // contacts came from, and the value of the cell that is pointed at.
 
 import { byId, fitted, make, mark, write } from "./dom.js";
-import { told, ticks } from "./numbers.js";
+import { ticks } from "./numbers.js";
 import { View, drawGrid, drawNumbers, drawShapes, extentOf, heatStops, valueAt } from "./paint.js";
 import { colour, remember, remembered } from "./theme.js";
 
@@ -247,7 +247,7 @@ export class Pad {
     const value = valueAt(grid, row, column);
     const x = left + (column + 0.5) * grid.pitch_cm[0];
     const y = top + (row + 0.5) * grid.pitch_cm[1];
-    const read = value === null ? "no reading" : `${told(Number(value.toPrecision(3)))} ${grid.unit || ""}`.trim();
+    const read = value === null ? "no reading" : `${rounded(value)} ${grid.unit || ""}`.trim();
     return `Row ${row}, column ${column}: ${read}, at ${x.toFixed(1)}, ${y.toFixed(1)} cm`;
   }
 
@@ -263,10 +263,13 @@ export class Pad {
       }
     }
     const size = `The pad, ${grid.rows} rows of ${grid.columns} cells, ${measured(grid)}`;
-    return best ? `${size}; highest ${told(Number(best[0].toPrecision(3)))} at row ${best[1]}, column ${best[2]}` : size;
+    return best ? `${size}; highest ${rounded(best[0])} at row ${best[1]}, column ${best[2]}` : size;
   }
 }
 
+
+/** As fine as the levels between a cell's lowest and highest tell. */
+const rounded = (value) => String(Number(value.toPrecision(3)));
 
 const gridOf = (pad) => [pad.rows, pad.columns, ...pad.pitch_cm, ...pad.origin_cm];
 

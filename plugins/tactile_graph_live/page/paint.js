@@ -1,7 +1,7 @@
 // Display lists on a canvas: grids of cells beneath, lines over them, words on top. The one place
 // that knows what `tactile_graph.draw.display` gives.
 
-import { fitted } from "./dom.js";
+import { fitted, own } from "./dom.js";
 import { colour } from "./theme.js";
 
 const STOPS = [
@@ -133,7 +133,7 @@ function drawShape(context, view, shape, scale) {
     drawWord(context, view, shape, ink, scale);
     return;
   }
-  const path = PATHS[shape.shape]?.(shape, view, scale);
+  const path = own(PATHS, shape.shape)?.(shape, view, scale);
   if (!path) return;
   if (shape.fill) {
     context.globalAlpha = 0.3;

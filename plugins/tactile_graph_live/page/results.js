@@ -84,7 +84,7 @@ export class Results {
       body.append(head);
     }
     const [name, unit] = this.label(field);
-    const canvas = make("canvas", { class: "spark", role: "img", "aria-label": "" });
+    const canvas = make("canvas", { class: "spark", role: "img", "aria-label": `${name} over time` });
     const number = make("b");
     const wrong = field.includes("_error_");
     const element = make("tr", wrong ? { class: "wrong" } : {}, make("th", { scope: "row" }, name),

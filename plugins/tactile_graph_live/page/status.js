@@ -65,7 +65,7 @@ export class Status {
 /** Show something the server says; errors stay until they are put away. */
 export function tell({ text, level }) {
   const list = byId("told");
-  const kind = level in WORDS ? level : "note";
+  const kind = Object.hasOwn(WORDS, level) ? level : "note";
   const close = make("button", { type: "button", class: "quiet", "aria-label": "Put away" }, "✕");
   const note = make("p", { class: `say ${kind}` },
     ...(WORDS[kind] ? [make("b", {}, `${WORDS[kind]}:`), " "] : []), text, close);

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, free_port, graph, pulse, served, wait_for
+from helpers_live_page import Double, drawn, frame, free_port, graph, pulse, served, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -35,7 +35,7 @@ def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> 
         assert page.locator("#lost").is_hidden()
         assert second.heard("show")["nodes"] == ["boundary", "circle", "footprint", "frame"]
         second.say(frame(500), graph(2, ("footprint", "circle")))
-        page.wait_for_function("document.getElementById('when').textContent.includes('frame 500')")
+        drawn(page, "frame 500")
         assert page.locator("#node-title").inner_text() == "circle"
         page.keyboard.press("t")
         second.heard("tare")

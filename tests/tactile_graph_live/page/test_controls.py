@@ -74,7 +74,7 @@ def test_the_time_bar_scrubs_and_follows(page: Any, double: Double) -> None:
     assert page.locator("#time-text").inner_text() == "12.5 s ago"
     page.wait_for_timeout(500)
     double.say(frame(3, back_s=7.25))
-    page.wait_for_function("document.getElementById('time-text').textContent === '7.25 s ago'")
+    wait_for(lambda: page.locator("#time-text").inner_text() == "7.25 s ago", "the bar follows")
     assert bar.input_value() == "-7.26" or bar.input_value() == "-7.24"
 
 
@@ -185,7 +185,9 @@ def test_outcomes_are_words_and_shapes(page: Any, double: Double) -> None:
     page.wait_for_selector("#nodes [data-name=circle] .badge[data-fate=failed]")
     words = {n: page.locator(f"#nodes [data-name={n}] .badge").inner_text() for n in nodes}
     assert words == {"footprint": "ran", "boundary": "no time", "circle": "failed"}
-    drawn = page.locator("#nodes .badge path").evaluate_all("all => all.map(p => p.getAttribute('d'))")
+    drawn = page.locator("#nodes .badge path").evaluate_all(
+        "all => all.map(p => p.getAttribute('d'))"
+    )
     assert len(set(drawn)) == 3
     assert "all points lie in a line" in page.locator("#nodes [data-name=circle]").inner_text()
 

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import COLUMNS, ROWS, Double, frame, picture, pulse, served
+from helpers_live_page import COLUMNS, ROWS, Double, drawn, frame, picture, pulse, served
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -33,7 +33,8 @@ def page(window: Any, double: Double) -> Iterator[Any]:
     opened.page.goto(double.address)
     opened.page.wait_for_selector("#result-rows tr")
     yield opened.page
-    assert opened.complaints() == []
+    # Only the tests themselves read back what is drawn.
+    assert [c for c in opened.complaints() if "getImageData" not in c] == []
 
 
 def pad(values: dict[tuple[int, int], int]) -> dict[str, Any]:
@@ -47,7 +48,7 @@ def pad(values: dict[tuple[int, int], int]) -> dict[str, Any]:
 def shown(page: Any, double: Double, **more: Any) -> None:
     """Have a frame drawn."""
     double.say(frame(42, **more))
-    page.wait_for_function("document.getElementById('when').textContent.includes('frame 42')")
+    drawn(page, "frame 42")
 
 
 def place(page: Any, row: float, column: float) -> list[float]:
@@ -131,7 +132,9 @@ def test_thirty_pictures_a_second_cost_little_and_leave_nothing_behind(
         double.say(pulse())
         if second == 1:
             before = page.evaluate(count)
-    median_ms, worst_ms = map(float, page.evaluate("document.documentElement.dataset.drawMs").split())
+    median_ms, worst_ms = map(
+        float, page.evaluate("document.documentElement.dataset.drawMs").split()
+    )
     assert page.evaluate(count) == before
     assert median_ms < 12
     assert worst_ms < 100

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, graph, hello, pulse, served, setting
+from helpers_live_page import Double, drawn, frame, graph, hello, pulse, served, setting
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -34,9 +34,14 @@ def hostile_messages() -> list[dict[str, Any]]:
         setting(HOSTILE[2], "text", HOSTILE[1], help=HOSTILE[0]),
     ]  # fmt: skip
     told["columns"] = [{"key": n, "name": n, "unit": n} for n in HOSTILE]
-    words = [{"shape": "text", "role": "found", "node": n, "x": 2.0, "y": 2.0, "text": n} for n in HOSTILE]
+    words = [
+        {"shape": "text", "role": "found", "node": n, "x": 2.0, "y": 2.0, "text": n}
+        for n in HOSTILE
+    ]
     notes = [{"shape": "note", "node": names[0], "name": n, "value": n} for n in HOSTILE]
-    rows = [{"output": n, "item": 1, "outcome": n, "type": n} | {m: m for m in HOSTILE} for n in HOSTILE]
+    rows = [
+        {"output": n, "item": 1, "outcome": n, "type": n} | {m: m for m in HOSTILE} for n in HOSTILE
+    ]
     rows += [{"output": HOSTILE[0], "item": i, "outcome": "ok", "x_cm": 1.0, HOSTILE[3]: HOSTILE[0]}
              for i in (2, 3)]  # fmt: skip
     nodes = {n: {"outcome": n, "reason": n, "us": 1.0} for n in names}
@@ -47,7 +52,7 @@ def hostile_messages() -> list[dict[str, Any]]:
         told,
         pulse(recording=recording, beside={"variant": HOSTILE[0], HOSTILE[1]: HOSTILE[2]}),
         frame(1, names, nodes=nodes, rows=rows, drawing=words, label=HOSTILE[1], pad=pad,
-              pictures={n: notes for n in names}),
+              pictures=dict.fromkeys(names, notes)),
         {"type": "trouble", "version": 2,
          "errors": [{"line": 1, "column": 1, "text": n} for n in HOSTILE]},
         {"type": "told", "text": HOSTILE[0], "level": HOSTILE[1]},
@@ -65,7 +70,12 @@ def test_hostile_names_stay_text(window: Any) -> None:
             page.wait_for_timeout(60)
             double.say(hostile_messages()[3])
         page.wait_for_timeout(400)
-        assert page.locator("main img, main script, main iframe, main [onerror], main [onload]").count() == 0
+        assert (
+            page.locator(
+                "main img, main script, main iframe, main [onerror], main [onload]"
+            ).count()
+            == 0
+        )
         assert page.locator("script").count() == 1
         shown = page.locator("#nodes").text_content()
         assert all(name in shown for name in HOSTILE)
@@ -87,7 +97,7 @@ def test_what_is_no_message_changes_nothing(window: Any, text: str) -> None:
         opened.page.goto(double.address)
         opened.page.wait_for_selector("#result-rows tr")
         double.say(text, frame(77))
-        opened.page.wait_for_function("document.getElementById('when').textContent.includes('frame 77')")
+        drawn(opened.page, "frame 77")
         assert opened.complaints() == []
 
 
@@ -95,7 +105,13 @@ def test_shapes_far_off_and_without_sense_do_no_harm(window: Any) -> None:
     shapes = [
         {"shape": "circle", "role": "found", "node": "", "x": 1e300, "y": -1e300, "radius": 1e300},
         {"shape": "polygon", "role": "true", "node": "", "xy": []},
-        {"shape": "polygon", "role": "found", "node": "", "xy": [[1e9, 1], [2, -1e12]], "fill": True},
+        {
+            "shape": "polygon",
+            "role": "found",
+            "node": "",
+            "xy": [[1e9, 1], [2, -1e12]],
+            "fill": True,
+        },
         {"shape": "of-no-kind", "role": "found", "node": ""},
         {"shape": "toString", "role": "found", "node": ""},
     ]
@@ -105,7 +121,7 @@ def test_shapes_far_off_and_without_sense_do_no_harm(window: Any) -> None:
         opened.page.goto(double.address)
         opened.page.wait_for_selector("#result-rows tr")
         double.say(frame(1, drawing=shapes, pad=pad), frame(2))
-        opened.page.wait_for_function("document.getElementById('when').textContent.includes('frame 2')")
+        drawn(opened.page, "frame 2")
         assert opened.complaints() == []
 
 

@@ -82,7 +82,9 @@ def test_keys_of_one_letter(page: Any, double: Double, key: str, asked: str) -> 
     double.heard(asked)
 
 
-def test_keys_are_letters_where_one_types_and_can_be_switched_off(page: Any, double: Double) -> None:
+def test_keys_are_letters_where_one_types_and_can_be_switched_off(
+    page: Any, double: Double
+) -> None:
     page.get_by_label("Label").focus()
     page.keyboard.type("tlr .")
     page.evaluate("document.activeElement.blur()")

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, graph, pulse, served
+from helpers_live_page import Double, frame, graph, pulse, served, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -116,7 +116,9 @@ def test_a_phone_shows_one_column_and_nothing_hangs_over(window: Any, double: Do
     tops = [b["y"] for b in boxes.values()]
     assert tops == sorted(tops)
     assert {round(b["x"]) for b in boxes.values()} == {10}
-    for control in page.locator("main button:visible, main input:visible:not([type=checkbox])").all():
+    for control in page.locator(
+        "main button:visible, main input:visible:not([type=checkbox])"
+    ).all():
         box = control.bounding_box()
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= 360
@@ -177,10 +179,15 @@ def test_tables_have_heads(window: Any, double: Double) -> None:
 
 def test_the_pad_is_told_in_words(window: Any, double: Double) -> None:
     page = opened(window, double).page
-    page.wait_for_function("document.getElementById('pad-canvas').getAttribute('aria-label').includes('highest')")
-    told = page.locator("#pad-canvas").get_attribute("aria-label")
+    pad = page.locator("#pad-canvas")
+    wait_for(lambda: "highest" in pad.get_attribute("aria-label"), "the pad is told in words")
+    told = pad.get_attribute("aria-label")
     assert told.startswith("The pad, 8 rows of 10 cells, volt, V; highest 2.")
-    assert page.locator("#result-rows .spark").first.get_attribute("aria-label").startswith("x, last ten seconds")
+    assert (
+        page.locator("#result-rows .spark")
+        .first.get_attribute("aria-label")
+        .startswith("x, last ten seconds")
+    )
 
 
 def test_results_are_spoken_at_a_bearable_pace(window: Any, double: Double) -> None:

@@ -22,7 +22,9 @@ def call(browser: Any) -> Any:
         page.wait_for_selector("#nodes [role=option]")
 
         def call(module: str, name: str, *values: Any) -> Any:
-            code = "async ([module, name, values]) => (await import(`/${module}.js`))[name](...values)"
+            code = (
+                "async ([module, name, values]) => (await import(`/${module}.js`))[name](...values)"
+            )
             return page.evaluate(code, [module, name, values])
 
         yield call
@@ -52,7 +54,9 @@ def test_what_is_read_again_keeps_its_lane_until_then(call: Any) -> None:
 
 
 def test_no_lane_is_taken_twice(call: Any) -> None:
-    found = call("rails", "rails", named("abcdefg"), wires("ab", "ac", "ad", "be", "ce", "df", "ef", "ag"))
+    found = call(
+        "rails", "rails", named("abcdefg"), wires("ab", "ac", "ad", "be", "ce", "df", "ef", "ag")
+    )
     for row in found["rows"]:
         assert row["lane"] not in row["passing"]
         assert len(set(row["passing"])) == len(row["passing"])
