@@ -8,12 +8,15 @@ oldest is shed, and counted. The loop stands in the caller's thread.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from threading import Condition, Thread
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
+from tactile_graph.engine.deadline import Deadline
+from tactile_graph.engine.options import Decider
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
+from tactile_graph.errors import UsageError
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps.injected import Report
@@ -28,11 +31,24 @@ CAPACITY = 64
 class Runnable(Protocol[ResultT]):
     """What a live run needs of a pipeline."""
 
-    def runner(self, only: Sequence[str] | None = ..., seed: int = ...) -> Runner[ResultT]:
+    def runner(
+        self,
+        only: Sequence[str] | None = ...,
+        seed: int = ...,
+        verify: bool = ...,
+        decider: Decider | None = ...,
+    ) -> Runner[ResultT]:
         """Return a callable of frames that keeps state."""
 
     def frames(self, seed: int = ..., report: Report | None = ...) -> Iterator[Frame]:
         """Return the frames of the pipeline's own source."""
+
+
+class Ready(NamedTuple, Generic[ResultT]):
+    """A runner, and what keeps its frames on time."""
+
+    runner: Runner[ResultT]
+    deadline: Deadline | None
 
 
 class LiveRun(Generic[ResultT]):
@@ -52,7 +68,8 @@ class LiveRun(Generic[ResultT]):
     seed : int
         Seed of the steps that take randomness, and of the source.
     deadline_us : float, optional
-        Microseconds from a frame's arrival within which its result is wanted.
+        Microseconds from a frame's arrival within which its result is wanted: what would not be
+        done in time is skipped.
     capacity : int
         How many frames may wait.
     report : Report, optional
@@ -74,9 +91,10 @@ class LiveRun(Generic[ResultT]):
         clock: Clock = time.perf_counter_ns,
     ) -> None:
         self.report = report or Report()
-        self.deadline_us = deadline_us
+        self._deadline_us = _checked(deadline_us)
         self._only, self._seed, self._clock = only, seed, clock
-        self._runner = pipeline.runner(only, seed)
+        self._pipeline = pipeline
+        self._ready = self._made_ready(pipeline)
         self._source = pipeline.frames(seed, self.report) if source is None else source
         self._waiting = Waiting(capacity)
         self._error: BaseException | None = None
@@ -103,13 +121,33 @@ class LiveRun(Generic[ResultT]):
         """Whether frames are let pass without a result."""
         return self._paused
 
+    @property
+    def deadline_us(self) -> float | None:
+        """Microseconds from a frame's arrival within which its result is wanted; None for none."""
+        return self._deadline_us
+
+    @deadline_us.setter
+    def deadline_us(self, deadline_us: float | None) -> None:
+        began_or_ended = (deadline_us is None) != (self._deadline_us is None)
+        self._deadline_us = _checked(deadline_us)
+        if began_or_ended:
+            self.swap(self._pipeline)
+
     def swap(self, pipeline: Runnable[ResultT]) -> None:
         """Run another pipeline from the next frame on, over the same source.
 
         It is made ready in the caller's thread, so that no frame waits for that. Its stateful steps
         start anew.
         """
-        self._runner = pipeline.runner(self._only, self._seed)
+        ready = self._made_ready(pipeline)
+        self._pipeline = pipeline
+        self._ready = ready
+
+    def _made_ready(self, pipeline: Runnable[ResultT]) -> Ready[ResultT]:
+        if self._deadline_us is None:
+            return Ready(pipeline.runner(self._only, self._seed), None)
+        deadline = Deadline(self._clock)
+        return Ready(pipeline.runner(self._only, self._seed, decider=deadline), deadline)
 
     def pause(self) -> None:
         """Let frames pass without a result until `resume` or `step`; they do not count as shed."""
@@ -165,10 +203,16 @@ class LiveRun(Generic[ResultT]):
     def _answered(self, arrival: Arrival) -> LiveResult[ResultT]:
         frame, arrived_ns = arrival
         self.n_lost += frame.gap
+        runner, deadline = self._ready
+        if deadline is not None and self._deadline_us is not None:
+            deadline.due_ns = arrived_ns + int(1e3 * self._deadline_us)
         begun_ns = self._clock()
-        result = self._runner(frame)
+        result = runner(frame)
         done_ns = self._clock()
-        return LiveResult(result, arrived_ns, begun_ns, done_ns, self.n_shed, self.n_lost)
+        decisions = () if deadline is None else result.decisions
+        return LiveResult(
+            result, arrived_ns, begun_ns, done_ns, self.n_shed, self.n_lost, decisions
+        )
 
     # -- the reader ----------------------------------------------------------------------------
 
@@ -184,9 +228,17 @@ class LiveRun(Generic[ResultT]):
             self._error = error
         finally:
             self._waiting.end()
+            if isinstance(self._source, Generator):
+                self._source.close()  # a port is free again, a file closed
 
     def _one_more(self) -> bool:
         with self._may_go:
             asked = self._steps > 0
             self._steps -= asked
             return asked
+
+
+def _checked(deadline_us: float | None) -> float | None:
+    if deadline_us is not None and not 0 < deadline_us < float("inf"):
+        raise UsageError(f"a deadline is a number of microseconds above 0, got {deadline_us}")
+    return deadline_us

@@ -13,8 +13,6 @@ from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.live_run import LiveRun
 
 ResultT = TypeVar("ResultT", bound=Outcomes)
-UNREAD = 1024
-"""Results that wait for a slow reader before the oldest go."""
 
 
 class LiveStream(AsyncIterator[LiveResult[ResultT]], Generic[ResultT]):
@@ -32,7 +30,7 @@ class LiveStream(AsyncIterator[LiveResult[ResultT]], Generic[ResultT]):
         How many results may wait.
     """
 
-    def __init__(self, run: LiveRun[ResultT], unread: int = UNREAD) -> None:
+    def __init__(self, run: LiveRun[ResultT], unread: int) -> None:
         self.run = run
         self.n_unread = 0
         """How many results went because nobody took them."""

@@ -35,13 +35,17 @@ class Photographer:
     """
 
     def __init__(self, pipeline: Any, version: int) -> None:
-        self.version = version
+        self.pipeline, self.version = pipeline, version
         self.shown: Collection[str] = ()
         self._table = make_table(pipeline, tuple(pipeline.outputs), True)
         self._range = Range()
 
     def snapshot(
-        self, result: Result, latency_us: float | None = None, back_s: float = 0.0
+        self,
+        result: Result,
+        latency_us: float | None = None,
+        back_s: float = 0.0,
+        arrived_s: float | None = None,
     ) -> messages.Frame:
         """Return what the page shows of a result."""
         frame = result.frame
@@ -67,7 +71,17 @@ class Photographer:
             back_s=back_s,
             label=visible(frame.label),
             gap=frame.gap,
+            device_time_s=frame.device_time_s,
+            arrived_s=arrived_s,
         )
+
+    def forget_range(self) -> None:
+        """Begin the range of colours anew: readings mean something else from here on."""
+        self._range = Range()
+
+    def like(self, pad: Plain) -> None:
+        """Colour frames as one was coloured that has been taken down before."""
+        self._range.widen(pad["low"], pad["high"])
 
     def rows(self, result: Result) -> Iterable[Plain]:
         """Yield a row for each object that was found, as plain data."""
@@ -100,12 +114,18 @@ class Range:
     def of(self, image: Image) -> tuple[float, float]:
         """Return lowest and highest value so far of images of this kind."""
         kind = (image.shape, image.quantity)
+        if self._of and kind != self._of:
+            self._low = self._high = 0.0
         if kind != self._of:
-            self._of, self._low, self._high = kind, 0.0, 0.0
+            self._of = kind
         values = image.filled(0.0)
         self._low = min(self._low, float(values.min(initial=0.0)))
         self._high = max(self._high, float(values.max(initial=0.0)))
         return self._low, self._high
+
+    def widen(self, low: float, high: float) -> None:
+        """Have the range hold these."""
+        self._low, self._high = min(self._low, low), max(self._high, high)
 
 
 def _fared(story: Any) -> Plain:

@@ -26,7 +26,7 @@ Overrides = Mapping[str, Mapping[str, Any]]
 
 
 def graph_message(
-    pipeline: Pipeline, version: int, text: str, changed: Overrides, took_ms: float
+    pipeline: Pipeline, version: int, text: str, changed: Overrides
 ) -> messages.Graph:
     """Return what the page knows of a pipeline.
 
@@ -38,8 +38,6 @@ def graph_message(
         The YAML with what was set on the page.
     changed : mapping
         Node -> setting -> value of what was set on the page.
-    took_ms : float
-        Since the change that made it.
     """
     shown, joined = blocks(pipeline), wires(pipeline)
     sizes = {b.key: SMALL_BOX_PX if b.role == "source" else BOX_PX for b in shown}
@@ -65,7 +63,6 @@ def graph_message(
         tuple(_node(n, changed.get(n.name, {})) for n in pipeline.nodes.values()),
         tuple(pipeline.outputs),
         tuple(_columns(pipeline)),
-        took_ms,
     )
 
 
@@ -119,21 +116,23 @@ def setting_message(
     kind, choices = _kind(schema, value)
     low, high = _bound(schema, "inimum"), _bound(schema, "aximum")
     _, unit = words_and_unit(setting.name)
-    slider: tuple[float | None, ...] = (None, None, None)
+    slider: tuple[float | None, float | None, float | None] = (None, None, None)
     if kind in ("number", "integer"):
         slider = _slider(kind, [v for v in (value, default) if _is_number(v)], low, high)
     return messages.Setting(
-        setting.name,
-        kind,
-        _shown(value, kind),
-        _shown(default, kind),
-        low,
-        high,
-        *slider,
-        choices,
-        unit,
-        visible(meaning or setting.meaning),
-        changed,
+        name=setting.name,
+        kind=kind,
+        value=_shown(value, kind),
+        default=_shown(default, kind),
+        low=low,
+        high=high,
+        slider_low=slider[0],
+        slider_high=slider[1],
+        step=slider[2],
+        choices=choices,
+        unit=unit,
+        help=visible(meaning or setting.meaning),
+        changed=changed,
     )
 
 

@@ -133,8 +133,8 @@ class Graph:
     nodes: tuple[Node, ...]
     outputs: tuple[str, ...]
     columns: tuple[Column, ...]
-    took_ms: float
-    """From the file's change (or what was set) to this message."""
+    took_ms: float = 0.0
+    """From when the change was seen until it ran."""
 
 
 @dataclass(frozen=True)
@@ -182,6 +182,10 @@ class Frame:
         Nodes that were skipped for the deadline.
     back_s : float
         How long ago it came; over 0 where it is shown again.
+    device_time_s : float or None
+        The pad's own time, where it sends one.
+    arrived_s : float or None
+        When it was here, by the clock (``time.perf_counter``) of the machine that serves the page.
     """
 
     index: int
@@ -198,6 +202,8 @@ class Frame:
     back_s: float = 0.0
     label: str = ""
     gap: bool = False
+    device_time_s: float | None = None
+    arrived_s: float | None = None
 
 
 @dataclass(frozen=True)

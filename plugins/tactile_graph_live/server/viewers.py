@@ -36,6 +36,10 @@ class Picture:
         self.arrived_ns = arrived_ns
         self._looks: dict[str, str] = {}
 
+    def shown_again(self) -> Picture:
+        """Return the same to be shown later: the time it takes then says nothing."""
+        return Picture(self.frame)
+
     @cached_property
     def _bare(self) -> str:
         """All but the pictures, which go in behind; without the closing bracket."""
@@ -139,7 +143,7 @@ class Viewers:
     def __init__(self, on_shown: Callable[[frozenset[str]], None]) -> None:
         self._all: dict[Viewer, asyncio.Task[None]] = {}
         self._on_shown = on_shown
-        self._shown: frozenset[str] = frozenset()
+        self.shown: frozenset[str] = frozenset()
         self.n_dropped = 0
 
     def __len__(self) -> int:
@@ -170,9 +174,23 @@ class Viewers:
         websocket: WebSocket,
         greeting: Collection[messages.Message],
         asked: Callable[[Viewer, Asked], None],
+        picture: Picture | None = None,
     ) -> None:
-        """Serve one viewer until it goes or is let go of."""
+        """Serve one viewer until it goes or is let go of.
+
+        Parameters
+        ----------
+        websocket : WebSocket
+        greeting : collection of Message
+            What it is told first.
+        asked : callable
+            Does what it asks for.
+        picture : Picture, optional
+            What all look at now.
+        """
         viewer = Viewer(websocket)
+        if picture is not None:
+            viewer.show(picture.shown_again())
         for message in greeting:
             viewer.tell(type(message).__name__.lower(), encoded(message))
         sending = asyncio.create_task(viewer.sending())
@@ -192,8 +210,8 @@ class Viewers:
     def shown_changed(self) -> None:
         """Find out which nodes are looked at."""
         shown = frozenset().union(*(v.shown for v in self._all))
-        if shown != self._shown:
-            self._shown = shown
+        if shown != self.shown:
+            self.shown = shown
             self._on_shown(shown)
 
 
