@@ -85,7 +85,7 @@ export function latencyChart(canvas, median, p99, deadlineUs, now) {
   context.font = "11px ui-sans-serif, system-ui, sans-serif";
   context.textBaseline = "middle";
   context.lineWidth = 1;
-  for (const us of ticks(0, highest, 3)) {
+  for (const us of ticks(0, highest, 4)) {
     context.strokeStyle = colour("--grid");
     context.beginPath();
     context.moveTo(edge.left, Math.round(y(us)) + 0.5);

@@ -63,7 +63,10 @@ export class Connection {
   /** A server that hangs closes nothing: no word for a while is a loss too. */
   watch() {
     const silent = (performance.now() - this.heard) / 1000 > SILENCE_S;
-    if (this.socket?.readyState === WebSocket.OPEN && silent && !document.hidden) this.socket.close();
+    const socket = this.socket;
+    if (socket?.readyState !== WebSocket.OPEN || !silent || document.hidden) return;
+    this.lost(); // at once: a server that hangs does not answer the close either
+    socket.close();
   }
 
   lost() {

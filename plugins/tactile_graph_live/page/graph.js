@@ -3,14 +3,14 @@
 import { byId, make, mark, own, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
-import { drawPicture, extentOf } from "./paint.js";
+import { drawPicture } from "./paint.js";
 import { ordered, rails } from "./rails.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const ROW = 62;
 const LANE = 13;
 const WORDS_MS = 250;
-const SMOOTHING = 0.12;
+const TIMES = 31;
 
 export class NodeList {
   /** `open` is called with the name of the node to show large, `look` with those in sight. */
@@ -62,7 +62,7 @@ export class NodeList {
       rail, canvas,
       make("span", { class: "words" }, make("b", {}, name), step, reason),
       make("span", { class: "fate" }, fate, time, bar));
-    const row = { element, rail, canvas, step, reason, fate, time, bar, us: null };
+    const row = { element, rail, canvas, step, reason, fate, time, bar, us: null, times: [], next: -1 };
     this.rows.set(name, row);
     this.observer.observe(element);
     return row;
@@ -89,31 +89,33 @@ export class NodeList {
     const now = performance.now();
     const words = now - this.wordsAt > WORDS_MS;
     if (words) this.wordsAt = now;
-    const extent = extentOf(frame.pad);
-    let longest = 1;
     for (const [name, row] of this.rows) {
       const story = name === "frame" ? { outcome: "ran", reason: "", us: null } : own(frame.nodes, name);
       const ran = story && (story.outcome === "ran" || story.outcome === "failed") && story.us !== null;
-      if (ran) row.us = row.us === null ? story.us : row.us + SMOOTHING * (story.us - row.us);
-      longest = Math.max(longest, row.us ?? 0);
+      if (ran) row.times[(row.next = (row.next + 1) % TIMES)] = story.us;
       setBadge(row.fate, fateOf(story));
       if (row.element.dataset.fate !== fateOf(story)) row.element.dataset.fate = fateOf(story);
       const shapes = own(frame.pictures, name);
-      if (this.inSight.has(name)) this.thumb(row, shapes, extent);
+      if (this.inSight.has(name)) this.thumb(row, shapes, frame.pad);
       if (words) write(row.reason, story?.outcome === "ran" ? notesOf(shapes) : story?.reason ?? "");
     }
-    if (words) this.times(frame, longest);
+    if (words) this.times(frame);
   }
 
-  thumb(row, shapes, extent) {
+  thumb(row, shapes, pad) {
     if (!shapes) return; // not sent for this frame: the last stays
-    const drawn = drawPicture(row.canvas, shapes, extent, 0.6);
+    const drawn = drawPicture(row.canvas, shapes, pad, 0.6);
     if (row.empty === drawn) row.canvas.classList.toggle("empty", (row.empty = !drawn));
     else if (row.empty === undefined) row.canvas.classList.toggle("empty", (row.empty = !drawn));
   }
 
-  times(frame, longest) {
-    let total = 0;
+  /** Tell the usual time of each node: the median of the last ones. */
+  times(frame) {
+    let [longest, total] = [1, 0];
+    for (const row of this.rows.values()) {
+      row.us = row.times.length ? [...row.times].sort((a, b) => a - b)[row.times.length >> 1] : null;
+      longest = Math.max(longest, row.us ?? 0);
+    }
     for (const [name, row] of this.rows) {
       const story = own(frame.nodes, name);
       const us = story?.us ?? null;

@@ -30,7 +30,8 @@ export class NodeCard {
     this.name = name;
     this.take(graph);
     show(this.card, true);
-    this.card.scrollIntoView({ block: "nearest" });
+    const { top } = this.card.getBoundingClientRect();
+    if (top < 0 || top > window.innerHeight * 0.6) this.card.scrollIntoView({ block: "start" });
     byId("node").focus({ preventScroll: true });
   }
 
@@ -62,7 +63,7 @@ export class NodeCard {
     const shapes = own(frame.pictures, this.name);
     const { left, top, right, bottom } = extentOf(frame.pad);
     this.canvas.style.setProperty("--ratio", Math.min(1.4, Math.max(0.35, (bottom - top) / (right - left))));
-    const drawn = shapes ? drawPicture(this.canvas, shapes, extentOf(frame.pad), 1) : undefined;
+    const drawn = shapes ? drawPicture(this.canvas, shapes, frame.pad, 1) : undefined;
     if (drawn !== undefined) show(this.canvas, drawn);
     setBadge(this.badge, fateOf(story));
     if (performance.now() - this.wordsAt < WORDS_MS) return;

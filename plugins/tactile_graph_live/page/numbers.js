@@ -3,12 +3,12 @@
 const UNITS = new Map([
   ["cm2", "cm²"], ["cm", "cm"], ["mm", "mm"], ["deg", "°"], ["rad", "rad"], ["g", "g"],
   ["gram", "g"], ["v", "V"], ["us", "µs"], ["ms", "ms"], ["s", "s"], ["hz", "Hz"], ["kg", "kg"],
-  ["cm_per_s", "cm/s"], ["deg_per_s", "°/s"], ["s_per_s", "s/s"], ["share", ""],
+  ["cm_per_s", "cm/s"], ["cm_s", "cm/s"], ["cm_s2", "cm/s²"], ["deg_per_s", "°/s"], ["deg_s", "°/s"],
 ]);
 
 /** Return a field's name without its unit, and the unit: `radius_cm` is ["radius", "cm"]. */
 export function named(field) {
-  for (const parts of [3, 1]) {
+  for (const parts of [3, 2, 1]) {
     const words = field.split("_");
     const unit = UNITS.get(words.slice(-parts).join("_"));
     if (words.length > parts && unit !== undefined) {

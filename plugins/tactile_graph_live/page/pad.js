@@ -275,13 +275,16 @@ const gridOf = (pad) => [pad.rows, pad.columns, ...pad.pitch_cm, ...pad.origin_c
 
 const measured = (grid) => (grid.unit && grid.unit !== grid.quantity ? `${grid.quantity}, ${grid.unit}` : grid.quantity || "");
 
-/** Return where each object of a frame is: [x, y] in cm by its output and number. */
+/** Return where each object that is known again is: [x, y] in cm by its output and number. */
 export function placesOf(rows) {
   const places = new Map();
   for (const row of rows) {
     const field = Object.keys(row).find((key) => /(^|\.)x_cm$/.test(key));
     const [x, y] = [row[field], row[field?.replace(/x_cm$/, "y_cm")]];
-    if (Number.isFinite(x) && Number.isFinite(y)) places.set(`${row.output} ${row.number ?? row.item}`, [x, y]);
+    const alone = !rows.some((other) => other !== row && other.output === row.output);
+    const id = row.id ?? row.number;
+    if (id === undefined && !alone) continue; // which of them it was before, nobody knows
+    if (Number.isFinite(x) && Number.isFinite(y)) places.set(`${row.output} ${id ?? ""}`, [x, y]);
   }
   return places;
 }

@@ -12,7 +12,7 @@ const BROKEN = 255;
 const FARTHEST_PX = 1e5;
 const LONGEST_WORD = 40;
 
-const packed = ([r, g, b], alpha = 255) => ((alpha << 24) | (b << 16) | (g << 8) | r) >>> 0;
+const packed = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 
 function ramp(share) {
   const at = share * (STOPS.length - 1);
@@ -20,10 +20,13 @@ function ramp(share) {
   return STOPS[below].map((low, i) => Math.round(low + (at - below) * (STOPS[below + 1][i] - low)));
 }
 
-const HEAT = Uint32Array.from({ length: 256 }, (_, level) =>
-  level === BROKEN ? packed([120, 120, 120]) : packed(ramp(level / 254)));
-const YES_NO = Uint32Array.from({ length: 256 }, (_, level) =>
-  level === BROKEN ? packed([120, 120, 120]) : level > 0 ? packed([55, 71, 79]) : packed([236, 239, 241]));
+function palette(colourOf) {
+  return Uint32Array.from({ length: 256 }, (_, level) => packed(level === BROKEN ? [120, 120, 120] : colourOf(level / 254)));
+}
+
+const HEAT = palette(ramp);
+const PALE = palette((share) => [255, 255, 255].map((white) => Math.round(white - 110 * share ** 0.6)));
+const YES_NO = palette((share) => (share > 0 ? [55, 71, 79] : [236, 239, 241]));
 
 /** The colours from low to high, as CSS takes them. */
 export const heatStops = STOPS.map((stop) => `rgb(${stop.join(",")})`);
@@ -75,7 +78,7 @@ const scratch = document.createElement("canvas");
 const scratchContext = scratch.getContext("2d", { willReadFrequently: true });
 
 /** Draw the cells of a grid; `smooth` blends them, for the eye only. */
-export function drawGrid(context, view, grid, smooth = false, mask = false) {
+export function drawGrid(context, view, grid, smooth = false, paints = HEAT) {
   const { rows, columns } = grid;
   if (!(rows > 0 && columns > 0)) return;
   const levels = levelsOf(grid);
@@ -85,8 +88,7 @@ export function drawGrid(context, view, grid, smooth = false, mask = false) {
   }
   const cells = scratchContext.createImageData(columns, rows);
   const pixels = new Uint32Array(cells.data.buffer);
-  const palette = mask ? YES_NO : HEAT;
-  for (let cell = 0; cell < pixels.length; cell += 1) pixels[cell] = palette[levels[cell] ?? BROKEN];
+  for (let cell = 0; cell < pixels.length; cell += 1) pixels[cell] = paints[levels[cell] ?? BROKEN];
   scratchContext.putImageData(cells, 0, 0);
   const extent = extentOf(grid);
   const [x, y] = [view.x(extent.left), view.y(extent.top)];
@@ -119,7 +121,7 @@ export function drawNumbers(context, view, grid) {
 /** Draw a display list: its grids first, then its lines; `scale` is how thick those are. */
 export function drawShapes(context, view, shapes, { smooth = false, scale = 1 } = {}) {
   for (const shape of shapes) {
-    if (shape.image) drawGrid(context, view, shape.image, smooth, shape.shape === "cells");
+    if (shape.image) drawGrid(context, view, shape.image, smooth, shape.shape === "cells" ? YES_NO : HEAT);
   }
   context.lineCap = "round";
   context.lineJoin = "round";
@@ -212,15 +214,19 @@ const PATHS = {
   },
 };
 
-/** Draw what a node gave into a whole canvas; false where it has no place on the pad. */
-export function drawPicture(canvas, shapes, extent, scale) {
+/**
+ * Draw what a node gave into a whole canvas, lines over a pale picture of the pad; false where it
+ * has no place there.
+ */
+export function drawPicture(canvas, shapes, pad, scale) {
   const { context, width, height } = fitted(canvas);
   context.clearRect(0, 0, width, height);
   const drawn = shapes.filter((shape) => shape.shape !== "note");
   if (!drawn.length) return false;
   context.fillStyle = colour("--sheet");
-  const view = new View(extent, 0, 0, width, height);
+  const view = new View(extentOf(pad), 0, 0, width, height);
   context.fillRect(view.left, view.top, view.width, view.height);
+  if (!drawn.some((shape) => shape.image)) drawGrid(context, view, pad, false, PALE);
   drawShapes(context, view, drawn, { scale });
   return true;
 }

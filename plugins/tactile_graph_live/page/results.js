@@ -119,28 +119,22 @@ export class Results {
     write(byId("contacts-count"), `${rows.length}${more}`);
     const fields = [...new Set(shown.flatMap((row) => Object.keys(row)))]
       .filter((f) => !LEAD.has(f) && shown.some((row) => typeof row[f] !== "object"));
-    const outputs = this.several.size > 1;
-    if (fields.length) this.heads(fields, outputs);
-    const body = byId("contact-rows");
-    while (body.children.length > shown.length) body.lastChild.remove();
-    while (body.children.length < shown.length) body.append(make("tr"));
-    shown.forEach((row, i) => {
-      const cells = [outputs ? `${row.output} ${row.item}` : String(row.item), ...fields.map((f) => told(row[f]))];
-      const line = body.children[i];
-      while (line.children.length > cells.length) line.lastChild.remove();
-      while (line.children.length < cells.length) {
-        line.append(line.children.length ? make("td", { class: "number" }) : make("th", { scope: "row" }));
-      }
-      cells.forEach((cell, c) => write(line.children[c], cell));
-    });
+    if (fields.length) this.heads(fields);
+    const lines = [];
+    for (const [i, row] of shown.entries()) {
+      const begins = this.several.size > 1 && row.output !== shown[i - 1]?.output;
+      if (begins) lines.push([row.output.split(".")[0]]);
+      lines.push([String(row.item), ...fields.map((f) => told(row[f]))]);
+    }
+    fill(byId("contact-rows"), lines, fields.length + 1);
   }
 
-  heads(fields, outputs) {
+  heads(fields) {
     const head = byId("contact-head");
-    const key = JSON.stringify([fields, outputs]);
+    const key = JSON.stringify(fields);
     if (head.dataset.key === key) return;
     head.dataset.key = key;
-    head.replaceChildren(make("tr", {}, make("th", { scope: "col" }, outputs ? "which" : "no."),
+    head.replaceChildren(make("tr", {}, make("th", { scope: "col" }, "no."),
       ...fields.map((field) => {
         const [name, unit] = this.label(field);
         return make("th", { scope: "col", class: "number" }, name, ...(unit ? [" ", make("span", { class: "unit" }, unit)] : []));
@@ -155,6 +149,24 @@ export class Results {
       mark(line.canvas, "aria-label", text);
     }
   }
+}
+
+/** Write lines of cells into a table; a line of one cell is a heading over those below it. */
+function fill(body, lines, columns) {
+  while (body.children.length > lines.length) body.lastChild.remove();
+  while (body.children.length < lines.length) body.append(make("tr"));
+  lines.forEach((cells, i) => {
+    const line = body.children[i];
+    while (line.children.length > cells.length) line.lastChild.remove();
+    while (line.children.length < cells.length) {
+      line.append(line.children.length ? make("td", { class: "number" }) : make("th"));
+    }
+    const heading = cells.length === 1;
+    line.classList.toggle("head-row", heading);
+    mark(line.firstChild, "scope", heading ? "rowgroup" : "row");
+    mark(line.firstChild, "colspan", heading ? columns : 1);
+    cells.forEach((cell, c) => write(line.children[c], cell));
+  });
 }
 
 /** Return the results in a sentence, rounded so that it changes when something happened. */

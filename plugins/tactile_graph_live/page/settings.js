@@ -4,7 +4,7 @@ import { byId, make, mark, write } from "./dom.js";
 import { named, told } from "./numbers.js";
 
 const SEND_MS = 60;
-const FIRST_OPEN = 3;
+const OPEN_SETTINGS = 7;
 const HANDS_OFF_MS = 600;
 let count = 0;
 
@@ -25,10 +25,12 @@ export class Settings {
     const home = byId("setting-groups");
     const wanted = new Set(nodes.map((node) => node.name));
     for (const group of [...home.children]) if (!wanted.has(group.dataset.node)) group.remove();
+    let room = OPEN_SETTINGS;
     nodes.forEach((node, i) => {
+      room -= node.settings.length;
       let group = [...home.children].find((other) => other.dataset.node === node.name);
       if (!group) {
-        group = make("details", { "data-node": node.name, open: i < FIRST_OPEN },
+        group = make("details", { "data-node": node.name, open: i === 0 || room >= 0 },
           make("summary", {}, make("b", {}, node.name), " ", make("span", { class: "soft" })), make("div"));
       }
       write(group.querySelector("summary .soft"), node.step);
@@ -156,7 +158,7 @@ function makeInputs(setting, id, name) {
     return [select];
   }
   if (kind === "text") return [make("input", { type: "text", id, value: told(value), spellcheck: "false", autocomplete: "off" })];
-  const box = make("input", { type: "number", id, value, step: kind === "integer" ? "1" : "any", min: setting.low, max: setting.high });
+  const box = make("input", { type: "number", id, value, step: kind === "integer" ? "1" : "any", min: setting.low, max: setting.high, placeholder: "none" });
   if (setting.slider_low === null || setting.slider_high === null) return [box];
   const slider = make("input", {
     type: "range", min: setting.slider_low, max: setting.slider_high, value, "aria-label": name,
@@ -169,5 +171,6 @@ function put(input, value) {
   if (input.type === "checkbox") input.checked = value === true;
   else if (input.tagName === "SELECT") input.value = JSON.stringify(value);
   else if (typeof value === "number") input.value = String(Number(value.toPrecision(6)));
+  else if (input.type === "range") input.value = input.min;
   else input.value = value === null ? "" : String(value);
 }
