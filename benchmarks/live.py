@@ -194,7 +194,8 @@ def start(pipeline: str, port: str, folder: Path, more: Sequence[str]) -> Runnin
     preset = folder / "stamped.yaml"
     preset.write_text(PRESET)
     command = [sys.executable, "-m", "tactile_graph", "live", pipeline, "--port", port,
-               "--preset", str(preset), "--http-port", "0", "--folder", str(folder), *more]  # fmt: skip
+               "--preset", str(preset), "--http-port", "0",
+               "--folder", str(folder), *more]  # fmt: skip
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=folder)
     assert process.stdout is not None
     line = process.stdout.readline()
@@ -277,7 +278,7 @@ async def phase_deaf(running: Running, sent: Any, seconds: float) -> None:
 
 
 async def remember(running: Running, minutes: float) -> None:
-    """Print the memory of both processes over time, with a viewer that looks and one that is deaf."""
+    """Print the memory of both processes over time, with a viewer that looks and a deaf one."""
     end = time.perf_counter() + 60 * minutes
     viewer = deaf(running.address)
     while time.perf_counter() < end:

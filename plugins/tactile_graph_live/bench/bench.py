@@ -140,7 +140,7 @@ class Bench:
         rows = tuple(self._looking(live).rows(live.result))
         return wire.Row(
             frame.index, frame.time_s, frame.label, frame.device_time_s, live.arrived_ns / 1e9,
-            live.latency_us, rows,
+            live.latency_us, live.decisions, rows,
         )  # fmt: skip
 
     def tick(self) -> None:

@@ -44,7 +44,7 @@ class Pace:
     def __init__(self, rate_hz: float | None) -> None:
         self._rate_hz = rate_hz
         self._last_s: float | None = None
-        self._due = 0.0
+        self._due: float | None = None
 
     def wait_s(self, frame: Frame, now: float) -> float:
         """Return how long to wait before a frame is given; what is late is not caught up."""
@@ -53,8 +53,10 @@ class Pace:
             step = frame.time_s - self._last_s
             step = min(step, LONGEST_PAUSE_S) if step > 0 else 1.0 / USUAL_RATE_HZ
         self._last_s = frame.time_s
-        late = now - self._due > LONGEST_PAUSE_S
-        self._due = now if late else self._due + step
+        if self._due is None or now - self._due > LONGEST_PAUSE_S:
+            self._due = now
+        else:
+            self._due += step
         return max(0.0, self._due - now)
 
 

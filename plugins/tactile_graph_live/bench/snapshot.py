@@ -13,7 +13,6 @@ from tactile_graph.wires import Image
 from tactile_graph_live.bench.shapes import Plain, picture, shapes
 from tactile_graph_live.server import messages
 
-DEADLINE = "deadline"
 LONGEST_REASON = 400
 MOST_ROWS = 200
 LEAD = ("frame", "time_s", "label")
@@ -66,7 +65,7 @@ class Photographer:
                 for key, value in row.items()
                 if "_error_" in key and isinstance(value, int | float)
             },
-            decisions=[n for n, s in stories.items() if s.reason == DEADLINE],
+            decisions=list(result.decisions),
             latency_us=latency_us,
             back_s=back_s,
             label=visible(frame.label),

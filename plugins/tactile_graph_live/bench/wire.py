@@ -60,7 +60,11 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Row:
-    """What one frame came to, for programs; ``arrived_s`` is by ``time.perf_counter``."""
+    """What one frame came to, for programs.
+
+    ``arrived_s`` is by ``time.perf_counter``; ``deadline`` names the nodes skipped to keep it, as
+    ``tactile-graph run --decisions`` takes them.
+    """
 
     frame: int
     time_s: float | None
@@ -68,6 +72,7 @@ class Row:
     device_time_s: float | None
     arrived_s: float
     latency_us: float
+    deadline: tuple[str, ...]
     rows: tuple[dict[str, Any], ...]
 
 

@@ -15,7 +15,8 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
-COOKIE = "tactile_graph_token"
+COOKIE = "tactile_graph_token_{}"
+"""By port: a browser hands cookies to every port of a host."""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -90,9 +91,7 @@ class Door:
 
     def _is_ours(self, host: str) -> bool:
         """Return whether a request's Host is an address of ours: a foreign name may be rebound."""
-        name, port = _host_and_port(host)
-        if port not in (self.port, None if self.port == 80 else self.port):
-            return False
+        name, _ = _host_and_port(host)  # a tunnel may lead here from any port
         if name == "localhost" or name in self.names:
             return True
         try:
@@ -104,7 +103,7 @@ class Door:
     def _knows(self, scope: Scope, headers: dict[str, str]) -> bool:
         return any(
             hmac.compare_digest(given.encode(), self.token.encode())
-            for given in _tokens(scope, headers)
+            for given in _tokens(scope, headers, COOKIE.format(self.port))
         )
 
     def brings_token(self, scope: Scope) -> bool:
@@ -155,7 +154,7 @@ class Guard:
     def _headed(self, scope: Scope, send: Send) -> Send:
         more = [*HEADERS]
         if scope["type"] == "http" and self._door.brings_token(scope):
-            value = f"{COOKIE}={self._door.token}; Path=/; HttpOnly; SameSite=Strict"
+            value = f"{COOKIE.format(self._door.port)}={self._door.token}; Path=/; HttpOnly; SameSite=Strict"
             more.append((b"set-cookie", value.encode()))
 
         async def sent(message: MutableMapping[str, Any]) -> None:
@@ -195,14 +194,14 @@ def _queried(scope: Scope) -> Iterable[str]:
     return parse_qs(scope["query_string"].decode("latin-1")).get("token", [])
 
 
-def _tokens(scope: Scope, headers: dict[str, str]) -> Iterable[str]:
+def _tokens(scope: Scope, headers: dict[str, str], name: str) -> Iterable[str]:
     """Yield the tokens a request brings: in the address, in a cookie, or as a bearer's."""
     yield from _queried(scope)
     kind, _, bearer = headers.get("authorization", "").partition(" ")
     if kind.lower() == "bearer":
         yield bearer.strip()
     try:
-        cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+        cookie = SimpleCookie(headers.get("cookie", "")).get(name)
     except CookieError:
         return
     if cookie is not None:
