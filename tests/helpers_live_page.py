@@ -57,8 +57,9 @@ def graph(version: int = 1, names: tuple[str, ...] = NAMES, **more: Any) -> Plai
               "settings": settings if i == 0 else []} for i, n in enumerate(names)]  # fmt: skip
     columns = [{"key": k, "name": k.removesuffix("_cm").replace("_", " "), "unit": "cm"}
                for k in ("x_cm", "y_cm", "radius_cm", "centre_error_cm")]  # fmt: skip
+    yaml = "pipeline: rings\nnodes:\n  footprint: {level_v: 0.02}\n"
     return {"type": "graph", "version": version, "name": "rings", "about": "rings on a pad",
-            "yaml": "pipeline: rings\nnodes:\n  footprint: {level_v: 0.02}\n", "boxes": boxes,
+            "yaml": yaml, "file_yaml": yaml, "boxes": boxes,
             "wires": wires, "width": 900.0, "height": 160.0, "nodes": nodes,
             "outputs": [names[-1]], "columns": columns, "took_ms": 1.0} | more  # fmt: skip
 

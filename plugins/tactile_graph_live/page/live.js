@@ -27,7 +27,7 @@ const status = new Status();
 const transport = new Transport(send);
 const settings = new Settings(
   (node, setting, value) => send("set", { node, setting, value }),
-  () => send("unset"));
+  (node = "", setting = "") => send("unset", { node, setting }));
 const yaml = new Yaml((name) => send("save", { name }));
 const nodes = new NodeList(open, look);
 const card = new NodeCard(settings, closed);

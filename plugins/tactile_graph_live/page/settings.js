@@ -9,13 +9,12 @@ const HANDS_OFF_MS = 600;
 let count = 0;
 
 export class Settings {
-  /** `set` is called with node, setting and value; `unset` takes back all that was set. */
+  /** `set` is called with node, setting and value; `unset` with node and setting, or for all. */
   constructor(set, unset) {
     this.set = set;
     this.unset = unset;
     this.controls = new Set();
-    this.ofFile = new Map();
-    byId("reset-all").addEventListener("click", unset);
+    byId("reset-all").addEventListener("click", () => unset());
   }
 
   /** Show the settings of another graph. */
@@ -57,11 +56,8 @@ export class Settings {
 
   /** Have all controls of a setting show what runs. */
   show(node, setting, refused) {
-    const key = `${node} ${setting.name}`;
-    if (!setting.changed) this.ofFile.set(key, setting.value);
     for (const control of this.controls) {
-      if (control.node !== node || control.name !== setting.name) continue;
-      control.take(setting, this.ofFile.get(key), refused);
+      if (control.node === node && control.name === setting.name) control.take(setting, refused);
     }
   }
 
@@ -73,19 +69,22 @@ export class Settings {
   }
 
   control(home, node, setting) {
-    const control = new Control(home, node, setting, (value) => this.set(node, setting.name, value));
+    const control = new Control(home, node, setting, {
+      set: (value) => this.set(node, setting.name, value),
+      unset: () => this.unset(node, setting.name),
+    });
     this.controls.add(control);
     return control;
   }
 }
 
 class Control {
-  constructor(home, node, setting, send) {
+  constructor(home, node, setting, { set, unset }) {
     this.home = home;
     this.node = node;
     this.name = setting.name;
     this.kind = setting.kind;
-    this.send = send;
+    this.send = set;
     this.touchedAt = -Infinity;
     const id = `setting-${(count += 1)}`;
     this.inputs = makeInputs(setting, id, `${node}, ${setting.name.replaceAll("_", " ")}`);
@@ -94,7 +93,10 @@ class Control {
       input.addEventListener(dragged ? "input" : "change", () => this.changed(input));
     }
     this.reset = make("button", { type: "button", class: "quiet reset", "aria-label": `Reset ${node}, ${setting.name}`, title: "Back to what the file says" }, "↺");
-    this.reset.addEventListener("click", () => this.back());
+    this.reset.addEventListener("click", () => {
+      this.touchedAt = -Infinity; // the hand is off: what comes is shown
+      unset();
+    });
     const help = setting.help ? [make("p", { class: "help", id: `${id}-help`, title: setting.help }, setting.help.replaceAll("`", ""))] : [];
     if (help.length) for (const input of this.inputs) mark(input, "aria-describedby", `${id}-help`);
     this.element = make("div", { class: `setting ${setting.kind}` },
@@ -124,16 +126,10 @@ class Control {
     return input.value.trim() === "" || !Number.isFinite(number) ? undefined : number;
   }
 
-  back() {
-    for (const input of this.inputs) put(input, this.ofFile);
-    this.send(this.ofFile);
-  }
-
   /** Show what runs; not over the hand of who is just now dragging, unless that was refused. */
-  take(setting, ofFile, refused) {
-    this.ofFile = ofFile;
+  take(setting, refused) {
     this.element.classList.toggle("changed", setting.changed);
-    this.reset.disabled = !setting.changed || ofFile === undefined;
+    this.reset.disabled = !setting.changed;
     if (!refused && performance.now() - this.touchedAt < HANDS_OFF_MS) return;
     for (const input of this.inputs) {
       if (input.type === "range") widen(input, setting);

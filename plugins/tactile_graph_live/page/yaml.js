@@ -5,7 +5,6 @@ import { byId, make, show, write } from "./dom.js";
 export class Yaml {
   /** `save` is called with the name to save it under. */
   constructor(save) {
-    this.file = null;
     byId("save-form").addEventListener("submit", (event) => {
       event.preventDefault();
       const name = byId("save-name").value.trim();
@@ -15,11 +14,8 @@ export class Yaml {
   }
 
   take(graph) {
-    const changed = graph.nodes.some((node) => node.settings.some((setting) => setting.changed));
-    if (!changed) this.file = graph.yaml;
-    const base = graph.file_yaml ?? this.file;
-    const lines = graph.yaml.replace(/\n$/, "").split("\n");
-    const marks = base === null ? lines.map(() => "") : changes(base.replace(/\n$/, "").split("\n"), lines);
+    const lines = graph.yaml.trimEnd().split("\n");
+    const marks = changes(graph.file_yaml.trimEnd().split("\n"), lines);
     const list = byId("yaml");
     while (list.children.length > lines.length) list.lastChild.remove();
     while (list.children.length < lines.length) list.append(make("li"));

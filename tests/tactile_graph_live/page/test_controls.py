@@ -129,9 +129,9 @@ def test_what_was_set_is_marked_in_the_yaml_and_can_be_reset(page: Any, double: 
     assert [line.get_attribute("class") or "" for line in lines] == ["", "", "changed"]
     assert page.locator("#settings-sum").inner_text() == "1 changed"
     page.locator("#settings").get_by_label("Reset footprint, level_v").click()
-    assert double.heard("set")["value"] == 0.02
+    assert double.heard("unset") == {"type": "unset", "node": "footprint", "setting": "level_v"}
     page.get_by_role("button", name="Reset all").click()
-    double.heard("unset")
+    assert double.heard("unset") == {"type": "unset", "node": "", "setting": ""}
 
 
 def test_saving_needs_a_name(page: Any, double: Double) -> None:

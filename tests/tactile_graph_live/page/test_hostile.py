@@ -83,9 +83,12 @@ def test_hostile_names_stay_text(window: Any) -> None:
         assert HOSTILE[0] in page.locator("h1").text_content()
         assert opened.complaints() == []
         assert all(asked.startswith(double.address) for asked in opened.asked_for)
-        assert page.evaluate("""[...document.querySelectorAll("body *")].filter((e) =>
+        assert (
+            page.evaluate("""[...document.querySelectorAll("body *")].filter((e) =>
             !e.closest(".scroll") && e.getBoundingClientRect().right > 1440).map((e) => e.parentElement.outerHTML.slice(0, 90))
-        """) == []  # not even a name without end hangs over
+        """)
+            == []
+        )  # not even a name without end hangs over
         assert page.evaluate("({}).us") is None  # nothing went into the prototype of all things
 
 
