@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,14 @@ source: {step: sample, with: {name: discs}}
 nodes:
   footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
   boundary: {step: boundary_scan, in: footprint, when: footprint.count > 0}
+  circle: {step: fit_circle, in: boundary}
+outputs: [circle]
+"""
+COUNTS = """\
+pipeline: counts
+nodes:
+  above: {step: threshold_otsu, in: frame}
+  boundary: {step: boundary_scan, in: above.mask, when: above.mask.count > 2}
   circle: {step: fit_circle, in: boundary}
 outputs: [circle]
 """
@@ -80,7 +88,12 @@ def running(folder: Path, *arguments: str) -> Iterator[Command]:
     finally:
         if process.poll() is None:
             process.terminate()
-            process.communicate(timeout=PATIENCE_S)
+            try:
+                process.communicate(timeout=PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.communicate()
+                raise
 
 
 class Page:
@@ -102,14 +115,20 @@ class Page:
 
         address, _, query = command.address.partition("?")
         url = f"ws{address.removeprefix('http')}{path}" + (f"?{query}" if query else "")
-        self.socket = connect(url, max_size=None, compression=None, additional_headers=headers)
+        self._open = ExitStack()
+        self.socket = self._open.enter_context(
+            connect(url, max_size=None, compression=None, additional_headers=headers)
+        )
         self.got: list[dict[str, Any]] = []
 
     def __enter__(self) -> Page:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.socket.close()
+        self.close()
+
+    def close(self) -> None:
+        self._open.close()
 
     def ask(self, kind: str, **fields: Any) -> None:
         self.socket.send(json.dumps({"type": kind, **fields}))

@@ -39,28 +39,35 @@ FIRST_RISK, MOST_RISK = 0.01, 0.3
 class Expected:
     """How long an option takes, as it has taken so far."""
 
-    __slots__ = ("_last", "_strayed", "_strayed_in_order", "_usual")
+    __slots__ = ("_faded", "_strayed", "_strayed_in_order", "_usual")
 
     def __init__(self) -> None:
         self._usual: dict[int, float] = {}
-        self._last: float | None = None
         self._strayed: deque[float] = deque()
         self._strayed_in_order: list[float] = []
+        self._faded = 0.0
+
+    def _usual_for(self, kind: int) -> float | None:
+        """Return the logarithm of the usual time, that of the most similar kind known."""
+        usual = self._usual
+        if kind in usual or not usual:
+            return usual.get(kind)
+        return usual[min(usual, key=lambda known: abs(known - kind))]
 
     def risk(self, kind: int, left_ns: float) -> float:
         """Return the share of times, on frames of a kind, that exceed what is left."""
-        usual = self._usual.get(kind, self._last)
+        usual = self._usual_for(kind)
         if usual is None:  # it is tried once
             return 0.0
         if left_ns <= 0:
             return 1.0
         strayed = self._strayed_in_order
-        n = len(strayed)
-        return (n - bisect_right(strayed, log(left_ns) - usual)) / n
+        most = log(left_ns) - usual + self._faded
+        return (len(strayed) - bisect_right(strayed, most)) / len(strayed)
 
     def high_ns(self, kind: int, risk: float) -> float:
         """Return the time that is exceeded with a risk; 0 where nothing is known."""
-        usual = self._usual.get(kind, self._last)
+        usual = self._usual_for(kind)
         if usual is None:
             return 0.0
         strayed = self._strayed_in_order
@@ -68,23 +75,21 @@ class Expected:
 
     def took(self, kind: int, ns: float) -> None:
         """Take a time into account."""
-        time = log(max(ns, 1.0))
-        usual = self._usual.get(kind, self._last)
+        time, usual = log(max(ns, 1.0)), self._usual_for(kind)
         strayed = 0.0 if usual is None else time - usual
-        known = kind in self._usual and usual is not None
-        self._last = self._usual[kind] = usual + FOLLOWS * strayed if known else time  # type: ignore[operator]
+        # After many refusals nothing of late is known: then this one time counts for all.
+        follows = max(FOLLOWS, 1.0 - exp(-self._faded))
+        self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
+        self._faded = 0.0
         self._strayed.append(strayed)
         insort(self._strayed_in_order, strayed)
         if len(self._strayed) > WINDOW:
             gone = self._strayed.popleft()
             del self._strayed_in_order[bisect_right(self._strayed_in_order, gone) - 1]
 
-    def refused(self, kind: int) -> None:
+    def refused(self) -> None:
         """Hold it for a little shorter, since nobody has seen what it would have taken."""
-        if kind in self._usual:
-            self._usual[kind] -= FADES
-        elif self._last is not None:
-            self._last -= FADES
+        self._faded += FADES
 
 
 class Deadline:
@@ -124,7 +129,7 @@ class Deadline:
             left_ns = self.due_ns - now - self._least_ns(option, state)
             expected = self._expected[option.number]
             if expected.risk(self._kind, left_ns) > self.allowed_risk:
-                expected.refused(self._kind)
+                expected.refused()
                 return False
         self._begun.append(now)
         return True

@@ -17,6 +17,7 @@ from tactile_graph.engine.options import Decider
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
 from tactile_graph.errors import UsageError
+from tactile_graph.live.beside import Beside
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps.injected import Report
@@ -43,12 +44,17 @@ class Runnable(Protocol[ResultT]):
     def frames(self, seed: int = ..., report: Report | None = ...) -> Iterator[Frame]:
         """Return the frames of the pipeline's own source."""
 
+    @property
+    def deadline_us(self) -> float | None:
+        """The file's own."""
+
 
 class Ready(NamedTuple, Generic[ResultT]):
     """A runner, and what keeps its frames on time."""
 
     runner: Runner[ResultT]
     deadline: Deadline | None
+    deadline_us: float | None
 
 
 class LiveRun(Generic[ResultT]):
@@ -69,7 +75,7 @@ class LiveRun(Generic[ResultT]):
         Seed of the steps that take randomness, and of the source.
     deadline_us : float, optional
         Microseconds from a frame's arrival within which its result is wanted: what would not be
-        done in time is skipped.
+        done in time is skipped. The pipeline's own ``deadline_us`` if not given.
     capacity : int
         How many frames may wait.
     report : Report, optional
@@ -91,7 +97,7 @@ class LiveRun(Generic[ResultT]):
         clock: Clock = time.perf_counter_ns,
     ) -> None:
         self.report = report or Report()
-        self._deadline_us = _checked(deadline_us)
+        self._asked_us = _checked(deadline_us)
         self._only, self._seed, self._clock = only, seed, clock
         self._pipeline = pipeline
         self._ready = self._made_ready(pipeline)
@@ -103,6 +109,8 @@ class LiveRun(Generic[ResultT]):
         self._steps = 0
         self._may_go = Condition()
         self.n_lost = 0
+        self.beside: Beside | None = None
+        """A variant that is given the newest frames, in what time is left."""
 
     # -- what others may ask of it -------------------------------------------------------------
 
@@ -123,14 +131,19 @@ class LiveRun(Generic[ResultT]):
 
     @property
     def deadline_us(self) -> float | None:
-        """Microseconds from a frame's arrival within which its result is wanted; None for none."""
-        return self._deadline_us
+        """Microseconds from a frame's arrival within which its result is wanted; None for none.
+
+        Set to None it is the pipeline's own, if that has one.
+        """
+        return self._ready.deadline_us
 
     @deadline_us.setter
     def deadline_us(self, deadline_us: float | None) -> None:
-        began_or_ended = (deadline_us is None) != (self._deadline_us is None)
-        self._deadline_us = _checked(deadline_us)
-        if began_or_ended:
+        self._asked_us = _checked(deadline_us)
+        now_us = self._asked_us or self._pipeline.deadline_us
+        if (now_us is None) == (self._ready.deadline is None):
+            self._ready = self._ready._replace(deadline_us=now_us)
+        else:
             self.swap(self._pipeline)
 
     def swap(self, pipeline: Runnable[ResultT]) -> None:
@@ -144,10 +157,10 @@ class LiveRun(Generic[ResultT]):
         self._ready = ready
 
     def _made_ready(self, pipeline: Runnable[ResultT]) -> Ready[ResultT]:
-        if self._deadline_us is None:
-            return Ready(pipeline.runner(self._only, self._seed), None)
-        deadline = Deadline(self._clock)
-        return Ready(pipeline.runner(self._only, self._seed, decider=deadline), deadline)
+        deadline_us = self._asked_us or pipeline.deadline_us
+        deadline = None if deadline_us is None else Deadline(self._clock)
+        runner = pipeline.runner(self._only, self._seed, decider=deadline)
+        return Ready(runner, deadline, deadline_us)
 
     def pause(self) -> None:
         """Let frames pass without a result until `resume` or `step`; they do not count as shed."""
@@ -203,12 +216,14 @@ class LiveRun(Generic[ResultT]):
     def _answered(self, arrival: Arrival) -> LiveResult[ResultT]:
         frame, arrived_ns = arrival
         self.n_lost += frame.gap
-        runner, deadline = self._ready
-        if deadline is not None and self._deadline_us is not None:
-            deadline.due_ns = arrived_ns + int(1e3 * self._deadline_us)
+        runner, deadline, deadline_us = self._ready
+        if deadline is not None and deadline_us is not None:
+            deadline.due_ns = arrived_ns + int(1e3 * deadline_us)
         begun_ns = self._clock()
         result = runner(frame)
         done_ns = self._clock()
+        if self.beside is not None:
+            self.beside.offer(result, (done_ns - begun_ns) / 1e3)
         decisions = () if deadline is None else result.decisions
         return LiveResult(
             result, arrived_ns, begun_ns, done_ns, self.n_shed, self.n_lost, decisions

@@ -11,7 +11,7 @@ import pytest
 
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Frame, Pipeline, loads
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.live import LiveRun, paced
 from tactile_graph.live.waiting import Arrival, Waiting
 
@@ -187,6 +187,27 @@ outputs: [answer]
         if len(values) == 6:
             run.deadline_us = None
     assert values == [(7, ())] * 3 + [(i, ("best",)) for i in (3, 4, 5)] + [(7, ())] * 3
+
+
+def test_the_files_own_deadline_counts_unless_another_is_given() -> None:
+    own = pipeline(PLUS.replace("nodes:", "deadline_us: 2500\nnodes:"))
+    run = LiveRun(own, [])
+    assert run.deadline_us == 2500
+    assert own.resolved()["deadline_us"] == 2500
+    run.swap(pipeline())
+    assert run.deadline_us is None
+    run.deadline_us = 100
+    run.swap(own)
+    assert run.deadline_us == 100
+    run.deadline_us = None
+    assert run.deadline_us == 2500
+
+
+@pytest.mark.parametrize("wrong", ["0", "soon", "-2", "true", ".inf", ".nan"])
+def test_a_deadline_in_a_file_is_a_number_above_0(wrong: str) -> None:
+    message = r"p.yaml:3:\d+: 'deadline_us' must be a number above 0, got"
+    with pytest.raises(PipelineError, match=message):
+        pipeline(PLUS.replace("nodes:", f"deadline_us: {wrong}\nnodes:"))
 
 
 @pytest.mark.parametrize("wrong", [0, -1, float("nan"), float("inf")])
