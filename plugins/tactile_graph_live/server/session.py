@@ -267,7 +267,7 @@ class Session:
             "untare": lambda: self._send(wire.Tare(False)),
             "record": self._record,
             "set": lambda node, setting, value: self._later(self._editor.set(node, setting, value)),
-            "unset": lambda: self._later(self._editor.unset()),
+            "unset": lambda node, setting: self._later(self._editor.unset(node, setting)),
             "save": lambda name: self._later(self._save(name)),
         }
 

@@ -137,6 +137,11 @@ def test_settings_are_set_taken_back_and_saved(command: Command, folder: Path) -
         assert (folder / "better.yaml").read_text() == graph["yaml"]
         page.ask("save", name="../better")
         assert page.told("a name is of letters")["level"] == "error"
+        assert graph["file_yaml"] == PIPELINE
+        page.ask("unset", node="footprint", setting="level_v")
+        assert page.until("graph")["yaml"] == PIPELINE
+        page.ask("set", node="footprint", setting="level_v", value=0.05)
+        page.until("graph")
         page.ask("unset")
         assert page.until("graph")["yaml"] == PIPELINE
 
