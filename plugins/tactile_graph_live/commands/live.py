@@ -74,7 +74,7 @@ def parse_deadline(ctx: click.Context, param: click.Parameter, value: str | None
 @click.option("--deadline", "deadline_us", callback=parse_deadline, metavar="TIME",
               help="Answer each frame within this time (2ms, 800us) of its arrival.")  # fmt: skip
 @click.option("--waiting", type=click.IntRange(min=1), default=16, show_default=True, metavar="N",
-              help="Frames that may wait for the pipeline; of more the oldest are left out.")  # fmt: skip
+              help="Frames that may wait for the pipeline; of more the oldest go.")  # fmt: skip
 @click.option("--beside", metavar="VARIANT",
               help="Run this one in what time is left, and tell how far both agree.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
