@@ -33,7 +33,7 @@ FADES = 0.03
 is not timed, and one slow spell must not shut it out for ever."""
 PACE = 0.02
 """How fast the allowed risk follows what becomes of frames."""
-FIRST_RISK, MOST_RISK = 0.01, 0.3
+LEAST_RISK, FIRST_RISK, MOST_RISK = 0.002, 0.01, 0.3
 
 
 class Expected:
@@ -47,16 +47,16 @@ class Expected:
         self._strayed_in_order: list[float] = []
         self._faded = 0.0
 
-    def _usual_for(self, kind: int) -> float | None:
+    def usual(self, kind: int) -> float | None:
         """Return the logarithm of the usual time, that of the most similar kind known."""
-        usual = self._usual
-        if kind in usual or not usual:
-            return usual.get(kind)
-        return usual[min(usual, key=lambda known: abs(known - kind))]
+        known = self._usual
+        if kind in known or not known:
+            return known.get(kind)
+        return known[min(known, key=lambda other: abs(other - kind))]
 
     def risk(self, kind: int, left_ns: float) -> float:
         """Return the share of times, on frames of a kind, that exceed what is left."""
-        usual = self._usual_for(kind)
+        usual = self.usual(kind)
         if usual is None:  # it is tried once
             return 0.0
         if left_ns <= 0:
@@ -67,7 +67,7 @@ class Expected:
 
     def high_ns(self, kind: int, risk: float) -> float:
         """Return the time that is exceeded with a risk; 0 where nothing is known."""
-        usual = self._usual_for(kind)
+        usual = self.usual(kind)
         if usual is None:
             return 0.0
         strayed = self._strayed_in_order
@@ -75,7 +75,7 @@ class Expected:
 
     def took(self, kind: int, ns: float) -> None:
         """Take a time into account."""
-        time, usual = log(max(ns, 1.0)), self._usual_for(kind)
+        time, usual = log(max(ns, 1.0)), self.usual(kind)
         strayed = 0.0 if usual is None else time - usual
         # After many refusals nothing of late is known: then this one time counts for all.
         follows = max(FOLLOWS, 1.0 - exp(-self._faded))
@@ -125,7 +125,7 @@ class Deadline:
     def allows(self, option: Option, state: list[Any]) -> bool:
         """Return whether the option is done in time, with no more than the allowed risk."""
         now = self._clock()
-        if not option.spared:
+        if not self._is_spared(option):
             left_ns = self.due_ns - now - self._least_ns(option, state)
             expected = self._expected[option.number]
             if expected.risk(self._kind, left_ns) > self.allowed_risk:
@@ -134,12 +134,20 @@ class Deadline:
         self._begun.append(now)
         return True
 
+    def _is_spared(self, option: Option) -> bool:
+        """Return whether the option is done in any case: a last choice only if it is quickest."""
+        if not option.spared or not option.instead:
+            return option.spared
+        own = self._expected[option.number].usual(self._kind)
+        others = [self._expected[number].usual(self._kind) for number in option.instead]
+        return own is None or all(other is None or own <= other for other in others)
+
     def _least_ns(self, option: Option, state: list[Any]) -> float:
-        """Return how long all that takes which must be done in any case, and is not yet."""
+        """Return how long all else takes which must be done in any case, and is not yet."""
         return sum(
             self._expected[spared.number].high_ns(self._kind, LATE_SHARE)
             for spared in self._spared
-            if state[spared.settles] is None
+            if spared is not option and state[spared.settles] is None and self._is_spared(spared)
         )
 
     def ended(self, option: Option) -> None:
@@ -150,7 +158,7 @@ class Deadline:
         """Allow more or less, by whether the frame was on time."""
         late = self._clock() > self.due_ns
         risk = self.allowed_risk + PACE * (LATE_SHARE - late)
-        self.allowed_risk = min(max(risk, 0.0), MOST_RISK)
+        self.allowed_risk = min(max(risk, LEAST_RISK), MOST_RISK)
 
 
 def kind_of(frame: Frame) -> int:

@@ -1,8 +1,8 @@
 """What of a plan may be left undone when time is short, and who decides about it.
 
-Two things may be: a choice of a ``first_of`` but the last, with all that only it needs; and any
-other node of a step when its turn comes. The last choice of each ladder, with all that it needs, is
-spared: it is what a frame comes to at the least. So are sinks: what is written is written whole.
+Two things may be: a choice of a ``first_of``, with all that only it needs; and any other node of a
+step when its turn comes. The last choice of each ladder, with all that it needs, is spared where it
+is the quickest: it is what a frame comes to at the least. So are sinks: what is written is whole.
 """
 
 from __future__ import annotations
@@ -31,9 +31,11 @@ class Option:
     settles : int
         The slot that is settled once nothing of it is left to do: the node's, or its ladder's.
     spared : bool
-        Whether it is done in any case.
+        Whether it is done in any case, as long as nothing ``instead`` of it is quicker.
     always : bool
         Whether every frame comes to it, or to what stands in its place.
+    instead : tuple of int
+        Numbers of the choices that stand before it in its ladder, where it is the last.
     """
 
     number: int
@@ -42,6 +44,7 @@ class Option:
     settles: int
     spared: bool
     always: bool
+    instead: tuple[int, ...] = ()
 
     @property
     def skipped(self) -> Skipped:
@@ -73,7 +76,7 @@ class Decider(Protocol):
         """A frame is begun."""
 
     def allows(self, option: Option, state: list[Any]) -> bool:
-        """Return whether to begin an option; always for one that is spared."""
+        """Return whether to begin an option."""
 
     def ended(self, option: Option) -> None:
         """Note that an option that was begun has ended."""
@@ -99,16 +102,24 @@ def options_of(plan: Plan) -> Options:
                     len(found), item.name, item.slot, item.slot, spared, always
                 )
     for ladder in ladders:
-        for place, port in enumerate(ladder.inputs):
-            choice = plan.items[port.slots[0]]
-            slot = choice.slot if choice.view is None else choice.source
-            last = place == len(ladder.inputs) - 1
-            if slot == 0 or (slot in least.slots and not last):
-                continue  # there at once, or done in any case
-            found.choices[ladder.slot, place] = Option(
-                len(found), plan.items[slot].name, slot, ladder.slot, last, ladder.slot in main
-            )
+        _add_choices(found, plan, ladder, least.slots)
     return found
+
+
+def _add_choices(found: Options, plan: Plan, ladder: Item, least: set[int]) -> None:
+    before: list[int] = []
+    always = ladder.slot in plan.main
+    for place, port in enumerate(ladder.inputs):
+        choice = plan.items[port.slots[0]]
+        slot = choice.slot if choice.view is None else choice.source
+        last = place == len(ladder.inputs) - 1
+        if slot == 0 or (slot in least and not last):
+            continue  # there at once, or done in any case
+        instead = tuple(before) if last else ()
+        name, number = plan.items[slot].name, len(found)
+        option = Option(number, name, slot, ladder.slot, last, always, instead)
+        found.choices[ladder.slot, place] = option
+        before.append(number)
 
 
 def _may_wait(item: Item) -> bool:
@@ -154,7 +165,7 @@ class Recorded:
 
     def allows(self, option: Option, state: list[Any]) -> bool:
         """Return whether the option was begun then."""
-        return option.spared or option.node not in self.skipped
+        return option.node not in self.skipped
 
     def ended(self, option: Option) -> None:
         """Note nothing: time plays no part."""

@@ -266,6 +266,9 @@ class Pulse:
     state: str
     counters: Mapping[str, int] = field(default_factory=dict)
     beside: Plain | None = None
+    """Of the variant that runs in what time is left: ``variant``, ``frames`` it answered, how many
+    ``passed`` it by, ``same_outcomes``, ``differences`` (field -> mean and most), ``median_us`` and
+    ``beside_median_us``, ``kept`` (numbers of the frames that differ most), ``trouble``."""
 
 
 @dataclass(frozen=True)

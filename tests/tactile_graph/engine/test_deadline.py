@@ -148,21 +148,36 @@ def test_the_last_choice_is_taken_however_late_it_is() -> None:
     assert [*RAN] == ["shared", "cheap"]
 
 
+def test_a_last_choice_that_is_not_the_quickest_is_skipped_where_it_would_not_fit() -> None:
+    text = LADDER.replace("[best, middle, cheap]", "[unsure, best]").replace(
+        "  answer:",
+        "  doubtful: {step: unsure, in: frame, with: {tag: cheap}}\n"
+        "  unsure: {first_of: [shared], when: doubtful > 0}\n  answer:",
+    )
+    timed = Timed(text)
+    for _ in range(4):
+        assert not timed(10 * MS).decisions
+    results = [timed(MS // 2) for _ in range(2)]
+    assert [r.decisions for r in results] == [("best",), ()]  # even frames want the long way
+    assert "answer" not in results[0]
+    assert results[0].outcome("answer").origin == "best"
+
+
 def test_time_is_kept_for_what_comes_in_any_case() -> None:
     """What follows the ladder and is itself spared must still fit behind the choice."""
-    text = LADDER.replace("outputs: [answer]", "outputs: [answer, last]").replace(
-        "  answer:",
-        "  other: {step: after, in: shared, with: {tag: best}}\n"
+    text = LADDER.replace(
+        "outputs: [answer]",
+        "  longest: {step: after, in: shared, with: {tag: longest}}\n"
         "  long: {step: after, in: shared, with: {tag: long}}\n"
-        "  last: {first_of: [other, long]}\n  answer:",
+        "  last: {first_of: [longest, long]}\noutputs: [answer, last]",
     )
-    COSTS["long"] = lambda _: 5 * MS
+    COSTS["longest"], COSTS["long"] = (lambda _: 7 * MS), (lambda _: 5 * MS)
     timed = Timed(text)
     timed(100 * MS)
     timed(-1)
     result = timed(59 * MS // 10)  # of which 5 ms are kept for `long`
-    assert result.decisions == ("best", "other")
-    assert [*RAN] == ["shared", "long", "middle"]
+    assert result.decisions == ("best", "longest")
+    assert [*RAN] == ["shared", "middle", "long"]
 
 
 def test_a_node_outside_ladders_that_would_not_fit_is_skipped_and_what_needs_it() -> None:

@@ -452,3 +452,42 @@ def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: 
         while page.until("pulse")["frames"] < n + 20:  # it goes on though nobody looks
             pass
         assert page.until("pulse")["counters"]["good frames"] > 20
+
+
+# -- on time, and beside -------------------------------------------------------------------------
+
+
+def test_a_deadline_skips_what_does_not_fit_and_names_it(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "40", "--deadline", "1us") as command:
+        with Page(command) as page:
+            assert page.until("hello")["deadline_us"] == 1.0
+            frame = page.until("frame")
+            while not frame["decisions"]:
+                frame = page.until("frame")
+            skipped = frame["nodes"][frame["decisions"][0]]
+            assert (skipped["outcome"], skipped["reason"]) == ("skipped", "deadline")
+            while page.until("pulse")["missed"] == 0:
+                pass
+        with Page(command, "results") as program:
+            while not program.next()["deadline"]:
+                pass
+
+
+def test_a_variant_runs_beside_and_what_it_came_to_is_kept(folder: Path) -> None:
+    (folder / "other.yaml").write_text(PIPELINE.replace("0.01", "0.5").replace("mine", "other"))
+    with running(
+        folder, "mine.yaml", "--rate", "40", "--beside", "other.yaml", "--folder", "kept"
+    ) as command:
+        with Page(command) as page:
+            beside = page.until("pulse")["beside"]
+            while not beside or beside["frames"] < 10:
+                beside = page.until("pulse")["beside"]
+            assert beside["variant"] == "other"
+            assert beside["trouble"] == ""
+        code, out = command.end()
+    assert code == 0
+    assert "other beside: " in out
+    (figures,) = (folder / "kept").glob("*-beside-other.json")
+    told = json.loads(figures.read_text())
+    assert told["frames"] >= 10
+    assert {"frame", "difference", "first", "beside"} == set(told["kept"][0])

@@ -68,7 +68,11 @@ def test_edit_save_see(window: Any, file: Path, record_property: Any) -> None:
         graph_s, drawn_s = [], []
         for number in range(2, 9):
             text = PIPELINE.replace("0.01", f"0.0{number}")
-            text = text if number % 2 else text.replace("circle:", "ring:").replace("[circle]", "[ring]")
+            text = (
+                text
+                if number % 2
+                else text.replace("circle:", "ring:").replace("[circle]", "[ring]")
+            )
             began = time.time()
             save(file, text)
             wait_for(lambda n=number: page.locator(f"html[data-drawn='{n}']").count() == 1,
