@@ -1,10 +1,11 @@
 // The WebSocket to the server: messages in, commands out, and again after it was lost.
 
-import { byId, mark, show, write } from "./dom.js";
+import { byId, mark, own, show, write } from "./dom.js";
 
 const FIRST_WAIT_S = 0.25;
 const LONGEST_WAIT_S = 5;
 const SILENCE_S = 6;
+const RUNS = { waiting: "waiting for frames", ended: "the recording ended", paused: "paused" };
 
 export class Connection {
   /** `take` is called with every message; `changed` with whether there is a connection. */
@@ -91,6 +92,11 @@ export class Connection {
   tell(state, text) {
     mark(byId("link"), "data-state", state);
     write(byId("link-text"), text);
+  }
+
+  /** Show how the bench does while there is a connection. */
+  runs(state) {
+    if (this.up) this.tell(state, own(RUNS, state) ?? "connected");
   }
 
   /** Send a command; without a connection it is dropped, and false returned. */

@@ -92,6 +92,7 @@ const TAKE = {
     else if (!waiting) requestAnimationFrame(paint);
   },
   pulse(message) {
+    connection.runs(message.paused ? "paused" : message.state);
     status.take(message);
     transport.take(message);
   },
@@ -118,6 +119,7 @@ function paint() {
   transport.paint(frame);
   write(byId("when"), whenOf(frame));
   drawn.push(performance.now() - begun);
+  mark(document.documentElement, "data-drawn", frame.version);
   answer(frame);
 }
 

@@ -6,6 +6,7 @@ import { counted, duration, told as inDigits } from "./numbers.js";
 
 const STAYS_MS = 6000;
 const MOST_TOLD = 4;
+const MOST_DIFFERENCES = 3;
 const WORDS = { note: "", warning: "Warning", error: "Error" };
 
 export class Status {
@@ -19,6 +20,7 @@ export class Status {
   hello(hello) {
     this.deadlineUs = hello.deadline_us;
     show(byId("deadline-key"), this.deadlineUs !== null);
+    show(byId("missed-stat"), this.deadlineUs !== null);
     write(byId("about"), [hello.about, hello.source && `from ${hello.source}`].filter(Boolean).join(" · "));
     mark(byId("file-sum"), "title", hello.file);
   }
@@ -33,6 +35,8 @@ export class Status {
     write(byId("latency-p99"), duration(latency.p99));
     write(byId("page-latency"), duration(pulse.page_latency_us.median));
     write(byId("viewers"), counted(pulse.viewers));
+    write(byId("missed"), counted(pulse.missed));
+    byId("missed-stat").classList.toggle("alarm", pulse.missed > 0);
     byId("lost-stat").classList.toggle("alarm", pulse.lost > 0);
     byId("shed-stat").classList.toggle("alarm", pulse.shed > 0);
     this.beside(pulse.beside);
@@ -46,9 +50,17 @@ export class Status {
   beside(beside) {
     show(byId("beside-stat"), Boolean(beside));
     if (!beside) return;
-    write(byId("beside-name"), `Beside: ${beside.variant ?? "another variant"}`);
-    const parts = Object.entries(beside).filter(([key, value]) => key !== "variant" && typeof value !== "object");
-    write(byId("beside-text"), parts.map(([key, value]) => `${key.replaceAll("_", " ")} ${inDigits(value)}`).join(", "));
+    const { variant, frames, passed, same_outcomes: same, median_us: ours, beside_median_us: its } = beside;
+    write(byId("beside-name"), `Beside: ${variant}`);
+    const differences = Object.entries(beside.differences ?? {}).slice(0, MOST_DIFFERENCES)
+      .map(([field, { mean, most }]) => `${field} ${inDigits(mean)} apart, ${inDigits(most)} at most`);
+    const parts = [
+      `${counted(frames)} frames, ${counted(passed)} passed by`,
+      frames > 0 && `as here in ${((100 * same) / frames).toFixed(1)} %`,
+      `${duration(its)} for ${duration(ours)} here`,
+      ...differences, beside.trouble,
+    ];
+    write(byId("beside-text"), parts.filter(Boolean).join("; "));
   }
 
   chart() {

@@ -8,19 +8,17 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from helpers_cli import call
-from helpers_live import COUNTS, PIPELINE, Command, Page, running
-from helpers_serial import KITS, FakePad, Kit
+from helpers_live import COUNTS, PIPELINE, Command, Page, Sending, running
+from helpers_serial import KITS, FakePad
 
 for part in ("starlette", "uvicorn", "websockets"):
     pytest.importorskip(part, reason="the live extra is not installed")
@@ -455,33 +453,6 @@ def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: 
         while page.until("pulse")["frames"] < n + 20:  # it goes on though nobody looks
             pass
         assert page.until("pulse")["counters"]["good frames"] > 20
-
-
-class Sending:
-    """A pad that sends forty frames a second as long as it is plugged in."""
-
-    def __init__(self, pad: FakePad, kit: Kit) -> None:
-        self._pad, self._kit = pad, kit
-        self.pad_lock = threading.Lock()
-        self._end = threading.Event()
-        self._thread = threading.Thread(target=self._send)
-
-    def __enter__(self) -> Sending:
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._end.set()
-        self._thread.join(10)
-        self._pad.unplug()
-
-    def _send(self) -> None:
-        rng = np.random.default_rng(0)
-        number = 0
-        while not self._end.wait(0.025):
-            with self.pad_lock:
-                self._pad.send(self._kit.encode(self._kit.pad(rng), number))
-            number += 1
 
 
 # -- on time, and beside -------------------------------------------------------------------------

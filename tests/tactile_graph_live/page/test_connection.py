@@ -31,7 +31,9 @@ def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> 
     page.wait_for_timeout(2500)
     assert "tries so far" in page.locator("#lost-text").inner_text()
     with served(Double(), port) as second:
-        page.locator("#link[data-state=connected]").wait_for(timeout=8000)
+        page.locator("#link:is([data-state=connected], [data-state=running])").wait_for(
+            timeout=8000
+        )
         assert page.locator("#lost").is_hidden()
         assert second.heard("show")["nodes"] == ["boundary", "circle", "footprint", "frame"]
         second.say(frame(500), graph(2, ("footprint", "circle")))
@@ -52,7 +54,9 @@ def test_trying_now_needs_no_wait(window: Any) -> None:
     page.wait_for_timeout(5000)  # by now it waits for seconds
     with served(Double(), port):
         page.get_by_role("button", name="Try now").click()
-        page.locator("#link[data-state=connected]").wait_for(timeout=1500)
+        page.locator("#link:is([data-state=connected], [data-state=running])").wait_for(
+            timeout=1500
+        )
 
 
 def test_tries_come_at_longer_and_longer_intervals(window: Any) -> None:
@@ -81,7 +85,7 @@ def test_a_server_that_hangs_is_given_up(window: Any) -> None:
         page.wait_for_selector("#result-rows tr")
         double.heard("show")
         double.heard("show", 10)  # of another connection: there was no word for six seconds
-        page.locator("#link[data-state=connected]").wait_for()
+        page.locator("#link:is([data-state=connected], [data-state=running])").wait_for()
 
 
 def test_a_slow_page_draws_the_newest_frame_only(window: Any) -> None:

@@ -221,6 +221,19 @@ def test_the_status_line(page: Any, double: Double) -> None:
     assert "800 µs median · 1.90 ms 99 %" in told
 
 
+def test_what_runs_beside_is_told(page: Any, double: Double) -> None:
+    beside = {"variant": "circle-3", "frames": 200, "passed": 40, "same_outcomes": 199,
+              "differences": {"radius_cm": {"mean": 0.1, "most": 0.75}}, "median_us": 29.0,
+              "beside_median_us": 140.0, "kept": [7], "trouble": ""}  # fmt: skip
+    double.say(pulse(beside=beside, missed=7))
+    page.locator("#beside-stat").wait_for()
+    assert page.locator("#beside-stat").inner_text().split("\n")[-1] == (
+        "200 frames, 40 passed by; as here in 99.5 %; 140 µs for 29 µs here; "
+        "radius_cm 0.1000 apart, 0.7500 at most"
+    )
+    assert page.locator("#missed").inner_text() == "7"
+
+
 def test_a_wrong_file_says_where_and_that_the_old_graph_runs(page: Any, double: Double) -> None:
     errors = [{"line": 3, "column": 9, "text": "level_v: must be > 0, got -1"},
               {"line": 0, "column": 0, "text": "no outputs"}]  # fmt: skip

@@ -50,7 +50,8 @@ def hostile_messages() -> list[dict[str, Any]]:
     return [
         hello(pipeline=HOSTILE[0], about=HOSTILE[1], source=HOSTILE[2], file=HOSTILE[0]),
         told,
-        pulse(recording=recording, beside={"variant": HOSTILE[0], HOSTILE[1]: HOSTILE[2]}),
+        pulse(recording=recording, beside={"variant": HOSTILE[0], "frames": 1, "passed": 0, "same_outcomes": 1, "trouble": HOSTILE[1],
+                     "differences": {HOSTILE[2]: {"mean": 1.0, "most": 1.0}}, "median_us": None, "beside_median_us": None}),
         frame(1, names, nodes=nodes, rows=rows, drawing=words, label=HOSTILE[1], pad=pad,
               pictures=dict.fromkeys(names, notes)),
         {"type": "trouble", "version": 2,
