@@ -24,6 +24,7 @@ import sys
 import tempfile
 import time
 import tty
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -131,9 +132,17 @@ async def look(address: str, seconds: float, show: Sequence[str] = ()) -> Seen:
     return seen
 
 
-async def take_all(address: str, seconds: float) -> list[float]:
-    """Take every result as a program does; return milliseconds from the pad to each."""
-    found: list[float] = []
+@dataclass
+class Taken:
+    """What a program took: milliseconds from the pad to each result, and how the outputs fared."""
+
+    to_result_ms: list[float] = field(default_factory=list)
+    outcomes: Counter[str] = field(default_factory=Counter)
+
+
+async def take_all(address: str, seconds: float) -> Taken:
+    """Take every result as a program does."""
+    taken = Taken()
     end = time.perf_counter() + seconds
     async with websockets.connect(f"{address}results", max_size=None, compression=None) as program:
         while (left := end - time.perf_counter()) > 0:
@@ -143,8 +152,9 @@ async def take_all(address: str, seconds: float) -> list[float]:
                 break
             if row["type"] == "result":
                 done_s = row["arrived_s"] + row["latency_us"] / 1e6
-                found.append(since(row["device_time_s"], done_s))
-    return found
+                taken.to_result_ms.append(since(row["device_time_s"], done_s))
+                taken.outcomes["deadline" if row["deadline"] else row["rows"][0]["outcome"]] += 1
+    return taken
 
 
 def deaf(address: str) -> socket.socket:
@@ -260,9 +270,11 @@ async def _wait(seconds: float) -> Seen:
 
 
 async def phase_all(running: Running, seconds: float) -> None:
-    found = await take_all(running.address, seconds)
+    taken = await take_all(running.address, seconds)
+    n = sum(taken.outcomes.values())
+    shares = ", ".join(f"{word} {k / n:.0%}" for word, k in taken.outcomes.most_common(4))
     print(f"every result to a program: {seconds:g} s")
-    print(f"  sensor to result: {said(found)}")
+    print(f"  sensor to result: {said(taken.to_result_ms)}; of the first output: {shares}")
 
 
 async def phase_deaf(running: Running, sent: Any, seconds: float) -> None:

@@ -7,11 +7,16 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+
+from helpers_serial import FakePad, Kit
 
 PIPELINE = """\
 pipeline: mine
@@ -19,6 +24,14 @@ source: {step: sample, with: {name: discs}}
 nodes:
   footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
   boundary: {step: boundary_scan, in: footprint, when: footprint.count > 0}
+  circle: {step: fit_circle, in: boundary}
+outputs: [circle]
+"""
+COUNTS = """\
+pipeline: counts
+nodes:
+  above: {step: threshold_otsu, in: frame}
+  boundary: {step: boundary_scan, in: above.mask, when: above.mask.count > 2}
   circle: {step: fit_circle, in: boundary}
 outputs: [circle]
 """
@@ -65,9 +78,9 @@ def _with_ctrl_c() -> None:
 
 
 @contextmanager
-def running(folder: Path, *arguments: str) -> Iterator[Command]:
+def running(folder: Path, *arguments: str, port: str = "0") -> Iterator[Command]:
     """Run the command in a folder until the block ends."""
-    command = [sys.executable, "-m", "tactile_graph", "live", *arguments, "--http-port", "0"]
+    command = [sys.executable, "-m", "tactile_graph", "live", *arguments, "--http-port", port]
     process = subprocess.Popen(
         command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         preexec_fn=_with_ctrl_c, env={**os.environ, "PYTHONUNBUFFERED": "1"},
@@ -147,3 +160,30 @@ class Page:
         while part not in (message := self.until("told"))["text"]:
             pass
         return message
+
+
+class Sending:
+    """A pad that sends forty frames a second as long as it is plugged in."""
+
+    def __init__(self, pad: FakePad, kit: Kit) -> None:
+        self._pad, self._kit = pad, kit
+        self.pad_lock = threading.Lock()
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._send)
+
+    def __enter__(self) -> Sending:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end.set()
+        self._thread.join(10)
+        self._pad.unplug()
+
+    def _send(self) -> None:
+        rng = np.random.default_rng(0)
+        number = 0
+        while not self._end.wait(0.025):
+            with self.pad_lock:
+                self._pad.send(self._kit.encode(self._kit.pad(rng), number))
+            number += 1

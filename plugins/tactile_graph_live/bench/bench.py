@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Pipeline, Result
 from tactile_graph.errors import TactileGraphError, text_of
-from tactile_graph.live import LiveResult, LiveRun
+from tactile_graph.live import Beside, LiveResult, LiveRun
 from tactile_graph.steps import Report
 from tactile_graph_live.bench import wire
 from tactile_graph_live.bench.outbox import Outbox
@@ -57,6 +57,9 @@ class Bench:
         self._changed = Condition()
         self._next_picture_ns = self._next_summary_ns = 0
         self._report = Report(listener=lambda where, what: self._say(f"{where}: {what}", "warning"))
+        self._beside: Beside | None = None
+        if order.beside:
+            self._beside = Beside(pickle.loads(order.beside), seed=order.seed)
         self._begin()
 
     def _begin(self) -> None:
@@ -74,8 +77,13 @@ class Bench:
         )
         self._player.hold(self._held)
         self._run: LiveRun[Result] = LiveRun(
-            self._pipeline, self._frames(), seed=order.seed, deadline_us=order.deadline_us
+            self._pipeline,
+            self._frames(),
+            seed=order.seed,
+            deadline_us=order.deadline_us,
+            capacity=order.capacity,
         )
+        self._run.beside = self._beside
         self._tally.begin()
 
     # -- the loop ----------------------------------------------------------------------------------
@@ -96,6 +104,8 @@ class Bench:
                 self._restart = self._idle = False
             if not self._ended:
                 self._begin()
+        if self._beside is not None:
+            self._beside.close()
 
     def _answer_all(self) -> str:
         """Answer the frames of one source; return what went wrong, if anything."""
@@ -112,7 +122,7 @@ class Bench:
 
     def _answered(self, live: Live) -> None:
         """Take down a frame that is done."""
-        self._tally.add(live, self._run.n_waiting, self._order.deadline_us)
+        self._tally.add(live, self._run.n_waiting, self._run.deadline_us)
         if self._wants.rows:
             self._outbox.row(self._row(live))
         now = live.done_ns
@@ -160,6 +170,7 @@ class Bench:
                 tally.taken(), tally.n_frames, tally.n_lost, tally.n_shed, tally.n_missed,
                 kept_s, kept_frames, state, self._baseline is not None,
                 dict(self._report.counts),
+                None if self._beside is None else self._beside.summary(),
             )
         )  # fmt: skip
 
@@ -207,6 +218,8 @@ class Bench:
             if self._wants.frames and not message.frames:
                 self._outbox.last_frame()
             self._wants = message
+        elif isinstance(message, wire.Compare):
+            self._compare()
         else:
             self._end()
 
@@ -253,6 +266,17 @@ class Bench:
         frames, back_s, newer = found
         kept = wire.Kept(message.ticket, tuple(frames), back_s, newer, self._baseline)
         self._outbox.note(kept)
+
+    def _compare(self) -> None:
+        if self._beside is None:
+            return
+        kept = self._beside.agreement.kept
+        said = tuple(
+            {"frame": k.frame.index, "difference": k.difference, "first": k.first,
+             "beside": k.beside} for k in kept
+        )  # fmt: skip
+        summary = self._beside.summary()
+        self._outbox.note(wire.Compared(summary, tuple(k.frame for k in kept), said))
 
     def _end(self) -> None:
         with self._changed:

@@ -118,11 +118,10 @@ class Player:
             frames = self._open(round_)
             try:
                 for frame in frames:
-                    again = round_ > 0 and self.next_index == before
                     if not self._wait(frame):
                         return
                     number, self.next_index = self.next_index, self.next_index + 1
-                    yield replace(frame, index=number, gap=frame.gap or again)
+                    yield replace(frame, index=number)
             finally:
                 close = getattr(frames, "close", None)
                 if close is not None:

@@ -33,8 +33,12 @@ class Order:
         Whether what is played ends, instead of starting over.
     unpaced : bool
         Whether frames are taken as fast as they come.
+    capacity : int
+        How many frames may wait for the pipeline; then the oldest is shed.
     selection : str
         The plugins that are chosen.
+    beside : bytes
+        A variant to run in what time is left, pickled; empty for none.
     """
 
     pickled: bytes
@@ -44,7 +48,9 @@ class Order:
     rate_hz: float | None = None
     once: bool = False
     unpaced: bool = False
+    capacity: int = 16
     selection: str = ""
+    beside: bytes = b""
 
 
 # -- from the bench ------------------------------------------------------------------------------
@@ -113,6 +119,7 @@ class Summary:
     state: State
     tared: bool
     counters: Mapping[str, int]
+    beside: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -153,7 +160,19 @@ class Ended:
     n_frames: int
 
 
-FromBench = Snapshot | Rows | Taken | Summary | Kept | Swapped | Said | Ended
+@dataclass(frozen=True)
+class Compared:
+    """How the variant beside has done, and the frames on which the two differ most.
+
+    ``said`` has for each of ``frames`` the difference, and what each of the two says.
+    """
+
+    summary: dict[str, Any]
+    frames: tuple[Frame, ...]
+    said: tuple[dict[str, Any], ...]
+
+
+FromBench = Snapshot | Rows | Taken | Summary | Kept | Swapped | Said | Ended | Compared
 
 # -- to the bench --------------------------------------------------------------------------------
 
@@ -212,8 +231,13 @@ class Want:
 
 
 @dataclass(frozen=True)
+class Compare:
+    """Say how the variant beside has done."""
+
+
+@dataclass(frozen=True)
 class End:
     """End the bench."""
 
 
-ToBench = Swap | Show | Tare | Hold | OneMore | Fetch | Want | End
+ToBench = Swap | Show | Tare | Hold | OneMore | Fetch | Want | Compare | End

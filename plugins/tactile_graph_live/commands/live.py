@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 import signal
 from collections.abc import Sequence
@@ -72,6 +73,10 @@ def parse_deadline(ctx: click.Context, param: click.Parameter, value: str | None
 @click.option("--once", is_flag=True, help="End a recording where it ends; it starts over else.")
 @click.option("--deadline", "deadline_us", callback=parse_deadline, metavar="TIME",
               help="Answer each frame within this time (2ms, 800us) of its arrival.")  # fmt: skip
+@click.option("--waiting", type=click.IntRange(min=1), default=16, show_default=True, metavar="N",
+              help="Frames that may wait for the pipeline; of more the oldest go.")  # fmt: skip
+@click.option("--beside", metavar="VARIANT",
+              help="Run this one in what time is left, and tell how far both agree.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed of everything random.")  # fmt: skip
 @click.option("--folder", default=".", show_default=True,
@@ -133,6 +138,8 @@ class _Options:
     unpaced: bool
     once: bool
     deadline_us: float | None
+    waiting: int
+    beside: str | None
     seed: int
     folder: str
     osc: str
@@ -188,6 +195,8 @@ def _setup(opened: Pipeline, asked: _Options) -> Setup:
         rate_hz=asked.rate_hz,
         once=asked.once,
         unpaced=asked.unpaced,
+        capacity=asked.waiting,
+        beside=b"" if asked.beside is None else pickle.dumps(_variant(asked.beside, opened)),
     )
     return Setup(
         opened,
@@ -197,6 +206,15 @@ def _setup(opened: Pipeline, asked: _Options) -> Setup:
         order,
         asked.osc,
     )
+
+
+def _variant(name: str, opened: Pipeline) -> Pipeline:
+    """Return the pipeline to run beside, checked against the source of the first."""
+    from tactile_graph import load
+
+    variant = load(name)
+    source = opened.source
+    return variant if source is None else variant.with_source(source.name, **source.given)
 
 
 def _tell(text: str, level: str) -> None:

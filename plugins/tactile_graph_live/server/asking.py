@@ -9,7 +9,10 @@ from typing import Any
 from tactile_graph.errors import UsageError, did_you_mean, one_of, shown
 from tactile_graph_live.server.messages import ASKED
 
-OPTIONAL: Mapping[str, Any] = {"label": ""}
+OPTIONAL: Mapping[str, Mapping[str, Any]] = {
+    "record": {"label": ""},
+    "unset": {"node": "", "setting": ""},
+}
 LONGEST_TEXT = 10_000
 MOST_NODES = 1000
 
@@ -28,7 +31,7 @@ def checked(asked: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
         raise UsageError(f"nothing is asked by type {shown(kind)}{hint}")
     fields = {}
     for name, allowed in ASKED[kind].items():
-        value = asked.get(name, OPTIONAL.get(name))
+        value = asked.get(name, OPTIONAL.get(kind, {}).get(name))
         if value is None and name not in asked:
             raise UsageError(f"{kind}: {name!r} is missing")
         if not _fits(value, allowed):

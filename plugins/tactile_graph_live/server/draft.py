@@ -70,9 +70,18 @@ class Draft:
         here = _merged(self.set_here, {node: {setting: value}})
         return self._set(here)
 
-    def without_values(self) -> Draft:
-        """Return the draft as file and command line have it."""
-        return self._set({})
+    def without_values(self, node: str = "", setting: str = "") -> Draft:
+        """Return the draft as file and command line have it, in one setting or, if "", in all."""
+        if not node:
+            return self._set({})
+        here = {n: {s: v for s, v in values.items() if (n, s) != (node, setting)}
+                for n, values in self.set_here.items()}  # fmt: skip
+        return self._set(here)
+
+    @property
+    def file_text(self) -> str:
+        """The YAML without what was set on the page."""
+        return text_with(self.base, self.given)
 
     def _set(self, here: Settings) -> Draft:
         base = loads(self.base, self.pipeline.file)

@@ -74,7 +74,7 @@ class Editor:
     def _edited(self, draft: Draft, version: int) -> Edited:
         pipeline = draft.pipeline
         lookback = Lookback(pipeline, version, self._seed)
-        graph = graph_message(pipeline, version, draft.text, draft.set_here)
+        graph = graph_message(pipeline, version, (draft.text, draft.file_text), draft.set_here)
         return Edited(draft, graph, lookback)
 
     # -- the file ----------------------------------------------------------------------------------
@@ -122,11 +122,11 @@ class Editor:
             draft = await asyncio.to_thread(self.now.draft.with_value, node, setting, value)
             await self._apply(draft, began)
 
-    async def unset(self) -> None:
-        """Take back all that was set on the page."""
+    async def unset(self, node: str = "", setting: str = "") -> None:
+        """Take back what was set on the page, all of it if no setting is named."""
         began = time.perf_counter()
         async with self._lock:
-            draft = await asyncio.to_thread(self.now.draft.without_values)
+            draft = await asyncio.to_thread(self.now.draft.without_values, node, setting)
             await self._apply(draft, began)
 
     # -- the bench ---------------------------------------------------------------------------------

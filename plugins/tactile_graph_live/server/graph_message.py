@@ -26,7 +26,7 @@ Overrides = Mapping[str, Mapping[str, Any]]
 
 
 def graph_message(
-    pipeline: Pipeline, version: int, text: str, changed: Overrides
+    pipeline: Pipeline, version: int, texts: tuple[str, str], changed: Overrides
 ) -> messages.Graph:
     """Return what the page knows of a pipeline.
 
@@ -34,8 +34,8 @@ def graph_message(
     ----------
     pipeline : Pipeline
     version : int
-    text : str
-        The YAML with what was set on the page.
+    texts : (str, str)
+        The YAML with what was set on the page, and without.
     changed : mapping
         Node -> setting -> value of what was set on the page.
     """
@@ -52,7 +52,7 @@ def graph_message(
         version,
         visible(pipeline.name),
         visible(pipeline.about),
-        text,
+        *texts,
         tuple(boxes),
         tuple(
             messages.Wire(w.start, w.end, w.kind, visible(w.label)[:LONGEST_LABEL], _path(route))

@@ -154,7 +154,8 @@ class Guard:
     def _headed(self, scope: Scope, send: Send) -> Send:
         more = [*HEADERS]
         if scope["type"] == "http" and self._door.brings_token(scope):
-            value = f"{COOKIE.format(self._door.port)}={self._door.token}; Path=/; HttpOnly; SameSite=Strict"
+            name = COOKIE.format(self._door.port)
+            value = f"{name}={self._door.token}; Path=/; HttpOnly; SameSite=Strict"
             more.append((b"set-cookie", value.encode()))
 
         async def sent(message: MutableMapping[str, Any]) -> None:

@@ -119,13 +119,15 @@ class Column:
 class Graph:
     """The graph that runs now, ``version`` counting up by one at every change.
 
-    ``yaml`` is the file with what was set on the page in it: what ``save`` writes.
+    ``yaml`` is the file with what was set on the page in it: what ``save`` writes; ``file_yaml`` is
+    the same without that.
     """
 
     version: int
     name: str
     about: str
     yaml: str
+    file_yaml: str
     boxes: tuple[Box, ...]
     wires: tuple[Wire, ...]
     width: float
@@ -264,6 +266,9 @@ class Pulse:
     state: str
     counters: Mapping[str, int] = field(default_factory=dict)
     beside: Plain | None = None
+    """Of the variant that runs in what time is left: ``variant``, ``frames`` it answered, how many
+    ``passed`` it by, ``same_outcomes``, ``differences`` (field -> mean and most), ``median_us`` and
+    ``beside_median_us``, ``kept`` (numbers of the frames that differ most), ``trouble``."""
 
 
 @dataclass(frozen=True)
@@ -286,15 +291,15 @@ ASKED: Mapping[str, Mapping[str, type | tuple[type, ...]]] = {
     "untare": {},
     "record": {"on": bool, "label": str},
     "set": {"node": str, "setting": str, "value": object},
-    "unset": {},
+    "unset": {"node": str, "setting": str},
     "show": {"nodes": list},
     "save": {"name": str},
     "pong": {"index": int},
 }
-"""What a page may ask, with the fields each takes (all of them needed but ``label``).
+"""What a page may ask, with the fields each takes; ``label`` and those of ``unset`` may be missing.
 
-``scrub`` shows the frame that came so many seconds ago; ``step`` the next one; ``unset`` takes back
-all that was set; ``save`` writes the graph's YAML under a name into the folder.
+``scrub`` shows the frame that came so many seconds ago; ``step`` the next one; ``unset`` takes
+back a setting, or all that was set; ``save`` writes the graph's YAML under a name into the folder.
 """
 
 

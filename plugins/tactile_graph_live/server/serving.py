@@ -60,7 +60,9 @@ def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.sock
 def _bound(
     family: int, address: tuple[str | int, ...] | tuple[int, bytes], host: str, port: int
 ) -> socket.socket:
-    listener = socket.socket(family, socket.SOCK_STREAM)
+    # With the protocol named, asyncio sends at once what it is given (TCP_NODELAY): a picture
+    # behind a pulse waited 40 ms for the viewer's acknowledgement.
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         if sys.platform != "win32":  # there it would let two listen on one port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -22,6 +22,7 @@ from tactile_graph_live.bench.playing import is_device
 from tactile_graph_live.server import messages
 from tactile_graph_live.server.asking import checked
 from tactile_graph_live.server.bench_link import BenchLink
+from tactile_graph_live.server.comparison import words_of, write_comparison
 from tactile_graph_live.server.draft import Draft, save
 from tactile_graph_live.server.editor import Edited, Editor
 from tactile_graph_live.server.gaze import Gaze
@@ -86,6 +87,7 @@ class Session:
         self._device = is_device(setup.pipeline)
         self._vitals = Vitals()
         self._taking: _Recording | None = None
+        self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
         self.viewers = Viewers(lambda shown: self._send(wire.Show(tuple(sorted(shown)))))
@@ -149,6 +151,8 @@ class Session:
         """End the recording properly, and the bench."""
         if self._taking is not None:
             await self._stop_recording()
+        if self._setup.order.beside:
+            await self._write_comparison()
         await asyncio.to_thread(self._link.close)
         if self._osc is not None:
             self._osc.close()
@@ -182,6 +186,8 @@ class Session:
             self._gaze.found(message)
         elif isinstance(message, wire.Swapped):
             self._editor.swapped(message)
+        elif isinstance(message, wire.Compared):
+            self._compared.put_nowait(message)
         elif isinstance(message, wire.Said):
             self._tell(message.text, message.level)
         else:
@@ -234,11 +240,12 @@ class Session:
             self._device,
             visible(pipeline.file),
             visible(str(self._setup.folder)),
-            self._setup.order.deadline_us,
+            self._setup.order.deadline_us or pipeline.deadline_us,
             self._setup.program_version,
         )
 
     def _changed(self, edited: Edited) -> None:
+        self.viewers.tell(self._hello())
         self.viewers.tell(edited.graph)
         self._gaze.again()
 
@@ -260,7 +267,7 @@ class Session:
             "untare": lambda: self._send(wire.Tare(False)),
             "record": self._record,
             "set": lambda node, setting, value: self._later(self._editor.set(node, setting, value)),
-            "unset": lambda: self._later(self._editor.unset()),
+            "unset": lambda node, setting: self._later(self._editor.unset(node, setting)),
             "save": lambda name: self._later(self._save(name)),
         }
 
@@ -334,6 +341,20 @@ class Session:
         self._taking = _Recording(recorder)
         self._tell_wants()
         self._tell(f"recording to {recorder.path}")
+
+    async def _write_comparison(self) -> None:
+        """Write how the variant beside has done, and the frames that tell the two apart."""
+        self._send(wire.Compare())
+        try:
+            compared = await asyncio.wait_for(self._compared.get(), LAST_FRAMES_S)
+            self._tell(words_of(compared))
+            folder = self._setup.folder
+            for path in await asyncio.to_thread(lambda: list(write_comparison(folder, compared))):
+                self._tell(f"wrote {path}")
+        except TimeoutError:
+            self._tell("the comparison did not come in time", "warning")
+        except TactileGraphError as error:
+            self._tell(str(error), "error")
 
     def _broken(self, what: str) -> None:
         self._tell(f"the recording failed: {what}", "error")

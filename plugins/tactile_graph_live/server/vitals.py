@@ -8,6 +8,7 @@ from collections import deque
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.inspect import without_nan
 from tactile_graph_live.bench.wire import Summary
 from tactile_graph_live.server.messages import Pulse, Quantiles, Recording
 
@@ -66,6 +67,7 @@ class Vitals:
             kept_frames=its.kept_frames,
             state=its.state,
             counters=its.counters,
+            beside=None if its.beside is None else without_nan(its.beside),
         )
 
 

@@ -22,7 +22,7 @@ def frames(n: int, every_s: float | None = None) -> Iterator[Frame]:
 def test_a_source_that_ends_starts_over_and_the_numbers_go_on() -> None:
     got = list(islice(Player(lambda r: frames(3), pace=None, once=False), 7))
     assert [f.index for f in got] == list(range(7))
-    assert [f.gap for f in got] == [False, False, False, True, False, False, True]
+    assert not any(f.gap for f in got)  # none was lost
 
 
 def test_each_round_is_told_its_number_so_that_what_is_random_differs() -> None:

@@ -17,7 +17,8 @@ from pathlib import Path
 import pytest
 
 from helpers_cli import call
-from helpers_live import PIPELINE, Command, Page, running
+from helpers_live import COUNTS, PIPELINE, Command, Page, Sending, running
+from helpers_serial import KITS, FakePad
 
 for part in ("starlette", "uvicorn", "websockets"):
     pytest.importorskip(part, reason="the live extra is not installed")
@@ -134,6 +135,11 @@ def test_settings_are_set_taken_back_and_saved(command: Command, folder: Path) -
         assert (folder / "better.yaml").read_text() == graph["yaml"]
         page.ask("save", name="../better")
         assert page.told("a name is of letters")["level"] == "error"
+        assert graph["file_yaml"] == PIPELINE
+        page.ask("unset", node="footprint", setting="level_v")
+        assert page.until("graph")["yaml"] == PIPELINE
+        page.ask("set", node="footprint", setting="level_v", value=0.05)
+        page.until("graph")
         page.ask("unset")
         assert page.until("graph")["yaml"] == PIPELINE
 
@@ -252,9 +258,9 @@ def test_tare_takes_off_what_lies_there(command: Command) -> None:
 def test_programs_take_every_result_in_order(shared: Command) -> None:
     with Page(shared, "results") as program:
         rows = [program.next() for _ in range(60)]
-    numbers = [r["frame"] for r in rows]
-    assert numbers == list(range(numbers[0], numbers[0] + 60))
-    found = [r for row in rows for r in row["rows"] if r["outcome"] == "ok"]
+    numbers = [r["frame"] for r in rows if r["type"] == "result"]
+    assert numbers == sorted(set(numbers))  # on a busy machine some are shed
+    found = [r for row in rows for r in row.get("rows", ()) if r["outcome"] == "ok"]
     assert {"output", "x_cm", "radius_cm", "centre_error_cm"} <= set(found[0])
 
 
@@ -416,3 +422,73 @@ def test_every_message_is_json_without_nan(shared: Command) -> None:
             page.next()
         for message in page.got:
             json.dumps(message, allow_nan=False)
+
+
+# -- a pad on a port -----------------------------------------------------------------------------
+
+
+def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: Path) -> None:
+    kit = next(k for k in KITS if k.preset == "fabric-16x16")
+    (tmp_path / "mine.yaml").write_text(COUNTS)
+    pad = FakePad(tmp_path / "tty")
+    sending = Sending(pad, kit)
+    with (
+        sending,
+        running(tmp_path, "mine.yaml", "--port", str(pad.link), "--preset", kit.preset) as command,
+        Page(command) as page,
+    ):
+        assert page.until("hello")["live"] is True
+        before = page.until("frame")
+        with sending.pad_lock:
+            pad.unplug()
+            page.told("unplugged")
+            page.until("pulse", state="waiting")
+            pad.plug_in()
+        assert page.until("frame")["index"] > before["index"]
+        while page.until("pulse")["lost"] == 0:
+            pass
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        n = page.until("pulse")["frames"]
+        while page.until("pulse")["frames"] < n + 20:  # it goes on though nobody looks
+            pass
+        assert page.until("pulse")["counters"]["good frames"] > 20
+
+
+# -- on time, and beside -------------------------------------------------------------------------
+
+
+def test_a_deadline_skips_what_does_not_fit_and_names_it(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "40", "--deadline", "1us") as command:
+        with Page(command) as page:
+            assert page.until("hello")["deadline_us"] == 1.0
+            frame = page.until("frame")
+            while not frame["decisions"]:
+                frame = page.until("frame")
+            skipped = frame["nodes"][frame["decisions"][0]]
+            assert (skipped["outcome"], skipped["reason"]) == ("skipped", "deadline")
+            while page.until("pulse")["missed"] == 0:
+                pass
+        with Page(command, "results") as program:
+            while not program.next()["deadline"]:
+                pass
+
+
+def test_a_variant_runs_beside_and_what_it_came_to_is_kept(folder: Path) -> None:
+    (folder / "other.yaml").write_text(PIPELINE.replace("0.01", "0.5").replace("mine", "other"))
+    with running(
+        folder, "mine.yaml", "--rate", "40", "--beside", "other.yaml", "--folder", "kept"
+    ) as command:
+        with Page(command) as page:
+            beside = page.until("pulse")["beside"]
+            while not beside or beside["frames"] < 10:
+                beside = page.until("pulse")["beside"]
+            assert beside["variant"] == "other"
+            assert beside["trouble"] == ""
+        code, out = command.end()
+    assert code == 0
+    assert "other beside: " in out
+    (figures,) = (folder / "kept").glob("*-beside-other.json")
+    told = json.loads(figures.read_text())
+    assert told["frames"] >= 10
+    assert {"frame", "difference", "first", "beside"} == set(told["kept"][0])

@@ -14,6 +14,7 @@ def test_what_is_right_is_taken_with_its_fields() -> None:
     assert checked({"type": "scrub", "back_s": 3, "more": 1}) == ("scrub", {"back_s": 3})
     assert checked({"type": "record", "on": True}) == ("record", {"on": True, "label": ""})
     assert checked({"type": "set", "node": "a", "setting": "b", "value": None})[1]["value"] is None
+    assert checked({"type": "unset"}) == ("unset", {"node": "", "setting": ""})
 
 
 @pytest.mark.parametrize(
@@ -33,6 +34,7 @@ def test_what_is_right_is_taken_with_its_fields() -> None:
         ({"type": "show", "nodes": ["x"] * 2000}, "wrong kind"),
         ({"type": "save", "name": "x" * 20_000}, "wrong kind"),
         ({"type": "set", "node": "a", "setting": "b"}, "'value' is missing"),
+        ({"type": "set", "setting": "b", "value": 1}, "'node' is missing"),
         ({"type": "set", "node": "a", "setting": "b", "value": "x" * 20_000}, "wrong kind"),
     ],
 )

@@ -88,7 +88,14 @@ def test_what_is_set_runs_and_stands_in_the_yaml(tmp_path: Path) -> None:
     assert draft.pipeline.nodes["footprint"].settings["level_v"] == 0.03
     assert "level_v: 0.03" in draft.text
     assert tg.loads(draft.text).key == draft.pipeline.key
-    assert draft.without_values().text == FLOW
+    assert draft.without_values().text == draft.file_text == FLOW
+
+
+def test_one_setting_is_taken_back(tmp_path: Path) -> None:
+    one = opened(tmp_path).with_value("footprint", "level_v", 0.03)
+    both = one.with_value("footprint", "above", True)
+    assert both.without_values("footprint", "above").text == one.text
+    assert both.without_values("footprint", "nothing").text == both.text
 
 
 def test_what_is_not_allowed_is_refused_and_named(tmp_path: Path) -> None:
