@@ -27,6 +27,7 @@ from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
 from tactile_graph.engine.rows import as_data, scalars, without_nan
 from tactile_graph.engine.runner import Runner, check_frame
+from tactile_graph.engine.table import Table, make_table
 from tactile_graph.engine.truth import measures_of, shape_kind
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
@@ -49,12 +50,14 @@ __all__ = [
     "Runner",
     "Skipped",
     "Source",
+    "Table",
     "arms",
     "as_data",
     "check_frame",
     "field_type",
     "gaps",
     "make_plan",
+    "make_table",
     "measures_of",
     "node_key",
     "plain",

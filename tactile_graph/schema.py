@@ -94,6 +94,11 @@ class _Maker:
                 },
                 "source": {"oneOf": [{"$ref": "#/$defs/source"}, {"type": "null"}],
                            "description": "Where frames come from unless the run says otherwise."},
+                "deadline_us": {
+                    "type": ["number", "null"], "exclusiveMinimum": 0,
+                    "description": "Microseconds from a frame's arrival within which a live run "
+                    "wants its result: what would not be done in time is skipped.",
+                },
                 "conditions": {
                     "type": ["object", "null"],
                     "propertyNames": _names(),
@@ -136,12 +141,22 @@ class _Maker:
                 "when": {"$ref": "#/$defs/condition"},
                 "each": {"type": "boolean",
                          "description": "Run it once for each item of the list it reads."},
+                "time_limit_s": {
+                    "type": ["number", "null"], "exclusiveMinimum": 0,
+                    "description": "Seconds the step may take: it runs in a process of its own, "
+                    "which is ended and started anew where it takes longer.",
+                },
+                "isolated": {"type": "boolean",
+                             "description": "Run the step in a process of its own: where it "
+                             "crashes, only its node fails."},
                 "about": {"type": ["string", "number", "null"]},
             },
             "oneOf": [{"required": [kind]} for kind in ("step", "use", "first_of")],
             "allOf": [
                 {"if": {"required": ["first_of"]},
                  "then": {"properties": {"in": False, "with": False, "each": False}}},
+                {"if": {"not": {"required": ["step"]}},
+                 "then": {"properties": {"time_limit_s": False, "isolated": False}}},
                 {"if": {"required": ["use"]},
                  "then": {"properties": {
                      "with": {"propertyNames": {"pattern": "\\."},

@@ -27,8 +27,10 @@ if TYPE_CHECKING:
     from tactile_graph.api.result import Result
     from tactile_graph.api.results import Results
     from tactile_graph.engine.block import Block
+    from tactile_graph.engine.options import Decider
     from tactile_graph.engine.promises import Promises
     from tactile_graph.engine.runner import Runner
+    from tactile_graph.live.live_stream import LiveStream
     from tactile_graph.wires.frame_stack import FrameStack
 
 
@@ -146,6 +148,43 @@ class Pipeline(Graph):
         given = self.frames(seed) if frames is None else frames
         return Results(self, asked, self.results(given, runner))
 
+    def live(
+        self,
+        source: Iterable[Frame] | None = None,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+        deadline_us: float | None = None,
+        capacity: int = 64,
+        unread: int = 1024,
+    ) -> LiveStream[Result]:
+        """Return the results of frames as these come, for ``async for``; it may be closed early.
+
+        Frames are read and answered by threads of their own, in order; those that come too fast are
+        shed, the oldest first, as `LiveResult` says. For a loop without ``async`` there is
+        `tactile_graph.live.LiveRun`.
+
+        Parameters
+        ----------
+        source : iterable of Frame, optional
+            The pipeline's own source if not given. Read as fast as it gives frames: for a recording
+            see `tactile_graph.live.paced`.
+        only, seed
+            As in `run`.
+        deadline_us : float, optional
+            Microseconds from a frame's arrival within which its result is wanted: what would not
+            be done in time is skipped.
+        capacity, unread : int
+            How many frames may wait to be answered, and how many results to be taken, before the
+            oldest go.
+        """
+        from tactile_graph.live.live_run import LiveRun
+        from tactile_graph.live.live_stream import LiveStream
+
+        run = LiveRun(
+            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity
+        )
+        return LiveStream(run, unread)
+
     def results(
         self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]
     ) -> Iterator[Result]:
@@ -183,16 +222,22 @@ class Pipeline(Graph):
                 yield block
 
     def runner(
-        self, only: Sequence[str] | None = None, seed: int = 0, verify: bool = False
+        self,
+        only: Sequence[str] | None = None,
+        seed: int = 0,
+        verify: bool = False,
+        decider: Decider | None = None,
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
-        With ``verify`` a step fails that writes into what others read; this costs time.
+        With ``verify`` a step fails that writes into what others read; this costs time. A
+        ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or
+        what was `tactile_graph.live.Recorded` of one.
         """
         from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner
 
-        return Runner(self, tuple(only or self.outputs), seed, Result, verify)
+        return Runner(self, tuple(only or self.outputs), seed, Result, verify, decider)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""

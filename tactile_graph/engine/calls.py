@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.engine.context import Context
 from tactile_graph.engine.each import for_each, mapped, told_of_gaps
+from tactile_graph.engine.isolated import isolated_step
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Kind
 
@@ -31,6 +32,8 @@ def make_call(node: Node, context: Context) -> Call:
 
 def _bound(node: Node, **injected: Any) -> Call:
     """Return a node's step with its settings, as what costs least to call in every frame."""
+    if node.isolation is not None:
+        return isolated_step(node, injected)
     step: Any = node.bound(**injected)
     assert node.signature is not None
     call: Call = step.__call__ if node.signature.kind is Kind.CLASS else step

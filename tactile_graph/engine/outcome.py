@@ -8,6 +8,11 @@ from typing import Any
 from tactile_graph.errors import Degenerate, Skip, text_of
 
 
+def for_want_of_time(_: tuple[Any, ...]) -> str:
+    """Return the reason of a node that was skipped since it would not have been done in time."""
+    return "deadline"
+
+
 class Skipped:
     """A node that was not needed, with the reason and the node it began at.
 
@@ -33,6 +38,11 @@ class Skipped:
     def reason(self) -> str:
         """Why, in words."""
         return self._reason if isinstance(self._reason, str) else self._reason(self._values)
+
+    @property
+    def for_deadline(self) -> bool:
+        """Whether it was skipped because it would not have been done in time."""
+        return self._reason is for_want_of_time
 
     def at(self, origin: str) -> Skipped:
         """Return the same, begun at a node of another name."""

@@ -174,6 +174,16 @@ class Outcomes(Mapping[str, Any]):
         return {node: text for node, text in notices(self).items() if text}
 
     @property
+    def decisions(self) -> tuple[str, ...]:
+        """The nodes that were skipped to keep the deadline, in the order of the plan."""
+        outcomes = [(item.name, self._state[item.slot]) for item in self.plan.nodes]
+        return tuple(
+            name
+            for name, outcome in outcomes
+            if outcome.__class__ is Skipped and outcome.origin == name and outcome.for_deadline
+        )
+
+    @property
     def ok(self) -> bool:
         """Whether every output asked for has a value, and every item of its lists."""
         return len(self) == len(self.plan.asked) and not self.gaps

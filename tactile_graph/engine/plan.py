@@ -102,15 +102,28 @@ def _varies(node: Node) -> bool:
     return node.signature is not None and bool(node.signature.rng)
 
 
-def make_plan(pipeline: Graph, asked: Sequence[str]) -> Plan:
+def make_plan(pipeline: Graph, asked: Sequence[str], ladders_wait: bool = False) -> Plan:
     """Return the plan for the nodes or fields asked for.
+
+    Parameters
+    ----------
+    pipeline : Graph
+    asked : sequence of str
+    ladders_wait : bool
+        Whether a ladder's first choice stands in a block like the others, so that it can be left
+        undone; what comes of it is the same.
 
     Raises
     ------
     UsageError
         If one of them does not exist.
     """
-    return _Planner(pipeline, asked).plan()
+    return _Planner(pipeline, asked, ladders_wait).plan()
+
+
+def is_ladder(item: Item) -> bool:
+    """Return whether an item is a ``first_of``."""
+    return item.node is not None and item.node.kind is NodeKind.FIRST_OF
 
 
 def _slots(bits: int) -> tuple[int, ...]:
@@ -122,8 +135,9 @@ def _slots(bits: int) -> tuple[int, ...]:
 
 
 class _Planner:
-    def __init__(self, pipeline: Graph, asked: Sequence[str]) -> None:
+    def __init__(self, pipeline: Graph, asked: Sequence[str], ladders_wait: bool) -> None:
         self.pipeline = pipeline
+        self.ladders_wait = ladders_wait
         self.asked = {name: pipeline.outputs.get(name) or pipeline.ref(name) for name in asked}
         self.items: list[Item] = []
         self.by_ref: dict[Ref, int] = {}
@@ -247,8 +261,8 @@ class _Planner:
         node = item.node
         if node is not None and node.guard is not None:
             return []
-        if node is not None and node.kind is NodeKind.FIRST_OF:
-            return list(item.inputs[:1])
+        if is_ladder(item):
+            return [] if self.ladders_wait else list(item.inputs[:1])
         eager: list[Input] = []
         for port in item.inputs:
             eager.append(port)
@@ -286,7 +300,8 @@ class _Planner:
             if id(port) not in eager:
                 # Eager inputs stand beside the item in whatever block it runs in.
                 port.lazy = _slots(needed)
-            done |= needed
+            if not (self.ladders_wait and is_ladder(item)):  # or it may have been left undone
+                done |= needed
 
     def _depth(self) -> int:
         """Return how deep lazy blocks nest, for the interpreter's stack."""

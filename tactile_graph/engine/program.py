@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
+from tactile_graph.engine.allowed import Deciding, ladder, where_allowed
 from tactile_graph.engine.fields import field_getter
 from tactile_graph.engine.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.guards import guarded
@@ -48,7 +49,11 @@ AS_THEY_ARE = Reading()
 
 
 def make_program(
-    plan: Plan, call_of: Callable[[Node], Call], blank: State, reading: Reading = AS_THEY_ARE
+    plan: Plan,
+    call_of: Callable[[Node], Call],
+    blank: State,
+    reading: Reading = AS_THEY_ARE,
+    deciding: Deciding | None = None,
 ) -> list[Operation]:
     """Return the operations of a plan's main part.
 
@@ -61,6 +66,8 @@ def make_program(
         The state every frame starts from; outcomes that depend on no frame are kept in it.
     reading : Reading, optional
         A frame's own values, from the beginning, if not given.
+    deciding : Deciding, optional
+        Everything is done if not given. The plan must be one whose ladders wait.
     """
     operations: list[Operation] = [_nothing] * plan.n_slots
     times_placed = _times_placed(plan)
@@ -68,7 +75,7 @@ def make_program(
         if item.view is not None:
             operation = _view(item, reading.field_of(item.view))
         else:
-            operation = _operation(item, plan, call_of, operations, blank, reading.guard_of)
+            operation = _operation(item, plan, call_of, operations, blank, reading, deciding)
         if times_placed[item.slot] > 1 or reading.resumed:
             operation = _unless_settled(item.slot, operation)
         operations[item.slot] = operation
@@ -100,24 +107,27 @@ def _operation(
     call_of: Callable[[Node], Call],
     operations: list[Operation],
     blank: State,
-    guard_of: Callable[[Guard], Guard],
+    reading: Reading,
+    deciding: Deciding | None,
 ) -> Operation:
     node = item.node
     assert node is not None
     blocks = [tuple(operations[s] for s in port.lazy) for port in item.inputs]
     time = plan.n_slots + item.slot
     if node.kind is NodeKind.FIRST_OF:
-        body = _first_of(item, blocks)
+        body = _first_of(item, blocks) if deciding is None else ladder(item, blocks, deciding)
     elif node.kind is NodeKind.PASS:
         body = _pass(item, blocks)
     elif node.kind is NodeKind.GIVEN:
         body = _given(item)
     else:
         body = step_operation(item, node, call_of(node), time, blocks)
+    if deciding is not None and item.slot in deciding.options.nodes:
+        body = where_allowed(deciding.options.nodes[item.slot], body, deciding.decider)
     if node.guard is not None:
         own = _guard_fields(item, plan)
         reads = [operations[s] if s in own else itemgetter(s) for s in item.guard]
-        body = guarded(item, guard_of(node.guard), reads, body)
+        body = guarded(item, reading.guard_of(node.guard), reads, body)
     if item.constant:
         return _once(item.slot, time, body, blank)
     return body

@@ -9,10 +9,12 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.engine.allowed import Deciding
 from tactile_graph.engine.block import Block, Constant, Group, Repeats, first_settled
 from tactile_graph.engine.blocks import Blocks, worth_blocks
 from tactile_graph.engine.calls import Call, make_call
 from tactile_graph.engine.context import Context, RunInner
+from tactile_graph.engine.options import Decider, options_of
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
@@ -43,6 +45,8 @@ class Runner(Generic[ResultT]):
         What a frame's outcomes are handed out as.
     verify : bool
         Whether steps that write into what they share fail; costs time.
+    decider : Decider, optional
+        Decides for each frame what is left undone; nothing is if not given.
     """
 
     def __init__(
@@ -52,14 +56,20 @@ class Runner(Generic[ResultT]):
         seed: int,
         result: type[ResultT],
         verify: bool = False,
+        decider: Decider | None = None,
     ) -> None:
-        self.plan: Plan = make_plan(pipeline, asked or tuple(pipeline.outputs))
+        asked = asked or tuple(pipeline.outputs)
+        self.plan: Plan = make_plan(pipeline, asked, ladders_wait=decider is not None)
         self._result = result
         self._context = Context(seed, self._embedded)
         self._blank = blank_state(self.plan.n_slots)
         self._verify = verify
         self._calls: dict[str, Call] = {}
-        self._operations = make_program(self.plan, self._call, self._blank)
+        self._decider = decider
+        deciding = None if decider is None else Deciding(options_of(self.plan), decider)
+        if deciding is not None:
+            deciding.decider.prepare(deciding.options)
+        self._operations = make_program(self.plan, self._call, self._blank, deciding=deciding)
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
         self._last: tuple[bytes, ResultT] | None = None
@@ -91,7 +101,7 @@ class Runner(Generic[ResultT]):
     @cached_property
     def in_blocks(self) -> bool:
         """Whether some of its steps answer many frames at once, so that `block` is worth while."""
-        return not self._verify and worth_blocks(self.plan)
+        return not self._verify and self._decider is None and worth_blocks(self.plan)
 
     def _call(self, node: Node) -> Call:
         if node.name not in self._calls:
@@ -129,9 +139,16 @@ class Runner(Generic[ResultT]):
         state = self._blank.copy()
         state[self._image] = image  # where nothing reads it, the frame takes its place
         state[0] = frame
-        self._settle(state, self._operations)
+        if self._decider is None:
+            self._settle(state, self._operations)
+        else:
+            self._decider.begin(frame)
+            self._settle(state, self._operations)
+            self._decider.end()
         result = self._result(self.plan, state)
-        if self._repeatable:
+        if self._decider is not None and result.decisions:
+            self._last = None  # less than an equal frame may come to
+        elif self._repeatable:
             self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
         return result
 

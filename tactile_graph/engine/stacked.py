@@ -84,6 +84,8 @@ def stacked_form(node: Node) -> StackedForm | None:
     signature = node.signature
     if node.kind is not NodeKind.STEP or signature is None or in_order(node) or signature.rng:
         return None
+    if node.isolation is not None:  # a limit is about one frame
+        return None
     return form_of(signature, node.settings, node.bound)
 
 

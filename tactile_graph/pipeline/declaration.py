@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
-TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
-NODE_KEYS = ("step", "use", "first_of", "in", "with", "when", "each", "about")
+TOP_KEYS = (
+    "pipeline", "about", "evolves", "source", "deadline_us", "conditions", "nodes", "outputs",
+)  # fmt: skip
+NODE_KEYS = (
+    "step", "use", "first_of", "in", "with", "when", "each", "time_limit_s", "isolated", "about",
+)  # fmt: skip
+OF_STEPS = ("time_limit_s", "isolated")
+"""Keys of nodes that run a step themselves."""
 SOURCE_KEYS = ("step", "with")
 RESERVED = ("frame", "and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
 MOST_NODES = 2_000
@@ -42,6 +49,8 @@ class NodeDeclaration:
     settings: dict[str, Any] = field(default_factory=dict)
     when: str | None = None
     each: bool = False
+    time_limit_s: float | None = None
+    isolated: bool = False
 
 
 @dataclass
@@ -54,6 +63,7 @@ class Declaration:
     evolves: str = ""
     source_step: str | None = None
     source_settings: dict[str, Any] = field(default_factory=dict)
+    deadline_us: float | None = None
     conditions: dict[str, str] = field(default_factory=dict)
     nodes: dict[str, NodeDeclaration] = field(default_factory=dict)
     outputs: list[str] = field(default_factory=list)
@@ -114,6 +124,23 @@ class _Declarer:
         self.problem(f"{what} must be a text, got {kind_of(value)}{hint}", *path, key)
         return ""
 
+    def above_0(self, data: dict[str, Any], key: str, *path: str | int, what: str) -> float | None:
+        value = data.get(key)
+        if value is None:
+            return None
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and 0 < value < inf:
+            return float(value)
+        self.problem(f"{what} must be a number above 0, got {kind_of(value)}", *path, key)
+        return None
+
+    def yes_or_no(self, data: dict[str, Any], key: str, path: Path, what: str) -> bool:
+        value = data.get(key, False)
+        if not isinstance(value, bool):
+            text = f"{what}, {key!r} must be true or false, got {kind_of(value)}"
+            self.problem(text, *path, key)
+        return value is True
+
     def top(self) -> Declaration:
         data = self.document.data
         if not isinstance(data, dict):
@@ -127,6 +154,7 @@ class _Declarer:
         self.result.about = self.text(data, "about", what="'about'")
         self.result.evolves = self.text(data, "evolves", what="'evolves'")
         self.source(data.get("source"))
+        self.result.deadline_us = self.above_0(data, "deadline_us", what="'deadline_us'")
         self.conditions(data.get("conditions"))
         self.nodes(data.get("nodes"))
         self.outputs(data)
@@ -238,12 +266,14 @@ class _Declarer:
         when = body.get("when")
         given = {"when": self.document.spelled(*path, "when")} if isinstance(when, bool) else body
         node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
-        each = body.get("each", False)
-        if not isinstance(each, bool):
-            self.problem(
-                f"{what}, 'each' must be true or false, got {kind_of(each)}", *path, "each"
-            )
-        node.each = each is True
+        node.each = self.yes_or_no(body, "each", path, what)
+        node.isolated = self.yes_or_no(body, "isolated", path, what)
+        limit = "time_limit_s"
+        node.time_limit_s = self.above_0(body, limit, *path, what=f"{what}, {limit!r}")
+        for key in OF_STEPS if "step" not in body else ():
+            if key in body:
+                text = f"{what}: {key!r} belongs to a node that has a 'step'"
+                self.problem(text, *path, key, key=True)
         return node
 
     def refs(self, data: Any, path: Path, what: str) -> list[str]:

@@ -65,6 +65,13 @@ class Facts:
     views: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Isolation:
+    """That a step runs in a process of its own, and how long it may take there; None: ever."""
+
+    time_limit_s: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Node:
     """One node of a resolved graph."""
@@ -83,6 +90,7 @@ class Node:
     facts: Facts = field(default_factory=Facts)
     key: str = ""
     callable: Callable[..., Any] | None = None
+    isolation: Isolation | None = None
 
     @property
     def stateful(self) -> bool:
@@ -156,6 +164,9 @@ class Node:
             data["when"] = self.guard.text
         if self.each:
             data["each"] = True
+        if self.isolation is not None:
+            limit = self.isolation.time_limit_s
+            data |= {"isolated": True} if limit is None else {"time_limit_s": limit}
         return data
 
 
@@ -222,6 +233,8 @@ class Graph:
     overrides: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     source_override: tuple[str, dict[str, Any]] | None = None
     registry: Registry | None = None
+    deadline_us: float | None = None
+    """Within which a live run wants the result of a frame, from its arrival on."""
 
     @cached_property
     def types(self) -> dict[str, Any]:
@@ -277,6 +290,7 @@ class Graph:
             "source": None
             if self.source is None
             else {"step": self.source.name, "with": plain(self.source.settings)},
+            **({} if self.deadline_us is None else {"deadline_us": self.deadline_us}),
             "nodes": {name: node.resolved() for name, node in self.nodes.items()},
             "outputs": {name: str(ref) for name, ref in self.outputs.items()},
         }

@@ -25,6 +25,7 @@ from tactile_graph.pipeline.graph import (
     FRAME,
     FrameRule,
     Graph,
+    Isolation,
     Node,
     NodeKind,
     Source,
@@ -85,6 +86,7 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         nodes=scope.nodes, outputs=outputs, file=scope.document.file,
         text=scope.document.text, frame_rules=tuple(scope.rules),
         overrides=scope.overrides, source_override=replaced, registry=scope.registry,
+        deadline_us=d.deadline_us,
     )  # fmt: skip
 
 
@@ -202,7 +204,7 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     )  # fmt: skip
     node = Node(
         declared.name, NodeKind.STEP, output, scope.mark(declared), signature, settings, inputs,
-        guard=guard, each=declared.each, key=key,
+        guard=guard, each=declared.each, key=key, isolation=_isolation(declared),
         facts=output_facts(signature, settings, inputs, scope.facts, guard),
     )  # fmt: skip
     given = scope.given(declared)
@@ -210,6 +212,11 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     if len(scope.document.problems) == before and signature.kind is Kind.CLASS:
         node = _made(scope, declared, node)
     scope.add(node)
+
+
+def _isolation(declared: NodeDeclaration) -> Isolation | None:
+    alone = declared.isolated or declared.time_limit_s is not None
+    return Isolation(declared.time_limit_s) if alone else None
 
 
 def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:

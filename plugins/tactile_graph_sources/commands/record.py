@@ -16,12 +16,9 @@ from tactile_graph.cli.say import say
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
-    from tactile_graph_sources.devices.capture import CaptureDevice
     from tactile_graph_sources.writers.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
-DEVICES = "devices"
-OPTIONS = {"preset": "--preset", "baud": "--baud", "give_up_s": "--give-up"}
 UNTOLD = ("bytes", "good frames", "frames", "troubles")
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 
@@ -80,10 +77,11 @@ def record(
     from tactile_graph.cli.interrupt import Ended, Interrupts, code_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
+    from tactile_graph_sources.commands.captured import captured
     from tactile_graph_sources.writers.write_store import StoreWriter
 
     told = {"preset": preset, "baud": baud, "give_up_s": give_up}
-    step, given = _captured(port, device, told, source)
+    step, given = captured(port, device, told, source)
     _check_target(target)
     report = Report(listener=lambda where, what: say(f"{where}: {what}", err=True))
     limits = {"n_frames": n_frames, "seconds": seconds}
@@ -110,40 +108,6 @@ def record(
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
         click.get_current_context().exit(code_of(ended))
-
-
-def _captured(
-    port: str | None, name: str, told: Mapping[str, Any], source: str | None
-) -> tuple[str, dict[str, Any]]:
-    """Return the source step that is meant, and the settings that options give it.
-
-    Raises
-    ------
-    UsageError
-        If the command line names no pad and no other source, or both, or gives a device what it
-        does not take.
-    """
-    from tactile_graph.plugins.registry import installed
-
-    if source is not None:
-        if port or told["preset"]:
-            raise click.UsageError("give --port and --preset, or --source, and not both")
-        return source, {}
-    registry = installed()
-    device: CaptureDevice = registry.load(DEVICES, name)
-    known = {s.name: s for s in registry.step(device.step).settings}
-    given: dict[str, Any] = {device.address: port}
-    for setting, value in told.items():
-        if setting in known:
-            given[setting] = value
-        elif value is not None:
-            option = OPTIONS[setting]
-            raise click.UsageError(f"{option} is nothing that --device {name} takes")
-    for setting, value in given.items():
-        if value is None and known[setting].required:
-            option = "--port" if setting == device.address else OPTIONS[setting]
-            raise click.UsageError(f"Missing option '{option}' (or '--source').")
-    return device.step, {k: v for k, v in given.items() if v is not None}
 
 
 def _frames(

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from tactile_graph.engine.block import Block
     from tactile_graph.engine.table import Table
     from tactile_graph.exporter import Writer
+    from tactile_graph.wires.frame import Frame
 
 LONG_RUN = 200
 STALLED_S = 1.0
@@ -99,6 +100,13 @@ STALLED_S = 1.0
     help="Go on where a run with workers ended, if recordings, pipeline and options are the same.",
 )
 @click.option(
+    "--decisions",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="Skip for the deadline what was skipped when FILE, JSON lines of a live run, was written, "
+    "and answer the frames it answered: every answer is the same again.",
+)
+@click.option(
     "--verify",
     is_flag=True,
     help="Look after every step whether it wrote into what others read; slower.",
@@ -120,6 +128,7 @@ def run(
     workers: int | None,
     on: str | None,
     resume: bool,
+    decisions: Path | None,
     verify: bool,
 ) -> None:
     """Run PIPELINE, a name or a YAML file, over recordings or another source.
@@ -131,9 +140,9 @@ def run(
     _check_files(recordings, lines, plot)
     divided = workers is not None or on is not None or resume
     if divided:
-        _check_divided(lines, plot)
+        _check_divided(lines, plot, decisions)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    one = _Run(opened, tuple(only), span, seed, lines, plot, verify)
+    one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
     if divided:
         one.divided(workers, on, resume)
     one.go()
@@ -150,8 +159,10 @@ def _check_files(recordings: Sequence[str], output: Output | None, plot: str | N
             raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
 
 
-def _check_divided(output: Output | None, plot: str | None) -> None:
+def _check_divided(output: Output | None, plot: str | None, decisions: Path | None) -> None:
     """Refuse what workers have no place for."""
+    if decisions is not None:
+        raise UsageError("--decisions: are followed by one process, without --workers")
     if output is None:
         raise UsageError("--workers, --on and --resume are for files: give -o FILE.jsonl")
     if plot is not None:
@@ -169,6 +180,7 @@ class _Run:
     output: Output | None
     plot: str | None
     verify: bool
+    decisions: Path | None = None
     interrupted: KeyboardInterrupt | None = None
     form_of_table: Table | None = None
     quantity: str = "raw"
@@ -204,10 +216,12 @@ class _Run:
         from tactile_graph.cli.output.tally import Tally
         from tactile_graph.cli.terminal import console, stdout_for_programs
         from tactile_graph.engine.columns import columns_of
+        from tactile_graph.engine.options import Recorded
         from tactile_graph.steps.injected import Report
 
         self.report = Report(listener=self._trouble)
-        self.runner = self.pipeline.runner(self.only, self.seed, self.verify)
+        self.recorded = None if self.decisions is None else Recorded()
+        self.runner = self.pipeline.runner(self.only, self.seed, self.verify, self.recorded)
         self.asked = self.only or tuple(self.pipeline.outputs)
         self.columns = columns_of(self.pipeline, self.asked)
         self.tally = Tally(self.columns)
@@ -238,7 +252,7 @@ class _Run:
         if in_blocks and self.span.is_all:
             frames = self.pipeline.frames_in_stacks(self.seed, self.report)
         else:
-            frames = self.span.of(self.pipeline.frames(self.seed, self.report))
+            frames = self._decided(self.span.of(self.pipeline.frames(self.seed, self.report)))
         first = next(frames, None)
         if first is None:
             return
@@ -250,6 +264,15 @@ class _Run:
             yield from self.pipeline.blocks(given, self.runner)
         else:
             yield from self.pipeline.results(flat(given), self.runner)
+
+    def _decided(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Return the frames that were decided about, if that is asked for."""
+        from tactile_graph.live.decisions import as_decided, decisions_in
+
+        if self.decisions is None or self.recorded is None:
+            return frames
+        nodes = self.pipeline.nodes
+        return as_decided(frames, decisions_in(self.decisions, nodes), self.recorded)
 
     def _warm_up(self, expected: int | None) -> None:
         from tactile_graph.compiled import warm_up

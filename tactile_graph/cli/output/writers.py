@@ -94,6 +94,8 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
         row["gap"] = True
     if frame.doubtful:
         row["doubtful"] = True
+    if decisions := result.decisions:
+        row["deadline"] = list(decisions)
     outcomes = {name: result.outcome(name) for name in result.plan.asked}
     row["outputs"] = {name: as_data(outcome, full) for name, outcome in outcomes.items()}
     if frame.truth is None:

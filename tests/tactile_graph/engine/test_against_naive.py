@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import random
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, NAIVE, STEPS, cases, frame, registry, shown
 from helpers_naive import Naive, Outcome
-from tactile_graph import loads
+from tactile_graph import Frame, loads
+from tactile_graph.engine.options import Decider, Option, Options
 from tactile_graph.engine.outcome import Failed, Skipped, gaps
+from tactile_graph.live import Recorded
 
+UNHEALTHY = [HealthCheck.too_slow, HealthCheck.data_too_large]
 FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (5, 2.0), (1, 2.25), (2, 4.0)]
 
 
@@ -34,7 +39,7 @@ def seen(outcome: Any) -> Outcome:
 
 
 def exactly_as_the_naive_evaluator(
-    case: tuple[dict[str, Any], dict[str, Any]], folder: Path
+    case: tuple[dict[str, Any], dict[str, Any]], folder: Path, decider: Decider | None = None
 ) -> None:
     document, library = case
     files = {name: folder / f"{name}.yaml" for name in library}
@@ -42,7 +47,7 @@ def exactly_as_the_naive_evaluator(
         path.write_text(shown(library[name]))
     pipeline = loads(shown(document), "random.yaml", registry(STEPS, files))
     naive = Naive(document, library, NAIVE)
-    runner = pipeline.runner()
+    runner = pipeline.runner(decider=decider)
     asked = document["outputs"]
     for index, (number, time_s) in enumerate(FRAMES):
         one = frame(number, index, time_s)
@@ -63,13 +68,72 @@ def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
         max_examples=n_cases,
         deadline=None,
         derandomize=True,
-        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+        suppress_health_check=UNHEALTHY,
     )
     @given(case=cases())
     def equal(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
         exactly_as_the_naive_evaluator(case, folder)
 
     equal()
+
+
+@pytest.mark.slow
+def test_plans_that_could_leave_something_undone_come_to_the_same_where_nothing_is(
+    folder: Path,
+) -> None:
+    @settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=UNHEALTHY)
+    @given(case=cases())
+    def equal(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
+        exactly_as_the_naive_evaluator(case, folder, Recorded())
+
+    equal()
+
+
+class Whim:
+    """Decides at random, with a seed."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+
+    def prepare(self, options: Options) -> None: ...
+
+    def begin(self, frame: Frame) -> None: ...
+
+    def allows(self, option: Option, state: list[Any]) -> bool:
+        return option.spared or self.rng.random() < 0.6
+
+    def ended(self, option: Option, state: list[Any]) -> None: ...
+
+    def end(self) -> None: ...
+
+
+@pytest.mark.slow
+def test_whatever_was_decided_comes_to_the_same_again(folder: Path) -> None:
+    n_decisions = 0
+
+    @settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=UNHEALTHY)
+    @given(case=cases(), seed=st.integers(0, 2**32))
+    def equal(case: tuple[dict[str, Any], dict[str, Any]], seed: int) -> None:
+        nonlocal n_decisions
+        document, library = case
+        files = {name: folder / f"{name}.yaml" for name in library}
+        for name, path in files.items():
+            path.write_text(shown(library[name]))
+        pipeline = loads(shown(document), "random.yaml", registry(STEPS, files))
+        recorded = Recorded()
+        runner, again = pipeline.runner(decider=Whim(seed)), pipeline.runner(decider=recorded)
+        for index, (number, time_s) in enumerate(FRAMES):
+            one = frame(number, index, time_s)
+            CALLS.clear()
+            result, calls = runner(one), CALLS.copy()
+            recorded.skipped = result.decisions
+            n_decisions += len(result.decisions)
+            CALLS.clear()
+            assert repr(again(one).outcomes) == repr(result.outcomes)
+            assert calls == CALLS
+
+    equal()
+    assert n_decisions > 1000
 
 
 LISTS = {

@@ -479,3 +479,26 @@ def test_troubles_are_told_at_once_while_no_frame_comes(monkeypatch, tmp_path):
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 1
     monkeypatch.setattr("tactile_graph.cli.commands.run.STALLED_S", -1.0)
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 2
+
+
+# -- decisions of a live run ---------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_decisions_of_a_live_run_are_taken_again(tmp_path: Path) -> None:
+    decided = tmp_path / "live.jsonl"
+    decided.write_text('{"frame": 0}\n{"frame": 2, "deadline": ["circle"]}\n{"frame": 3}\n')
+    got = call("run", "discs", "--decisions", decided, "-o", "-")
+    assert got.exit_code == 0
+    written = lines(got.stdout)
+    assert [row["frame"] for row in written] == [0, 2, 3]
+    assert [row.get("deadline") for row in written] == [None, ["circle"], None]
+    assert written[1]["outputs"]["circle"] == {"skipped": "deadline", "origin": "circle"}
+
+
+def test_decisions_are_followed_by_one_process_only(tmp_path: Path) -> None:
+    decided = tmp_path / "live.jsonl"
+    decided.write_text('{"frame": 0}\n')
+    got = call("run", "discs", "--decisions", decided, "--workers", 2, "-o", tmp_path / "o.jsonl")
+    assert got.exit_code == 2
+    assert "--decisions: are followed by one process, without --workers" in got.stderr

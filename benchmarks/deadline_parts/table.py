@@ -1,0 +1,71 @@
+"""What each choice of a ladder takes, and answers, for each frame of a stream."""
+
+from __future__ import annotations
+
+import time
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Frame, Pipeline
+from tactile_graph.compiled import warm_up
+from tactile_graph.live import Recorded
+
+CHOICES = ("best", "middle", "cheap")
+ANSWER = "circle"
+Array = NDArray[np.float64]
+
+
+class Table(NamedTuple):
+    """All that a schedule can come to.
+
+    Attributes
+    ----------
+    frames : list of Frame
+    took_ns : ndarray, shape (choices, frames)
+        Processor time where the frame begins with that choice; where it has no value (an empty
+        pad), with those after it.
+    error_cm : ndarray, shape (choices, frames)
+        Of the centre; NaN on an empty pad.
+    answers : list of list
+        By choice and frame; None where it has no value.
+    """
+
+    frames: list[Frame]
+    took_ns: Array
+    error_cm: Array
+    answers: list[list[Any]]
+
+    @property
+    def loaded(self) -> NDArray[np.bool_]:
+        """Which frames have something to find, shape (frames,)."""
+        return np.array([bool(f.truth) for f in self.frames])
+
+
+def measured(pipeline: Pipeline, frames: list[Frame], rounds: int = 2) -> Table:
+    """Return what each choice takes, the least of some rounds: other programs then cost least."""
+    took = np.full((len(CHOICES), len(frames)), np.inf)
+    error = np.full((len(CHOICES), len(frames)), np.nan)
+    answers: list[list[Any]] = []
+    for k in range(len(CHOICES)):
+        runner = pipeline.runner(decider=Recorded(CHOICES[:k]))
+        for frame in frames[:300]:
+            runner(frame)
+        warm_up()
+        for _ in range(rounds):
+            results = []
+            for i, frame in enumerate(frames):
+                start = time.thread_time_ns()
+                results.append(runner(frame))
+                took[k, i] = min(took[k, i], time.thread_time_ns() - start)
+        answers.append([r.get(ANSWER) for r in results])
+        error[k] = [_error(a, f) for a, f in zip(answers[k], frames, strict=True)]
+    return Table(frames, took, error, answers)
+
+
+def _error(answer: Any, frame: Frame) -> float:
+    if answer is None or not frame.truth:
+        return float("nan")
+    true: Any = frame.truth[0].shape
+    return float(np.hypot(answer.x_cm - true.x_cm, answer.y_cm - true.y_cm))

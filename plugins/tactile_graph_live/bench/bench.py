@@ -1,0 +1,330 @@
+"""The bench: a source's frames through a pipeline, looked at now and then, told what to do."""
+
+from __future__ import annotations
+
+import pickle
+import time
+from collections.abc import Iterator
+from threading import Condition
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Frame, Pipeline, Result
+from tactile_graph.errors import TactileGraphError, text_of
+from tactile_graph.live import Beside, LiveResult, LiveRun
+from tactile_graph.steps import Report
+from tactile_graph_live.bench import wire
+from tactile_graph_live.bench.outbox import Outbox
+from tactile_graph_live.bench.playing import Player, player
+from tactile_graph_live.bench.ring import Ring
+from tactile_graph_live.bench.snapshot import Photographer
+from tactile_graph_live.bench.tare import Taring, less
+from tactile_graph_live.server.messages import Level
+
+PICTURE_NS = 1_000_000_000 // 30
+LATEST_NS = 3 * PICTURE_NS
+"""A picture is taken when no frame waits, but at last after so long."""
+SUMMARY_NS = 250_000_000
+SILENT_S = 1.0
+Live = LiveResult[Result]
+
+
+class Bench:
+    """Runs a pipeline over a source until told to end.
+
+    Parameters
+    ----------
+    order : wire.Order
+    outbox : Outbox
+        Takes what the server is to know.
+    """
+
+    def __init__(self, order: wire.Order, outbox: Outbox) -> None:
+        self._order, self._outbox = order, outbox
+        self._pipeline: Pipeline = pickle.loads(order.pickled)
+        self._photographer = Photographer(self._pipeline, order.version)
+        self._next_photographer: Photographer | None = None
+        self._ring = Ring()
+        self._tally = _Tally()
+        self._newest: Frame | None = None
+        self._newest_s = time.monotonic()
+        self._shown: tuple[str, ...] = ()
+        self._baseline: NDArray[np.float64] | None = None
+        self._taring: Taring | None = None
+        self._wants = wire.Want(False, False)
+        self._held = self._ended = self._restart = self._idle = False
+        self._changed = Condition()
+        self._next_picture_ns = self._next_summary_ns = 0
+        self._report = Report(listener=lambda where, what: self._say(f"{where}: {what}", "warning"))
+        self._beside: Beside | None = None
+        if order.beside:
+            self._beside = Beside(pickle.loads(order.beside), seed=order.seed)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Make ready to read the source from its beginning."""
+        order = self._order
+        first = 0 if self._newest is None else self._newest.index + 1
+        self._player: Player = player(
+            self._pipeline,
+            order.seed,
+            self._report,
+            rate_hz=order.rate_hz,
+            once=order.once,
+            unpaced=order.unpaced,
+            first=first,
+        )
+        self._player.hold(self._held)
+        self._run: LiveRun[Result] = LiveRun(
+            self._pipeline,
+            self._frames(),
+            seed=order.seed,
+            deadline_us=order.deadline_us,
+            capacity=order.capacity,
+        )
+        self._run.beside = self._beside
+        self._tally.begin()
+
+    # -- the loop ----------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """Answer frames until told to end; where a source ends, wait for what comes next."""
+        while not self._ended:
+            error = self._answer_all()
+            if self._ended:
+                break
+            if not self._restart:
+                self._summarise("ended")
+                self._outbox.note(wire.Ended(error, self._tally.n_frames))
+            with self._changed:
+                self._idle = True
+                while not (self._restart or self._ended):
+                    self._changed.wait()
+                self._restart = self._idle = False
+            if not self._ended:
+                self._begin()
+        if self._beside is not None:
+            self._beside.close()
+
+    def _answer_all(self) -> str:
+        """Answer the frames of one source; return what went wrong, if anything."""
+        try:
+            for live in self._run:
+                self._answered(live)
+        except TactileGraphError as error:
+            return str(error)
+        except Exception as error:  # a source or a step may raise anything
+            return f"{type(error).__name__}: {text_of(error)}"
+        finally:
+            self._player.end()
+        return ""
+
+    def _answered(self, live: Live) -> None:
+        """Take down a frame that is done."""
+        self._tally.add(live, self._run.n_waiting, self._run.deadline_us)
+        if self._wants.rows:
+            self._outbox.row(self._row(live))
+        now = live.done_ns
+        if now >= self._next_picture_ns and (
+            self._run.n_waiting == 0 or now >= self._next_picture_ns + LATEST_NS
+        ):
+            self._next_picture_ns = max(self._next_picture_ns + PICTURE_NS, now)
+            snapshot = self._looking(live).snapshot(
+                live.result, live.latency_us, arrived_s=live.arrived_ns / 1e9
+            )
+            self._outbox.show(wire.Snapshot(snapshot, live.arrived_ns))
+        if now >= self._next_summary_ns:
+            self._summarise("running")
+
+    def _looking(self, live: Live) -> Photographer:
+        """Return the photographer of the pipeline that gave the result."""
+        new = self._next_photographer
+        if new is not None and live.result.plan.pipeline is new.pipeline:
+            self._photographer, self._next_photographer = new, None
+        self._photographer.shown = self._shown
+        return self._photographer
+
+    def _row(self, live: Live) -> wire.Row:
+        frame = live.result.frame
+        rows = tuple(self._looking(live).rows(live.result))
+        return wire.Row(
+            frame.index, frame.time_s, frame.label, frame.device_time_s, live.arrived_ns / 1e9,
+            live.latency_us, live.decisions, rows,
+        )  # fmt: skip
+
+    def tick(self) -> None:
+        """Say how it is going although no frame comes; called now and then by another thread."""
+        if time.perf_counter_ns() >= self._next_summary_ns + SUMMARY_NS and not (
+            self._ended or self._idle
+        ):
+            silent = time.monotonic() - self._newest_s > SILENT_S
+            self._summarise("waiting" if silent else "running")
+
+    def _summarise(self, state: wire.State) -> None:
+        self._next_summary_ns = time.perf_counter_ns() + SUMMARY_NS
+        kept_s, kept_frames = self._ring.kept()
+        tally = self._tally
+        self._outbox.note(
+            wire.Summary(
+                tally.taken(), tally.n_frames, tally.n_lost, tally.n_shed, tally.n_missed,
+                kept_s, kept_frames, state, self._baseline is not None,
+                dict(self._report.counts),
+                None if self._beside is None else self._beside.summary(),
+            )
+        )  # fmt: skip
+
+    # -- the reader --------------------------------------------------------------------------------
+
+    def _frames(self) -> Iterator[Frame]:
+        """Yield the source's frames, kept as they came and less the baseline."""
+        for frame in self._player:
+            self._newest, self._newest_s = frame, time.monotonic()
+            self._ring.add(frame, self._newest_s)
+            if self._wants.frames:
+                self._outbox.frame(frame)
+            if self._taring is not None:
+                self._tare_by(frame)
+            yield less(frame, self._baseline)
+
+    def _tare_by(self, frame: Frame) -> None:
+        assert self._taring is not None
+        baseline = self._taring.add(frame)
+        if baseline is not None:
+            n, self._taring = self._taring.n_frames, None
+            self._baseline = baseline
+            self._photographer.forget_range()
+            self._say(f"tared by the median of {n} frames")
+
+    # -- what it is told ---------------------------------------------------------------------------
+
+    def told(self, message: wire.ToBench) -> None:
+        """Do as the server says; called by another thread."""
+        if isinstance(message, wire.Swap):
+            self._swap(message)
+        elif isinstance(message, wire.Show):
+            self._shown = message.nodes
+        elif isinstance(message, wire.Tare):
+            self._tare(message.on)
+        elif isinstance(message, wire.Hold):
+            self._held = message.on
+            self._player.hold(message.on)
+        elif isinstance(message, wire.OneMore):
+            self._next_picture_ns = 0
+            self._player.one_more()
+        elif isinstance(message, wire.Fetch):
+            self._fetch(message)
+        elif isinstance(message, wire.Want):
+            if self._wants.frames and not message.frames:
+                self._outbox.last_frame()
+            self._wants = message
+        elif isinstance(message, wire.Compare):
+            self._compare()
+        else:
+            self._end()
+
+    def _swap(self, message: wire.Swap) -> None:
+        """Run another pipeline from the next frame on, if it takes the frames that come.
+
+        Where the source is another one, or has ended, it is read from its beginning.
+        """
+        restart = message.restart or self._idle
+        try:
+            pipeline: Pipeline = pickle.loads(message.pickled)
+            if self._newest is not None and not restart:
+                pipeline.run(less(self._newest, self._baseline))
+        except Exception as error:
+            words = str(error) if isinstance(error, TactileGraphError) else text_of(error)
+            self._outbox.note(wire.Swapped(message.version, words or type(error).__name__))
+            return
+        self._pipeline = pipeline
+        self._next_photographer = Photographer(pipeline, message.version)
+        if restart:
+            with self._changed:
+                self._restart = True
+                self._player.end()
+                self._run.stop()
+                self._changed.notify_all()
+        else:
+            self._run.swap(pipeline)
+        self._next_picture_ns = 0
+        self._outbox.note(wire.Swapped(message.version))
+
+    def _tare(self, on: bool) -> None:
+        self._taring = Taring() if on else None
+        if not on:
+            self._baseline = None
+            self._photographer.forget_range()
+            self._say("the readings are shown as they come")
+
+    def _fetch(self, message: wire.Fetch) -> None:
+        found = (
+            self._ring.back(message.back_s, message.lead)
+            if message.after is None
+            else self._ring.after(message.after, message.lead)
+        )
+        frames, back_s, newer = found
+        kept = wire.Kept(message.ticket, tuple(frames), back_s, newer, self._baseline)
+        self._outbox.note(kept)
+
+    def _compare(self) -> None:
+        if self._beside is None:
+            return
+        kept = self._beside.agreement.kept
+        said = tuple(
+            {"frame": k.frame.index, "difference": k.difference, "first": k.first,
+             "beside": k.beside} for k in kept
+        )  # fmt: skip
+        summary = self._beside.summary()
+        self._outbox.note(wire.Compared(summary, tuple(k.frame for k in kept), said))
+
+    def _end(self) -> None:
+        with self._changed:
+            self._ended = True
+            self._player.end()
+            self._run.stop()
+            self._changed.notify_all()
+
+    def _say(self, text: str, level: Level = "note") -> None:
+        self._outbox.note(wire.Said(text, level))
+
+
+class _Tally:
+    """Counts frames, and keeps their latencies until they are asked for.
+
+    What was shed before the pipeline had kept up for the first time counts as the time it took to
+    get ready, and not as lost to load.
+    """
+
+    def __init__(self) -> None:
+        self.n_frames = self.n_lost = self.n_missed = 0
+        self.n_shed = 0
+        self.n_shed_before = 0
+        self._shed_in_run = self._lost_in_run = 0
+        self._ready = False
+        self._latencies: list[float] = []
+
+    def begin(self) -> None:
+        """Count on in a new run, whose own counts begin at 0."""
+        self._ready, self._shed_in_run, self._lost_in_run = False, 0, 0
+
+    def add(self, live: Live, n_waiting: int, deadline_us: float | None) -> None:
+        """Count a frame."""
+        new = live.shed - self._shed_in_run
+        self._shed_in_run = live.shed
+        self.n_lost += live.lost - self._lost_in_run
+        self._lost_in_run = live.lost
+        self.n_frames += 1
+        if not self._ready:
+            self.n_shed_before += new
+            self._ready = n_waiting == 0
+            return
+        self.n_shed += new
+        latency_us = live.latency_us
+        self._latencies.append(latency_us)
+        self.n_missed += deadline_us is not None and latency_us > deadline_us
+
+    def taken(self) -> NDArray[np.float32]:
+        """Return the latencies since they were taken last, in microseconds."""
+        latencies, self._latencies = self._latencies, []
+        return np.array(latencies, dtype=np.float32)

@@ -1,0 +1,52 @@
+"""The bench's process: made ready for time, ended with the server."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import sys
+import threading
+from multiprocessing.connection import Connection
+
+from tactile_graph.plugins.registry import restrict
+from tactile_graph_live.bench import wire
+from tactile_graph_live.bench.bench import Bench
+from tactile_graph_live.bench.outbox import Outbox
+
+SWITCH_S = 0.0005
+"""Between threads: a frame's reader must not wait 5 ms for a step's loop."""
+TICK_S = 0.25
+
+
+def main(pipe: Connection, order: wire.Order) -> None:
+    """Run a bench until the server says so, or is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's, which tells us
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if sys.stderr is not None:
+        os.dup2(2, 1)  # stdout may be kept for programs
+    restrict(order.selection)
+    sys.setswitchinterval(SWITCH_S)
+    outbox = Outbox(pipe.send)
+    bench = Bench(order, outbox)
+    threading.Thread(target=_listen, args=(pipe, bench), daemon=True).start()
+    threading.Thread(target=_tick, args=(bench,), daemon=True).start()
+    gc.collect()
+    gc.freeze()  # what is there by now stays: no collection need look at it again
+    bench.run()
+    outbox.end()
+
+
+def _listen(pipe: Connection, bench: Bench) -> None:
+    while True:
+        try:
+            message = pipe.recv()
+        except (EOFError, OSError):
+            os._exit(0)  # the server is gone
+        bench.told(message)
+
+
+def _tick(bench: Bench) -> None:
+    event = threading.Event()
+    while not event.wait(TICK_S):
+        bench.tick()

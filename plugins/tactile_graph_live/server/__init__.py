@@ -1,0 +1,1 @@
+"""What serves the page: messages, viewers, what may be asked, and who may ask."""

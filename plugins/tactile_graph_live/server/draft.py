@@ -1,0 +1,220 @@
+"""The pipeline that is worked on: its file, what is set on the page, and the YAML of both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from tactile_graph import Pipeline, load, loads
+from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, text_of
+from tactile_graph.foreign_text import visible
+from tactile_graph_live.server.messages import Fault
+
+Settings = Mapping[str, Mapping[str, Any]]
+"""Node -> setting -> value."""
+MOST_FAULTS = 50
+LONGEST_FAULT = 2000
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A pipeline and how it came to be: text, what the command line said, what the page set.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    given : mapping
+        What the command line set, node -> setting -> value.
+    set_here : mapping
+        What was set on the page.
+    """
+
+    pipeline: Pipeline
+    base: str
+    given: Settings = field(default_factory=dict)
+    set_here: Settings = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, pipeline: Pipeline) -> Draft:
+        """Return the draft of a pipeline as a command line opened it."""
+        return cls(pipeline, pipeline.text, pipeline.overrides)
+
+    @property
+    def text(self) -> str:
+        """The YAML of the pipeline as it runs, but for what the command line says of its source."""
+        return text_with(self.base, _merged(self.given, self.set_here))
+
+    def read_again(self) -> Draft:
+        """Return the draft of the file as it is now; the file wins over what the page set.
+
+        Raises
+        ------
+        TactileGraphError
+            If it is wrong.
+        """
+        fresh = load(Path(self.pipeline.file))
+        return Draft(self._resolved(fresh, self.given), fresh.text, self.given)
+
+    def with_value(self, node: str, setting: str, value: Any) -> Draft:
+        """Return the draft with a setting changed on the page.
+
+        Raises
+        ------
+        TactileGraphError
+            If that is not allowed.
+        """
+        here = _merged(self.set_here, {node: {setting: value}})
+        return self._set(here)
+
+    def without_values(self, node: str = "", setting: str = "") -> Draft:
+        """Return the draft as file and command line have it, in one setting or, if "", in all."""
+        if not node:
+            return self._set({})
+        here = {n: {s: v for s, v in values.items() if (n, s) != (node, setting)}
+                for n, values in self.set_here.items()}  # fmt: skip
+        return self._set(here)
+
+    @property
+    def file_text(self) -> str:
+        """The YAML without what was set on the page."""
+        return text_with(self.base, self.given)
+
+    def _set(self, here: Settings) -> Draft:
+        base = loads(self.base, self.pipeline.file)
+        pipeline = self._resolved(base, _merged(self.given, here))
+        return replace(self, pipeline=pipeline, set_here=here)
+
+    def _resolved(self, pipeline: Pipeline, settings: Settings) -> Pipeline:
+        flat = {f"{n}.{s}": v for n, values in settings.items() for s, v in values.items()}
+        source = self.pipeline.source_override
+        return pipeline.with_settings(flat, source) if flat or source else pipeline
+
+    def same_source(self, other: Draft) -> bool:
+        """Return whether two drafts take their frames from the same source."""
+        ours, theirs = self.pipeline.source, other.pipeline.source
+        if ours is None or theirs is None:
+            return ours is theirs
+        return (ours.name, repr(ours.settings)) == (theirs.name, repr(theirs.settings))
+
+
+def _merged(first: Settings, second: Settings) -> dict[str, dict[str, Any]]:
+    merged = {node: dict(values) for node, values in first.items()}
+    for node, values in second.items():
+        merged.setdefault(node, {}).update(values)
+    return merged
+
+
+def faults(error: BaseException, file: str) -> tuple[Fault, ...]:
+    """Return what is wrong, each with its place if that is in the file."""
+    if isinstance(error, PipelineError):
+        found = []
+        for problem in error.problems[:MOST_FAULTS]:
+            mark, text = problem.mark, visible(problem.message)[:LONGEST_FAULT]
+            if mark is None or mark.file != file:
+                found.append(Fault(0, 0, f"{mark}: {text}" if mark else text))
+            else:
+                found.append(Fault(mark.line, mark.column, text))
+        return tuple(found)
+    text = str(error) if isinstance(error, TactileGraphError) else _raw(error)
+    return (Fault(0, 0, visible(text)[:LONGEST_FAULT]),)
+
+
+def _raw(error: BaseException) -> str:
+    return f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
+
+
+# -- settings into the text ----------------------------------------------------------------------
+
+
+def text_with(text: str, settings: Settings) -> str:
+    """Return a pipeline's YAML with settings changed in it; all else stays, comments too.
+
+    Parameters
+    ----------
+    text : str
+        A pipeline file without faults.
+    settings : mapping
+        Node -> setting -> value; nodes within a pipeline that is used are left out.
+    """
+    for node, values in settings.items():
+        for setting, value in values.items():
+            text = _with_one(text, node, setting, spelled(value))
+    return text
+
+
+def spelled(value: Any) -> str:
+    """Return a value as YAML on one line."""
+    dumped = yaml.safe_dump(value, default_flow_style=True, width=10**9, allow_unicode=True)
+    return str(dumped).strip().removesuffix("...").strip()
+
+
+def _with_one(text: str, node: str, setting: str, value: str) -> str:
+    root = yaml.compose(text, Loader=yaml.SafeLoader)
+    declared = _value(_value(root, "nodes"), node)
+    if not isinstance(declared, yaml.MappingNode):
+        return text
+    given = _value(declared, "with")
+    if given is None:
+        return _added(text, declared, "with", f"{{{setting}: {value}}}")
+    now = _value(given, setting)
+    if now is None:
+        return _added(text, given, setting, value)
+    end = now.end_mark.index
+    old = text[now.start_mark.index : end]
+    end -= len(old) - len(old.rstrip())  # a block's mark stands where the next thing begins
+    return text[: now.start_mark.index] + value + text[end:]
+
+
+def _value(mapping: yaml.Node | None, key: str) -> yaml.Node | None:
+    if not isinstance(mapping, yaml.MappingNode):
+        return None
+    found: list[yaml.Node] = [v for k, v in mapping.value if k.value == key]
+    return found[0] if found else None
+
+
+def _added(text: str, mapping: yaml.Node, key: str, value: str) -> str:
+    """Return the text with a key added to a mapping, written as the mapping is."""
+    assert isinstance(mapping, yaml.MappingNode | yaml.ScalarNode)
+    if not isinstance(mapping, yaml.MappingNode):  # ``with:`` and nothing behind it
+        at = mapping.start_mark.index
+        return f"{text[:at]} {{{key}: {value}}}{text[at:]}"
+    if mapping.flow_style:
+        at = mapping.end_mark.index - 1
+        head = text[:at].rstrip()
+        comma = "" if head.endswith(("{", ",")) else ","
+        return f"{head}{comma}{'' if head.endswith('{') else ' '}{key}: {value}{text[at:]}"
+    first, its = mapping.value[0]
+    if isinstance(its, yaml.ScalarNode) and its.start_mark.line == its.end_mark.line:
+        at = its.end_mark.index
+        return f"{text[:at]}\n{' ' * first.start_mark.column}{key}: {value}{text[at:]}"
+    at = first.start_mark.index
+    return f"{text[:at]}{key}: {value}\n{' ' * first.start_mark.column}{text[at:]}"
+
+
+def save(folder: Path, name: str, text: str) -> Path:
+    """Write a pipeline into a folder; a file that is there stays.
+
+    Raises
+    ------
+    UsageError
+        If the name is no plain name of a file, one of it is there, or it cannot be written.
+    """
+    from tactile_graph.files import write_whole
+
+    stem = name.removesuffix(".yml").removesuffix(".yaml")
+    if not stem or not all(c.isascii() and (c.isalnum() or c in "-_.") for c in stem) or (
+        stem.startswith((".", "-")) or len(stem) > 100
+    ):  # fmt: skip
+        raise UsageError(
+            f"{visible(name)[:100]!r}: a name is of letters, digits, '-', '_' and '.', without a "
+            "folder"
+        )
+    path = folder / f"{stem}.yaml"
+    if path.exists() or path.is_symlink():
+        raise UsageError(f"{path.name} is there already; choose another name")
+    write_whole(path, text)
+    return path

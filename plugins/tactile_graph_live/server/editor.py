@@ -1,0 +1,163 @@
+"""The pipeline as it is worked on, brought to the bench when it is right, told when it is not."""
+
+from __future__ import annotations
+
+import asyncio
+import pickle
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tactile_graph_live.bench.wire import Swap, Swapped
+from tactile_graph_live.server.draft import Draft, faults
+from tactile_graph_live.server.graph_message import graph_message
+from tactile_graph_live.server.lookback import Lookback
+from tactile_graph_live.server.messages import Fault, Graph, Trouble
+from tactile_graph_live.server.watching import SETTLE_S, FileSense, Watched
+
+SWAP_S = 30.0
+"""The longest a bench may take to make a pipeline ready: it may have to compile."""
+
+
+@dataclass(frozen=True)
+class Edited:
+    """A pipeline that runs: how it came to be, and what the page knows of it."""
+
+    draft: Draft
+    graph: Graph
+    lookback: Lookback
+
+
+class Editor:
+    """Keeps the bench at what file and page say.
+
+    Parameters
+    ----------
+    draft : Draft
+    seed : int
+    sense : FileSense
+    swap : callable
+        Has the bench run a pipeline; its answer comes to `swapped`.
+    changed : callable
+        Called when another pipeline runs.
+    wrong : callable
+        Called with what is wrong, or that nothing is any more.
+    """
+
+    def __init__(
+        self,
+        draft: Draft,
+        seed: int,
+        sense: FileSense,
+        *,
+        swap: Callable[[Swap], None],
+        changed: Callable[[Edited], None],
+        wrong: Callable[[Trouble], None],
+    ) -> None:
+        self._seed = seed
+        self._swap, self._changed, self._wrong = swap, changed, wrong
+        self._version = 1
+        self._watched = Watched(sense, [draft.pipeline.file])
+        self._watched.take(draft.read_again)  # to know what else is read with it
+        self.now = self._edited(draft, 1)
+        self.trouble: Trouble | None = None
+        self._lock = asyncio.Lock()
+        self._answer: asyncio.Future[Swapped] | None = None
+        self._waiting: dict[tuple[str, str], Any] = {}
+
+    @property
+    def version(self) -> int:
+        """Version of the pipeline that runs."""
+        return self.now.graph.version
+
+    def _edited(self, draft: Draft, version: int) -> Edited:
+        pipeline = draft.pipeline
+        lookback = Lookback(pipeline, version, self._seed)
+        graph = graph_message(pipeline, version, (draft.text, draft.file_text), draft.set_here)
+        return Edited(draft, graph, lookback)
+
+    # -- the file ----------------------------------------------------------------------------------
+
+    async def watch(self) -> None:
+        """Follow the file, for ever."""
+        while True:
+            await self._watched.change()
+            await self.reload()
+
+    async def reload(self) -> None:
+        """Bring the file as it is now to the bench, or tell what is wrong with it."""
+        began = time.perf_counter()
+        async with self._lock:
+            try:
+                draft = await asyncio.to_thread(self._read)
+            except Exception as error:  # a plugin may raise anything while it is imported
+                await asyncio.sleep(SETTLE_S)
+                if not self._watched.changed():
+                    self._tell(faults(error, self.now.draft.pipeline.file))
+                return
+            await self._apply(draft, began)
+
+    def _read(self) -> Draft:
+        found: list[Draft] = []
+        self._watched.take(lambda: found.append(self.now.draft.read_again()))
+        return found[0]
+
+    # -- the page ----------------------------------------------------------------------------------
+
+    async def set(self, node: str, setting: str, value: Any) -> None:
+        """Change a setting; where one is moved fast only the newest value is tried.
+
+        Raises
+        ------
+        TactileGraphError
+            If the value is not allowed.
+        """
+        self._waiting[node, setting] = value
+        began = time.perf_counter()
+        async with self._lock:
+            if (node, setting) not in self._waiting:
+                return  # who waited before us has set the newest already
+            value = self._waiting.pop((node, setting))
+            draft = await asyncio.to_thread(self.now.draft.with_value, node, setting, value)
+            await self._apply(draft, began)
+
+    async def unset(self, node: str = "", setting: str = "") -> None:
+        """Take back what was set on the page, all of it if no setting is named."""
+        began = time.perf_counter()
+        async with self._lock:
+            draft = await asyncio.to_thread(self.now.draft.without_values, node, setting)
+            await self._apply(draft, began)
+
+    # -- the bench ---------------------------------------------------------------------------------
+
+    def swapped(self, answer: Swapped) -> None:
+        """Take the bench's answer."""
+        waits = self._answer is not None and not self._answer.done()
+        if waits and answer.version == self._version:
+            assert self._answer is not None
+            self._answer.set_result(answer)
+
+    async def _apply(self, draft: Draft, began: float) -> None:
+        self._version += 1
+        self._answer = asyncio.get_running_loop().create_future()
+        restart = not draft.same_source(self.now.draft)
+        self._swap(Swap(self._version, pickle.dumps(draft.pipeline), restart))
+        edited = await asyncio.to_thread(self._edited, draft, self._version)
+        try:
+            answer = await asyncio.wait_for(self._answer, SWAP_S)
+        except TimeoutError:
+            answer = Swapped(self._version, f"the bench did not answer for {SWAP_S:g} s")
+        if answer.error:
+            self._tell((Fault(0, 0, answer.error),))
+            return
+        took_ms = round((time.perf_counter() - began) * 1e3, 1)
+        self.now = replace(edited, graph=replace(edited.graph, took_ms=took_ms))
+        self._changed(self.now)
+        if self.trouble is not None:
+            self._tell(())
+
+    def _tell(self, errors: tuple[Fault, ...]) -> None:
+        trouble = Trouble(self._version, errors)
+        self.trouble = trouble if errors else None
+        self._wrong(trouble)

@@ -1,0 +1,100 @@
+"""Frames into a Zarr store, written by a thread of its own."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from queue import SimpleQueue
+
+from tactile_graph import Frame
+from tactile_graph.errors import TactileGraphError
+from tactile_graph_live.server.messages import Recording
+
+LONGEST_LABEL = 100
+
+
+class Recorder:
+    """Writes frames to a new store in a folder, until it is closed.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        Of the pipeline; part of the store's name.
+    label : str
+        Kept with each frame from now on.
+    about : dict
+        Kept with the store.
+    failed : callable
+        Called with what went wrong, in the writer's thread.
+
+    Raises
+    ------
+    UsageError
+        If stores cannot be written here.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        name: str,
+        label: str,
+        about: dict[str, str],
+        failed: Callable[[str], None],
+    ) -> None:
+        from tactile_graph_sources.writers.write_store import StoreWriter
+
+        self.path = free_name(folder, name, datetime.now())
+        self.label = label
+        self.n_lost = 0
+        self._store = StoreWriter(self.path, about=about)
+        self._failed = failed
+        self._queue: SimpleQueue[Sequence[Frame] | None] = SimpleQueue()
+        self._broken = False
+        self._thread = threading.Thread(target=self._write, name="tactile-graph recorder")
+        self._thread.start()
+
+    @property
+    def state(self) -> Recording:
+        """What the page says of it."""
+        return Recording(True, self.path.name, self._store.n_frames, self.label, self.n_lost)
+
+    def take(self, frames: Sequence[Frame], n_lost: int) -> None:
+        """Have frames written under the label of the moment."""
+        self.n_lost += n_lost
+        label = self.label
+        self._queue.put([replace(f, label=label) for f in frames] if label else frames)
+
+    def close(self) -> int:
+        """Write what waits; return how many frames the store holds."""
+        self._queue.put(None)
+        self._thread.join()
+        return self._store.n_written
+
+    def _write(self) -> None:
+        try:
+            while (frames := self._queue.get()) is not None:
+                for frame in frames:
+                    self._store.write(frame)
+        except (TactileGraphError, OSError) as error:
+            self._failed(str(error))
+        finally:
+            try:
+                self._store.close()
+            except (TactileGraphError, OSError) as error:
+                self._failed(str(error))
+
+
+def free_name(folder: Path, name: str, now: datetime) -> Path:
+    """Return a path in the folder where nothing is, named by time and pipeline."""
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:60] or "pad"
+    stem = f"{now:%Y%m%d-%H%M%S}-{plain}"
+    path, n = folder / f"{stem}.zarr", 1
+    while path.exists() or path.is_symlink():
+        n += 1
+        path = folder / f"{stem}-{n}.zarr"
+    return path

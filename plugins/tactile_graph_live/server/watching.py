@@ -1,0 +1,58 @@
+"""Files as people save them: what is read with a pipeline is looked at many times a second."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+
+Stamp = tuple[int, int, int] | None
+Stamps = dict[str, Stamp]
+LOOK_S = 0.05
+SETTLE_S = 0.12
+"""An editor that writes in several steps is done by then; only mistakes wait so long."""
+RECORDED = ".zarr/"
+
+
+@dataclass(frozen=True)
+class FileSense:
+    """How files are looked at.
+
+    Parameters
+    ----------
+    stamp : callable
+        Returns what changes of a file when it is saved.
+    reading : callable
+        Returns a context in which every file that is opened is entered into a dict with its stamp.
+    """
+
+    stamp: Callable[[str], Stamp]
+    reading: Callable[[Stamps], AbstractContextManager[None]]
+
+
+class Watched:
+    """The files a pipeline was read from."""
+
+    def __init__(self, sense: FileSense, named: Iterable[str]) -> None:
+        self._sense = sense
+        self._named = tuple(named)
+        self._stamps: Stamps = {name: sense.stamp(name) for name in self._named}
+
+    def take(self, read: Callable[[], object]) -> None:
+        """Have the files read, and watch from now on what was read."""
+        stamps = {name: self._sense.stamp(name) for name in self._named}
+        try:
+            with self._sense.reading(stamps):
+                read()
+        finally:
+            self._stamps |= {k: v for k, v in stamps.items() if RECORDED not in k}
+
+    def changed(self) -> bool:
+        """Return whether a file is no longer what it was when it was read."""
+        return any(self._sense.stamp(name) != was for name, was in self._stamps.items())
+
+    async def change(self) -> None:
+        """Return when a file has changed."""
+        while not self.changed():
+            await asyncio.sleep(LOOK_S)

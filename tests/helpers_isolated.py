@@ -1,0 +1,51 @@
+"""Steps that another process can import, some of which hang or crash."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+import numpy as np
+
+from tactile_graph import Degenerate, Image
+
+HANGS, CRASHES, FAILS, PRINTS = 1, 2, 3, 4
+
+
+def moody(image: Image, *, plus: int = 0) -> int:
+    """Return the process' number of calls' worth of the image, or hang, crash, or fail."""
+    number = int(image.values[0, 0])
+    if number == HANGS:
+        time.sleep(600)
+    if number == CRASHES:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if number == FAILS:
+        raise Degenerate("too little")
+    if number == PRINTS:
+        sys.stdout.write("something for people\n")
+    return number + plus
+
+
+class Counting:
+    """Counts its calls, in whichever process it is."""
+
+    def __init__(self, *, start: int = 0, rng: np.random.Generator) -> None:
+        self.n = start
+        self.drawn = float(rng.random())
+
+    def __call__(self, image: Image) -> tuple[int, float]:
+        """Return how many calls there were, and what was drawn once."""
+        self.n += 1
+        return self.n, self.drawn
+
+
+def elsewhere(image: Image) -> int:
+    """Return the number of the process."""
+    return os.getpid()
+
+
+def unsendable(image: Image) -> object:
+    """Return what cannot be sent to another process."""
+    return lambda: None

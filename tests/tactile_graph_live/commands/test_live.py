@@ -1,0 +1,494 @@
+"""The command, its server and its bench, as processes of their own."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers_cli import call
+from helpers_live import COUNTS, PIPELINE, Command, Page, Sending, running
+from helpers_serial import KITS, FakePad
+
+for part in ("starlette", "uvicorn", "websockets"):
+    pytest.importorskip(part, reason="the live extra is not installed")
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "mine.yaml").write_text(PIPELINE)
+    return tmp_path
+
+
+@pytest.fixture
+def command(folder: Path) -> Iterator[Command]:
+    with running(folder, "mine.yaml", "--rate", "40") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Command]:
+    """Return a command for tests that leave it as it is."""
+    folder = tmp_path_factory.mktemp("shared")
+    (folder / "mine.yaml").write_text(PIPELINE)
+    with running(folder, "mine.yaml", "--rate", "40") as found:
+        yield found
+
+
+def fetched(address: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
+    """Return status, headers and body of an answer."""
+    names = {k.replace("_", "-"): v for k, v in headers.items()}
+    request = urllib.request.Request(address, headers=names)
+    try:
+        with urllib.request.urlopen(request, timeout=30) as answer:
+            return answer.status, dict(answer.headers), answer.read()
+    except urllib.error.HTTPError as error:
+        return error.code, dict(error.headers), error.read()
+
+
+def test_a_page_is_told_all_it_shows(command: Command, folder: Path) -> None:
+    with Page(command) as page:
+        hello = page.until("hello")
+        assert (hello["pipeline"], hello["source"], hello["live"]) == ("mine", "sample", False)
+        assert hello["file"] == "mine.yaml"
+        graph = page.until("graph")
+        assert graph["yaml"] == PIPELINE
+        assert [n["name"] for n in graph["nodes"]] == ["footprint", "boundary", "circle"]
+        page.ask("show", nodes=["footprint"])
+        frame = page.until("frame")
+        while not frame["pictures"] or frame["nodes"]["circle"]["outcome"] != "ran":
+            frame = page.until("frame")
+        assert set(frame["pictures"]) == {"footprint"}
+        assert frame["nodes"]["circle"]["us"] > 0
+        assert {s["role"] for s in frame["drawing"]} == {"found", "true"}
+        (row,) = frame["rows"]
+        assert row["output"] == "circle"
+        assert frame["errors"]["circle.centre_error_cm"] == row["centre_error_cm"]
+        pulse = page.until("pulse", viewers=1)
+        assert pulse["shed"] == 0
+        while page.until("pulse")["page_latency_us"]["median"] is None:
+            pass
+
+
+def test_the_file_saved_runs_at_once_and_a_wrong_one_is_told(
+    command: Command, folder: Path
+) -> None:
+    path = folder / "mine.yaml"
+    with Page(command) as page:
+        page.until("graph")
+        page.until("frame", version=1)
+        path.write_text(PIPELINE.replace("0.01", "0.02"))
+        graph = page.until("graph")
+        assert "0.02" in graph["yaml"]
+        page.until("frame", version=graph["version"])
+        path.write_text(PIPELINE.replace("threshold", "treshold"))
+        (fault,) = page.until("trouble")["errors"]
+        assert (fault["line"], fault["column"]) == (4, 21)
+        assert "did you mean 'threshold'" in fault["text"]
+        page.until("frame", version=graph["version"])
+        path.write_text(PIPELINE)
+        assert page.until("graph")["version"] > graph["version"]
+        assert page.until("trouble")["errors"] == []
+
+
+def test_two_hundred_wrong_saves_leave_the_old_graph_running(
+    command: Command, folder: Path
+) -> None:
+    path = folder / "mine.yaml"
+    with Page(command) as page:
+        page.until("frame")
+        for i in range(200):
+            wrong = PIPELINE[: i * len(PIPELINE) // 200] + ("[" if i % 2 else "\n  : }")
+            path.write_text(wrong)
+            if i % 20 == 19:
+                assert page.until("trouble")["errors"]
+                page.until("frame", version=1)
+        page.until("frame", version=1)
+        path.write_text(PIPELINE.replace("0.01", "0.03"))
+        page.until("frame", version=page.until("graph")["version"])
+
+
+def test_settings_are_set_taken_back_and_saved(command: Command, folder: Path) -> None:
+    with Page(command) as page:
+        page.until("graph")
+        page.ask("set", node="footprint", setting="level_v", value=0.05)
+        graph = page.until("graph")
+        (setting,) = [s for s in graph["nodes"][0]["settings"] if s["name"] == "level_v"]
+        assert (setting["value"], setting["changed"], setting["kind"]) == (0.05, True, "number")
+        assert "level_v: 0.05" in graph["yaml"]
+        page.ask("set", node="footprint", setting="level_v", value="high")
+        assert "must be a number" in page.told("level_v")["text"]
+        page.ask("save", name="better")
+        page.told("wrote")
+        assert (folder / "better.yaml").read_text() == graph["yaml"]
+        page.ask("save", name="../better")
+        assert page.told("a name is of letters")["level"] == "error"
+        assert graph["file_yaml"] == PIPELINE
+        page.ask("unset", node="footprint", setting="level_v")
+        assert page.until("graph")["yaml"] == PIPELINE
+        page.ask("set", node="footprint", setting="level_v", value=0.05)
+        page.until("graph")
+        page.ask("unset")
+        assert page.until("graph")["yaml"] == PIPELINE
+
+
+def test_pause_step_scrub_and_back(command: Command) -> None:
+    with Page(command) as page:
+        for _ in range(30):
+            page.until("frame")
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        time.sleep(0.3)
+        page.ask("scrub", back_s=0.4)
+        back = page.until("frame")
+        while back["back_s"] < 0.3:
+            back = page.until("frame")
+        page.ask("step")
+        assert page.until("frame")["index"] == back["index"] + 1
+        page.ask("set", node="footprint", setting="level_v", value=0.5)
+        again = page.until("frame", version=2)
+        assert again["index"] == back["index"] + 1
+        page.ask("live")
+        page.until("pulse", paused=False)
+        assert page.until("frame", back_s=0.0)["index"] > back["index"]
+
+
+def test_what_is_played_waits_and_is_stepped_through(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "200") as command, Page(command) as page:
+        page.until("frame")
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        counts = [-1] * 6
+        while len(set(counts[-6:])) > 1 or counts[-1] < 1:  # it stands still
+            counts.append(page.until("pulse")["frames"])
+        n = counts[-1]
+        page.ask("scrub", back_s=0.0)
+        page.until("frame", index=n - 1)
+        page.ask("step")
+        page.until("frame", index=n)
+        while page.until("pulse")["frames"] != n + 1:
+            pass
+
+
+def test_a_recording_holds_every_frame_with_its_label(command: Command, folder: Path) -> None:
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("record", on=True, label="cup")
+        page.told("recording to")
+        while page.until("pulse")["recording"]["frames"] < 30:
+            pass
+        page.ask("record", on=True, label="plate")
+        time.sleep(0.5)
+        page.ask("record", on=False)
+        page.told("recorded")
+    (store,) = folder.glob("*.zarr")
+    import tactile_graph as tg
+
+    frames = list(tg.loads(PIPELINE).with_source("recording", path=str(store)).frames())
+    numbers = [f.index for f in frames]
+    assert len(frames) >= 30
+    assert numbers == list(range(len(numbers)))
+    assert {f.label for f in frames} == {"cup", "plate"}
+    assert frames[0].truth is not None
+
+
+def test_ctrl_c_closes_the_recording_and_leaves_no_process(command: Command, folder: Path) -> None:
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("record", on=True)
+        while page.until("pulse")["recording"]["frames"] < 10:
+            pass
+        bench = command.bench()
+        code, out = command.end()
+    assert (code, "recorded" in out) == (0, True)
+    assert "Traceback" not in out
+    with pytest.raises(ProcessLookupError):
+        os.kill(bench, 0)
+    (store,) = folder.glob("*.zarr")
+    assert call("check", str(store)).exit_code == 0
+
+
+def test_the_end_comes_to_the_bench_even_when_the_server_is_killed(command: Command) -> None:
+    with Page(command) as page:
+        page.until("frame")
+        bench = command.bench()
+    command.end(signal.SIGKILL)
+    for _ in range(100):
+        time.sleep(0.1)
+        if not Path(f"/proc/{bench}").exists():
+            return
+        if Path(f"/proc/{bench}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+            return
+    raise AssertionError("the bench goes on")
+
+
+def test_a_bench_that_dies_is_started_anew(command: Command) -> None:
+    with Page(command) as page:
+        page.until("frame")
+        os.kill(command.bench(), signal.SIGKILL)
+        page.told("started anew")
+        page.got.clear()
+        page.until("frame")
+
+
+def test_tare_takes_off_what_lies_there(command: Command) -> None:
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("tare")
+        page.told("tared by the median")
+        page.until("pulse", tared=True)
+        page.ask("untare")
+        page.until("pulse", tared=False)
+
+
+def test_programs_take_every_result_in_order(shared: Command) -> None:
+    with Page(shared, "results") as program:
+        rows = [program.next() for _ in range(60)]
+    numbers = [r["frame"] for r in rows if r["type"] == "result"]
+    assert numbers == sorted(set(numbers))  # on a busy machine some are shed
+    found = [r for row in rows for r in row.get("rows", ()) if r["outcome"] == "ok"]
+    assert {"output", "x_cm", "radius_cm", "centre_error_cm"} <= set(found[0])
+
+
+def test_results_go_out_as_osc(folder: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        receiver.settimeout(30)
+        target = f"127.0.0.1:{receiver.getsockname()[1]}"
+        with running(folder, "mine.yaml", "--osc", target):
+            got = [receiver.recv(2000) for _ in range(10)]
+    assert all(g.startswith(b"#bundle\0") for g in got)
+    assert any(b"/circle/0/radius_cm\0" in g for g in got)
+
+
+def test_one_that_reads_nothing_is_dropped_and_harms_nobody(shared: Command) -> None:
+    with socket.create_connection(("127.0.0.1", shared.port)) as deaf, Page(shared) as page:
+        deaf.sendall(
+            f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{shared.port}\r\nUpgrade: websocket\r\n"
+            "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n".encode()
+        )
+        page.until("pulse", viewers=2)
+        page.until("pulse", viewers=1)
+        page.until("frame")
+
+
+@pytest.mark.parametrize(
+    "sent", ["no json", "[]", "[" * 5000, '{"type": "nope"}', '{"type": "set", "node": 1}', "{}"]
+)
+def test_nonsense_from_a_page_stops_nothing(shared: Command, sent: str) -> None:
+    with Page(shared) as page, Page(shared) as other:
+        page.until("frame")
+        page.socket.send(sent)
+        other.until("frame")
+        other.until("frame")
+
+
+# -- who may ask ---------------------------------------------------------------------------------
+
+
+def test_the_page_is_served_with_its_policy(shared: Command) -> None:
+    status, headers, body = fetched(shared.address)
+    assert (status, b"<!doctype html>" in body.lower()) == (200, True)
+    assert headers["content-security-policy"].startswith("default-src 'none'")
+    assert fetched(f"{shared.address}index.html")[0] == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["../pyproject.toml", "%2e%2e/commands/live.py", "..%2f..%2f__init__.py", "mine.yaml",
+             "page/index.html", "__init__.py", "index.html%00.js", "/etc/passwd"]
+)  # fmt: skip
+def test_nothing_else_is_served(shared: Command, path: str) -> None:
+    assert fetched(f"{shared.address}{path}")[0] in (403, 404)
+
+
+def test_other_sites_and_rebound_names_are_refused(shared: Command) -> None:
+    from websockets.exceptions import InvalidStatus
+
+    assert fetched(shared.address, Host="evil.example")[0] == 403
+    assert fetched(shared.address, Origin="http://evil.example")[0] == 403
+    for path in ("live", "results"):
+        with pytest.raises(InvalidStatus):
+            Page(shared, path, {"Origin": "http://evil.example"})
+    Page(shared, headers={"Origin": f"http://127.0.0.1:{shared.port}"}).close()
+
+
+def test_an_address_that_others_reach_wants_the_token_that_is_printed(folder: Path) -> None:
+    from websockets.exceptions import InvalidStatus
+
+    with running(folder, "mine.yaml", "--host", "0.0.0.0") as command:
+        address, _, query = command.address.partition("?")
+        here = address.replace("0.0.0.0", "127.0.0.1")
+        token = query.removeprefix("token=")
+        assert len(token) >= 20
+        assert fetched(here)[0] == 403
+        assert fetched(f"{here}?token=wrong")[0] == 403
+        status, headers, _ = fetched(f"{here}?{query}")
+        assert status == 200
+        cookie = headers["set-cookie"].partition(";")[0]
+        assert fetched(f"{here}index.html", Cookie=cookie)[0] == 200
+        with pytest.raises(InvalidStatus):
+            Page(Command(command.process, here))
+        with Page(Command(command.process, here), headers={"Cookie": cookie}) as page:
+            page.until("frame")
+
+
+def test_hostile_names_stay_text(folder: Path) -> None:
+    name = "<script>alert(1)</script>\u202e"
+    (folder / "mine.yaml").write_text(
+        PIPELINE.replace("pipeline: mine", f'pipeline: mine\nabout: "{name}"')
+    )
+    with running(folder, "mine.yaml") as command, Page(command) as page:
+        assert page.until("hello")["about"] == "<script>alert(1)</script>\\u202e"
+        page.ask("record", on=True, label="\x1b[2J<b>")
+        state = page.until("pulse")
+        while not state["recording"]["on"]:
+            state = page.until("pulse")
+        assert state["recording"]["label"] == "\\u001b[2J<b>"
+
+
+# -- what goes wrong -----------------------------------------------------------------------------
+
+
+def test_a_port_that_is_taken_is_said_with_one_that_is_free(folder: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        done = subprocess.run(
+            [sys.executable, "-m", "tactile_graph", "live", "mine.yaml", "--http-port", str(port)],
+            cwd=folder, capture_output=True, text=True, timeout=60,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert f"port {port} of 127.0.0.1 is taken; --http-port {port + 1}" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--port", "/dev/nope", "--preset", "fsrray"], "'/dev/nope' cannot be opened"),
+        (["--port", "/dev/nope"], "Missing option '--preset'"),
+        (["--port", "/dev/nope", "--preset", "fsrray", "--source", "sample"], "not both"),
+        (["nope.npz"], "there is no such file"),
+        (["--deadline", "2"], "must be a time such as 2ms"),
+        (["--osc", "here"], "must be HOST:PORT"),
+        (["--set", "footprint.level_v=high"], "must be a number"),
+        (["--host", "203.0.113.7"], "cannot serve on 203.0.113.7"),
+        (["--folder", "mine.yaml/x"], "--folder"),
+    ],
+)
+def test_what_cannot_be_shown_is_said_at_once(
+    folder: Path, arguments: list[str], said: str
+) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "tactile_graph", "live", "mine.yaml", "--http-port", "0",
+         *arguments],
+        cwd=folder, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_without_the_extra_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, folder: Path
+) -> None:
+    import importlib.util
+
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.chdir(folder)
+    done = call("live", "mine.yaml")
+    assert done.exit_code == 2
+    assert "pip install 'tactile-graph[live]'" in done.output
+
+
+def test_every_message_is_json_without_nan(shared: Command) -> None:
+    with Page(shared) as page:
+        for _ in range(40):
+            page.next()
+        for message in page.got:
+            json.dumps(message, allow_nan=False)
+
+
+# -- a pad on a port -----------------------------------------------------------------------------
+
+
+def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: Path) -> None:
+    kit = next(k for k in KITS if k.preset == "fabric-16x16")
+    (tmp_path / "mine.yaml").write_text(COUNTS)
+    pad = FakePad(tmp_path / "tty")
+    sending = Sending(pad, kit)
+    with (
+        sending,
+        running(tmp_path, "mine.yaml", "--port", str(pad.link), "--preset", kit.preset) as command,
+        Page(command) as page,
+    ):
+        assert page.until("hello")["live"] is True
+        before = page.until("frame")
+        with sending.pad_lock:
+            pad.unplug()
+            page.told("unplugged")
+            page.until("pulse", state="waiting")
+            pad.plug_in()
+        assert page.until("frame")["index"] > before["index"]
+        while page.until("pulse")["lost"] == 0:
+            pass
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        n = page.until("pulse")["frames"]
+        while page.until("pulse")["frames"] < n + 20:  # it goes on though nobody looks
+            pass
+        assert page.until("pulse")["counters"]["good frames"] > 20
+
+
+# -- on time, and beside -------------------------------------------------------------------------
+
+
+def test_a_deadline_skips_what_does_not_fit_and_names_it(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "40", "--deadline", "1us") as command:
+        with Page(command) as page:
+            assert page.until("hello")["deadline_us"] == 1.0
+            frame = page.until("frame")
+            while not frame["decisions"]:
+                frame = page.until("frame")
+            skipped = frame["nodes"][frame["decisions"][0]]
+            assert (skipped["outcome"], skipped["reason"]) == ("skipped", "deadline")
+            while page.until("pulse")["missed"] == 0:
+                pass
+        with Page(command, "results") as program:
+            while not program.next()["deadline"]:
+                pass
+
+
+def test_a_variant_runs_beside_and_what_it_came_to_is_kept(folder: Path) -> None:
+    (folder / "other.yaml").write_text(PIPELINE.replace("0.01", "0.5").replace("mine", "other"))
+    with running(
+        folder, "mine.yaml", "--rate", "40", "--beside", "other.yaml", "--folder", "kept"
+    ) as command:
+        with Page(command) as page:
+            beside = page.until("pulse")["beside"]
+            while not beside or beside["frames"] < 10:
+                beside = page.until("pulse")["beside"]
+            assert beside["variant"] == "other"
+            assert beside["trouble"] == ""
+        code, out = command.end()
+    assert code == 0
+    assert "other beside: " in out
+    (figures,) = (folder / "kept").glob("*-beside-other.json")
+    told = json.loads(figures.read_text())
+    assert told["frames"] >= 10
+    assert {"frame", "difference", "first", "beside"} == set(told["kept"][0])

@@ -1,0 +1,214 @@
+"""How the page looks: by day and night, on a phone, without motion, and to a screen reader."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("uvicorn", reason="the extra `live` is not there")
+
+from helpers_live_page import Double, frame, graph, pulse, served, wait_for
+
+pytestmark = pytest.mark.slow  # a browser starts
+
+FAILED = {"outcome": "failed", "reason": "all points lie in a line", "us": 5.0}
+SKIPPED = {"outcome": "skipped", "reason": "touched does not hold", "us": None}
+LUMINANCE = """() => {
+    const luminance = (text) => {
+        const [r, g, b] = text.match(/[\\d.]+/g).slice(0, 3).map((c) => {
+            const s = c / 255;
+            return s <= 0.03928 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
+        });
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const ground = (e) => {
+        for (; e; e = e.parentElement) {
+            const paint = getComputedStyle(e).backgroundColor;
+            if (!/, 0\\)$/.test(paint)) return paint;
+        }
+        return "rgb(255, 255, 255)";
+    };
+    const found = [];
+    for (const e of document.querySelectorAll("body *")) {
+        const own = [...e.childNodes].some((n) => n.nodeType === 3 && n.nodeValue.trim());
+        if (!own || !e.checkVisibility() || e.closest(":disabled, .unseen, .skip, svg")) continue;
+        const [a, b] = [luminance(getComputedStyle(e).color), luminance(ground(e))].sort((x, y) => y - x);
+        found.push([(a + 0.05) / (b + 0.05), `${e.tagName}#${e.id}.${e.className}`, e.textContent.slice(0, 30)]);
+    }
+    return found;
+}"""
+
+
+@pytest.fixture
+def double() -> Iterator[Double]:
+    with served(Double()) as double:
+        yield double
+
+
+def opened(window: Any, double: Double, **options: Any) -> Any:
+    page = window(**options)
+    page.page.goto(double.address)
+    page.page.wait_for_selector("#result-rows tr")
+    return page
+
+
+def ground(page: Any) -> str:
+    return str(page.evaluate("getComputedStyle(document.body).backgroundColor"))
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_words_stand_out_by_day_and_night(window: Any, double: Double, scheme: str) -> None:
+    page = opened(window, double, color_scheme=scheme).page
+    double.say(frame(1, nodes={"footprint": FAILED, "boundary": SKIPPED, "circle": SKIPPED}),
+               pulse(lost=3), {"type": "told", "text": "no", "level": "error"},
+               {"type": "trouble", "version": 2,
+                "errors": [{"line": 1, "column": 1, "text": "wrong"}]})  # fmt: skip
+    page.locator("#nodes [data-name=footprint]").click()
+    page.wait_for_timeout(600)
+    found = page.evaluate(LUMINANCE)
+    assert len(found) > 60
+    assert [f for f in found if f[0] < 4.5] == []
+
+
+def test_the_switch_goes_round_and_is_remembered(window: Any, double: Double) -> None:
+    page = opened(window, double, color_scheme="dark").page
+    dark = ground(page)
+    page.get_by_role("button", name="Theme: system").click()
+    light = ground(page)
+    assert light != dark
+    page.reload()
+    page.wait_for_selector("#result-rows tr")
+    assert ground(page) == light
+    page.get_by_role("button", name="Theme: light").click()
+    assert ground(page) == dark
+    page.get_by_role("button", name="Theme: dark").click()
+    page.emulate_media(color_scheme="light")
+    assert ground(page) == light
+
+
+def test_canvases_take_on_the_colours(window: Any, double: Double) -> None:
+    page = opened(window, double, color_scheme="light").page
+    axis = """() => {
+        const c = document.getElementById("pad-canvas");
+        const data = c.getContext("2d").getImageData(0, c.height - 20, c.width, 20).data;
+        let sum = 0, n = 0;
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) { sum += data[i]; n += 1; }
+        return n ? sum / n : null;
+    }"""
+    by_day = page.evaluate(axis)
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_timeout(100)
+    assert page.evaluate(axis) > by_day + 40
+
+
+def test_a_phone_shows_one_column_and_nothing_hangs_over(window: Any, double: Double) -> None:
+    page = opened(window, double, viewport={"width": 360, "height": 740}, has_touch=True).page
+    long = "an-output-with-a-name-that-goes-on-and-on-and-on-and-on"
+    double.say(graph(2, ("footprint", "boundary", long), name=long * 3, yaml="x: " + "y" * 300),
+               frame(1, ("footprint", "boundary", long)))  # fmt: skip
+    page.wait_for_selector(f"#nodes [data-name={long}]")
+    page.locator("#nodes [data-name=footprint]").click()
+    assert page.evaluate("document.documentElement.scrollWidth") == 360
+    boxes = {n: page.locator(f"#{n}").bounding_box()
+             for n in ("pad", "graph", "node", "results", "settings", "file")}  # fmt: skip
+    tops = [b["y"] for b in boxes.values()]
+    assert tops == sorted(tops)
+    assert {round(b["x"]) for b in boxes.values()} == {10}
+    for control in page.locator(
+        "main button:visible, main input:visible:not([type=checkbox])"
+    ).all():
+        box = control.bounding_box()
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= 360
+        assert box["height"] >= 36
+
+
+@pytest.mark.parametrize("width", [780, 781, 1000, 1240, 1920])
+def test_no_width_makes_the_page_scroll_sideways(window: Any, double: Double, width: int) -> None:
+    page = opened(window, double, viewport={"width": width, "height": 800}).page
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+def test_large_letters_still_fit(window: Any, double: Double) -> None:
+    page = opened(window, double, viewport={"width": 720, "height": 800}).page
+    page.add_style_tag  # a sheet of its own is refused by the policy: the root's size is set instead
+    page.evaluate("document.documentElement.style.fontSize = '200%'")
+    page.wait_for_timeout(100)
+    assert page.evaluate("document.documentElement.scrollWidth") == 720
+
+
+def test_nothing_moves_where_that_is_not_wanted(window: Any, double: Double) -> None:
+    recording = {"on": True, "file": "a.zarr", "frames": 1, "label": "", "lost": 0}
+    moving = "document.getAnimations().length"
+    for motion, some in (("no-preference", True), ("reduce", False)):
+        page = opened(window, double, reduced_motion=motion).page
+        double.say(pulse(recording=recording))
+        page.wait_for_selector("#record[aria-pressed=true]")
+        assert (page.evaluate(moving) > 0) is some
+
+
+def test_landmarks_labels_and_headings(window: Any, double: Double) -> None:
+    page = opened(window, double).page
+    assert page.get_by_role("banner").count() == page.get_by_role("main").count() == 1
+    regions = ["Pad", "Graph", "Settings", "File", "Results", "Latency"]
+    for name in regions:
+        assert page.get_by_role("region", name=name, exact=True).count() == 1, name
+    assert page.get_by_role("heading", level=1).inner_text() == "rings"
+    unnamed = page.evaluate("""() => [...document.querySelectorAll("button, input, select, canvas[role=img]")]
+        .filter((e) => e.checkVisibility() && !(e.labels?.length || e.getAttribute("aria-label")
+                       || e.textContent.trim())).map((e) => e.outerHTML)""")
+    assert unnamed == []
+    assert page.evaluate("document.documentElement.lang") == "en"
+    ids = page.evaluate("[...document.querySelectorAll('[id]')].map((e) => e.id)")
+    assert len(ids) == len(set(ids))
+
+
+def test_tables_have_heads(window: Any, double: Double) -> None:
+    page = opened(window, double).page
+    rows = [{"output": "circle", "item": i, "outcome": "ok", "x_cm": 1.0 * i} for i in (1, 2)]
+    assert page.locator("#results table").get_by_role("columnheader").count() == 3
+    assert page.locator("#result-rows").get_by_role("rowheader").count() >= 4
+    double.say(frame(1, rows=rows))
+    page.wait_for_selector("#contact-rows tr")
+    assert page.locator("#contacts table").get_by_role("columnheader").count() == 2
+    assert page.locator("#contact-rows").get_by_role("rowheader").count() == 2
+    assert page.locator("table:not(:has(caption))").count() == 0
+
+
+def test_the_pad_is_told_in_words(window: Any, double: Double) -> None:
+    page = opened(window, double).page
+    pad = page.locator("#pad-canvas")
+    wait_for(lambda: "highest" in pad.get_attribute("aria-label"), "the pad is told in words")
+    told = pad.get_attribute("aria-label")
+    assert told.startswith("The pad, 8 rows of 10 cells, volt, V; highest 2.")
+    assert (
+        page.locator("#result-rows .spark")
+        .first.get_attribute("aria-label")
+        .startswith("x, last ten seconds")
+    )
+
+
+def test_results_are_spoken_at_a_bearable_pace(window: Any, double: Double) -> None:
+    page = opened(window, double).page
+    page.evaluate("""() => {
+        window.spoken = [];
+        new MutationObserver(() => spoken.push([performance.now(), document.getElementById("speech").textContent]))
+            .observe(document.getElementById("speech"), { childList: true, characterData: true, subtree: true });
+    }""")
+    for index in range(1, 130):
+        double.say(frame(index))
+        page.wait_for_timeout(40)
+    spoken = page.evaluate("spoken")
+    assert 2 <= len(spoken) <= 4
+    assert all(b[0] - a[0] > 1900 for a, b in zip(spoken, spoken[1:], strict=False))
+    assert spoken[0][1].startswith("circle, Circle, x ")
+    assert page.locator("#speech").get_attribute("aria-live") == "polite"
+    page.keyboard.press("?")
+    page.get_by_label("Tell results to screen readers").uncheck()
+    page.keyboard.press("Escape")
+    page.evaluate("spoken.length = 0")
+    double.say(frame(150))
+    page.wait_for_timeout(2500)
+    assert page.evaluate("spoken") == []

@@ -1,0 +1,177 @@
+"""The pipeline that is worked on, and its YAML."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import tactile_graph as tg
+from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph_live.server.draft import Draft, faults, save, spelled, text_with
+
+FLOW = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  smooth: {step: low_pass, in: frame}   # as it comes
+  footprint: {step: threshold, in: smooth, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: footprint}
+outputs: [boundary]
+"""
+BLOCK = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  smooth:
+    # why it is smoothed
+    step: low_pass
+    in: frame
+  footprint:
+    step: threshold
+    in: smooth
+    with:
+      level_v: 0.01   # volts
+  boundary: {step: boundary_scan, in: footprint}
+outputs: [boundary]
+"""
+
+
+def lines_that_differ(a: str, b: str) -> list[str]:
+    return [line for line in b.splitlines() if line not in a.splitlines()]
+
+
+@pytest.mark.parametrize("text", [FLOW, BLOCK])
+def test_a_setting_that_is_there_is_changed_in_its_place(text: str) -> None:
+    changed = text_with(text, {"footprint": {"level_v": 0.02}})
+    (line,) = lines_that_differ(text, changed)
+    assert "level_v: 0.02" in line
+    assert changed.replace("0.02", "0.01") == text
+
+
+@pytest.mark.parametrize("text", [FLOW, BLOCK])
+def test_a_setting_that_is_not_there_is_added_and_comments_stay(text: str) -> None:
+    node = tg.loads(text).nodes["smooth"]
+    assert node.signature is not None
+    name = node.signature.settings[0].name
+    value = node.settings[name]
+    changed = text_with(text, {"smooth": {name: value}})
+    assert f"with: {{{name}: {spelled(value)}}}" in changed
+    assert "# why it is smoothed" in changed or "# as it comes" in changed
+    assert tg.loads(changed).key == tg.loads(text).key
+
+
+def test_a_second_setting_is_added_to_those_that_are_there() -> None:
+    node = "  a: {step: simulate_me, with: {x: 1}}\n"
+    text = f"pipeline: p\nnodes:\n{node}"
+    assert "with: {x: 1, y: [2, 3]}" in text_with(text, {"a": {"y": [2, 3]}})
+    block = "pipeline: p\nnodes:\n  a:\n    step: s\n    with:\n      x: 1\n"
+    assert "      x: 1\n      y: word\n" in text_with(block, {"a": {"y": "word"}})
+
+
+def test_values_are_spelled_so_that_yaml_reads_them_back() -> None:
+    import yaml
+
+    for value in (0.5, 1e-7, True, None, "yes", "a: b", [1, 2], {"a": 1}, "µ", "1"):
+        assert yaml.safe_load(spelled(value)) == value
+        assert "\n" not in spelled(value)
+
+
+def opened(tmp_path: Path, text: str = FLOW) -> Draft:
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    return Draft.of(tg.load(path))
+
+
+def test_what_is_set_runs_and_stands_in_the_yaml(tmp_path: Path) -> None:
+    draft = opened(tmp_path).with_value("footprint", "level_v", 0.03)
+    assert draft.pipeline.nodes["footprint"].settings["level_v"] == 0.03
+    assert "level_v: 0.03" in draft.text
+    assert tg.loads(draft.text).key == draft.pipeline.key
+    assert draft.without_values().text == draft.file_text == FLOW
+
+
+def test_one_setting_is_taken_back(tmp_path: Path) -> None:
+    one = opened(tmp_path).with_value("footprint", "level_v", 0.03)
+    both = one.with_value("footprint", "above", True)
+    assert both.without_values("footprint", "above").text == one.text
+    assert both.without_values("footprint", "nothing").text == both.text
+
+
+def test_what_is_not_allowed_is_refused_and_named(tmp_path: Path) -> None:
+    with pytest.raises(PipelineError, match=r"footprint\.level_v.*'high'"):
+        opened(tmp_path).with_value("footprint", "level_v", "high")
+    with pytest.raises(PipelineError, match="no node"):
+        opened(tmp_path).with_value("footprnt", "level_v", 1)
+
+
+def test_the_command_lines_settings_and_source_outlast_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(FLOW)
+    pipeline = tg.load(path).with_settings({"footprint.level_v": 0.5}, ("simulate", {"frames": 3}))
+    path.write_text(FLOW.replace("low_pass", "low_pass, with: {}"))
+    again = Draft.of(pipeline).read_again().pipeline
+    assert again.nodes["footprint"].settings["level_v"] == 0.5
+    assert again.source is not None
+    assert again.source.name == "simulate"
+
+
+def test_the_file_wins_over_what_the_page_set(tmp_path: Path) -> None:
+    draft = opened(tmp_path).with_value("footprint", "level_v", 0.03)
+    again = draft.read_again()
+    assert again.pipeline.nodes["footprint"].settings["level_v"] == 0.01
+    assert again.set_here == {}
+
+
+def test_another_source_is_noticed(tmp_path: Path) -> None:
+    draft = opened(tmp_path)
+    assert draft.same_source(draft.with_value("footprint", "level_v", 0.5))
+    (tmp_path / "mine.yaml").write_text(FLOW.replace("sample, with: {name: discs}", "simulate"))
+    assert not draft.same_source(draft.read_again())
+
+
+def test_what_is_wrong_has_its_line_and_column(tmp_path: Path) -> None:
+    draft = opened(tmp_path)
+    path = draft.pipeline.file
+    Path(path).write_text(FLOW.replace("threshold,", "treshold,").replace("low_pass", "lowpass"))
+    with pytest.raises(PipelineError) as caught:
+        draft.read_again()
+    found = faults(caught.value, path)
+    assert [(f.line, f.column) for f in found] == [(4, 18), (5, 21)]
+    assert "did you mean 'threshold'" in found[1].text
+
+
+def test_an_error_without_a_place_is_told_without_one() -> None:
+    (fault,) = faults(ValueError("odd\x1b"), "x.yaml")
+    assert (fault.line, fault.column, fault.text) == (0, 0, "ValueError: odd\\u001b")
+
+
+def test_a_pipeline_is_saved_under_a_plain_name_only(tmp_path: Path) -> None:
+    assert save(tmp_path, "mine", FLOW) == tmp_path / "mine.yaml"
+    assert (tmp_path / "mine.yaml").read_text() == FLOW
+    with pytest.raises(UsageError, match="there already"):
+        save(tmp_path, "mine.yaml", FLOW)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "..",
+        ".",
+        ".hidden",
+        "../out",
+        "/etc/x",
+        "a/b",
+        "a\\b",
+        "a b",
+        "-o",
+        "nul\0",
+        "ä",
+        "x" * 200,
+    ],
+)
+def test_no_name_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
+    with pytest.raises(UsageError, match="a name is of letters"):
+        save(tmp_path, name, FLOW)
+    assert list(tmp_path.iterdir()) == []

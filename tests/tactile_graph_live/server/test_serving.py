@@ -1,0 +1,50 @@
+"""Where the page is served."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+
+pytest.importorskip("uvicorn", reason="the live extra is not installed")
+
+from tactile_graph.errors import UsageError
+from tactile_graph_live.server.serving import taken_door
+
+
+def test_small_messages_are_not_held_back_for_the_next() -> None:
+    """asyncio sets TCP_NODELAY only where a socket names its protocol."""
+    door, listener = taken_door("127.0.0.1", 0)
+    with listener:
+        assert listener.proto == socket.IPPROTO_TCP
+        assert door.port == listener.getsockname()[1]
+        assert (door.loopback, door.token) == (True, "")
+
+
+def test_an_address_that_others_reach_has_a_token_of_its_own_each_time() -> None:
+    tokens = set()
+    for _ in range(2):
+        door, listener = taken_door("0.0.0.0", 0)
+        listener.close()
+        tokens.add(door.token)
+    assert len(tokens) == 2
+    assert min(map(len, tokens)) >= 20
+    door, listener = taken_door("0.0.0.0", 0, "mine")
+    listener.close()
+    assert door.token == "mine"
+
+
+def test_a_port_that_is_taken_is_said_with_one_that_is_free() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(UsageError, match=rf"port {port} of 127\.0\.0\.1 is taken; --http-port"):
+            taken_door("127.0.0.1", port)
+
+
+def test_what_is_no_address_of_this_machine_is_refused() -> None:
+    with pytest.raises(UsageError, match=r"cannot serve on 203\.0\.113\.7"):
+        taken_door("203.0.113.7", 0)
+    with pytest.raises(UsageError, match="--host"):
+        taken_door("no such host", 0)

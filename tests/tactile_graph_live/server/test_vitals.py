@@ -1,0 +1,67 @@
+"""How the pad and the bench are doing."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from tactile_graph_live.bench.wire import Summary
+from tactile_graph_live.server import vitals as module
+from tactile_graph_live.server.messages import Recording
+from tactile_graph_live.server.vitals import Vitals
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 1000.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    found = Clock()
+    monkeypatch.setattr(module.time, "monotonic", found)
+    return found
+
+
+def summary(n_frames: int, latencies: list[float], state: str = "running") -> Summary:
+    times = np.array(latencies, np.float32)
+    return Summary(times, n_frames, 2, 3, 1, 12.345, 67, state, True, {"bytes": 9})  # type: ignore[arg-type]
+
+
+def test_the_rate_is_that_of_the_last_second(clock: Clock) -> None:
+    vitals = Vitals()
+    n = 0
+    for rate in (100, 400):
+        for _ in range(20):
+            clock.now += 0.25
+            n += rate // 4
+            vitals.add(summary(n, []))
+    assert vitals.rate_hz() == pytest.approx(400)
+    vitals.add(summary(n, [], "ended"))
+    assert vitals.rate_hz() == 0.0
+
+
+def test_latencies_of_all_frames_of_the_last_seconds_are_told(clock: Clock) -> None:
+    vitals = Vitals()
+    vitals.add(summary(1, [1e6]))
+    clock.now += 5.0
+    vitals.add(summary(101, [*map(float, range(1, 101))]))
+    pulse = vitals.pulse(2, Recording(), paused=True)
+    assert (pulse.latency_us.median, pulse.latency_us.most) == (50.5, 100.0)
+    assert (pulse.viewers, pulse.paused, pulse.tared, pulse.kept_s) == (2, True, True, 12.35)
+    assert (pulse.lost, pulse.shed, pulse.missed) == (2, 3, 1)
+    clock.now += 5.0
+    assert vitals.pulse(0, Recording(), paused=False).latency_us.median is None
+
+
+def test_what_a_page_took_is_told_apart(clock: Clock) -> None:
+    vitals = Vitals()
+    vitals.drawn(time.perf_counter_ns() - 20_000_000)
+    page = vitals.pulse(1, Recording(), paused=False).page_latency_us
+    assert page.median is not None
+    assert 20_000 <= page.median < 60_000
