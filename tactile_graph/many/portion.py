@@ -27,6 +27,8 @@ class Portion:
         Of the recording that they are of: state reaches back no further.
     without : frozenset of int
         Places of frames that are left out.
+    n_before : int
+        How many frames that come before it are sent along, ahead of its own.
     """
 
     low: int
@@ -34,6 +36,7 @@ class Portion:
     sent: bytes | None = None
     start: int = 0
     without: frozenset[int] = frozenset()
+    n_before: int = 0
 
     @property
     def n_frames(self) -> int:
@@ -43,6 +46,15 @@ class Portion:
     def first(self, n: int) -> Portion:
         """Return the first frames of it."""
         return replace(self, high=self.low + n)
+
+    def frames(self) -> tuple[list[Frame], list[Frame]]:
+        """Return the frames that were sent: those before it, and its own that are not left out."""
+        assert self.sent is not None  # or a worker would read them
+        low = self.low - self.n_before
+        every = list(enumerate(unpacked(self.sent)[: self.high - low], low))
+        kept = [(place, frame) for place, frame in every if place not in self.without]
+        before = [frame for place, frame in kept if place < self.low]
+        return before, [frame for _, frame in kept[len(before) :]]
 
     def leaving_out(self, places: frozenset[int]) -> Portion:
         """Return it without some more frames."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.arguments import Span
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
-from tactile_graph.cli.many.job import Done, Job, done
+from tactile_graph.cli.many.job import Done, Job, done, for_workers
 from tactile_graph.cli.many.made_of import changed, device, made_of
 from tactile_graph.cli.many.unfinished import Unfinished
 from tactile_graph.cli.output.outputs import Output
@@ -29,11 +28,10 @@ from tactile_graph.many.executor_kind import Place
 from tactile_graph.many.feed import Feed, absolute, ranges_of
 from tactile_graph.many.in_order import InOrder
 from tactile_graph.many.portion import Portion, packed
+from tactile_graph.many.sharing import KILLER
 from tactile_graph.provenance import provenance, sidecar, write_provenance
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
-
-KILLER = "workers died of it each time: left out"
 
 
 @dataclass(frozen=True)
@@ -185,7 +183,7 @@ class ManyRun:
     def _parts(self, held: Any) -> Iterator[bytes]:
         """Yield what each portion came to, when it is kept."""
         asked = self.asked
-        given = pickle.dumps(self._job())
+        given = for_workers(self._job())
         with InOrder(asked.place, done, given, self._leave_out, self.left_out) as workers:
             again = True
             while again:
@@ -239,7 +237,7 @@ class ManyRun:
         assert came.tally is not None  # it is no irregular one
         self.tally.join(came.tally)
         self.quantity = came.quantity or self.quantity
-        self.feed.took(came.n_frames, came.seconds)
+        self.feed.size.took(came.n_frames, came.seconds)
         self.low = portion.high if came.error is None else portion.low + came.n_frames
         if self.unfinished is not None:
             so_far = {
