@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
+    from tactile_graph.engine.plan import Plan
     from tactile_graph.many.executor_kind import Place
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,6 +47,22 @@ def place_asked(workers: int | None, on: str | None) -> Place | None:
     from tactile_graph.many.executor_kind import place_of
 
     return place_of(on, workers)
+
+
+def place_for(workers: int | None, on: str | None, plan: Plan) -> Place | None:
+    """Return where workers are asked for, if they can have frames of a plan; else say why not."""
+    place = place_asked(workers, on)
+    if place is None:
+        return None
+    from tactile_graph.cli.terminal import console
+    from tactile_graph.many.division import one_process_only
+
+    why_not = one_process_only(plan)
+    if why_not:
+        said = console(stderr=True)
+        said.print(f"in one process: {why_not}", style="yellow", soft_wrap=True)
+        return None
+    return place
 
 
 def side_by_side(place: Place) -> str:
