@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +73,7 @@ class Feed:
         self.start = low
         self._stop = high
         self.size = PortionSize()
+        self._begun: Iterator[Portion] | None = None
         if ranges is not None:
             n = ranges.n_frames
             self._stop = n if high is None else min(high, n)
@@ -83,11 +84,19 @@ class Feed:
         """Whether workers read the frames themselves."""
         return self._ranges is not None
 
+    def begin(self, low: int) -> None:
+        """Read the first portion where frames are sent: the source then says how many there are."""
+        if self._ranges is None:
+            portions = self._sent(low)
+            first = next(portions, None)
+            self._begun = iter(()) if first is None else chain([first], portions)
+
     def portions(self, low: int, n_workers: int) -> Iterator[Portion]:
         """Yield the portions from the frame at a place on."""
         if self._ranges is not None:
             return self._read(low, n_workers, self._ranges)
-        return self._sent(low)
+        begun, self._begun = self._begun, None
+        return self._sent(low) if begun is None else begun
 
     def send(self) -> None:
         """Send frames from now on: they cannot be read in any order."""

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from tactile_graph.engine.table import Table
     from tactile_graph.exporter import Writer
 
-LONG_RUN = 200
 STALLED_S = 1.0
 
 
@@ -232,7 +231,7 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat
+        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat, is_long
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
         if in_blocks and self.span.is_all:
@@ -243,7 +242,7 @@ class _Run:
         if first is None:
             return
         expected = self.span.expected(self.report.n_expected)
-        if expected is None or expected > LONG_RUN:
+        if is_long(expected):
             self._warm_up(expected)
         given = chain([first], frames)
         if in_blocks and (expected or 0) >= WORTH_BLOCKS:

@@ -51,6 +51,8 @@ class Job(NamedTuple):
     division : Division
     start : int
         Place in the source of the run's first frame.
+    is_long : bool
+        Whether machine code answers from the first frame on, as it does in long runs.
     """
 
     pipeline: Pipeline
@@ -63,6 +65,7 @@ class Job(NamedTuple):
     source: tuple[str, dict[str, Any]] | None
     division: Division
     start: int
+    is_long: bool
 
 
 class Done(NamedTuple):
@@ -110,7 +113,8 @@ class _Bench:
     """A job made ready."""
 
     def __init__(self, job: Job) -> None:
-        warm_up()
+        if job.is_long:
+            warm_up()
         self.job = job
         self.columns = columns_of(job.pipeline, job.asked)
         self.runner = self._new_runner()

@@ -20,6 +20,7 @@ from tactile_graph.cli.output.progress import Bar
 from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.terminal import console
 from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.gathering import is_long
 from tactile_graph.engine.table import make_table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import uninterrupted, whole_file
@@ -99,7 +100,7 @@ class ManyRun:
                 self._run(interrupts.held)
             finally:
                 if self.unfinished is not None:
-                    self.unfinished.close()
+                    self.unfinished.end(kept=self.low > asked.span.start)
         return self._close()
 
     # -- what was done before ------------------------------------------------------------------
@@ -183,6 +184,13 @@ class ManyRun:
     def _parts(self, held: Any) -> Iterator[bytes]:
         """Yield what each portion came to, when it is kept."""
         asked = self.asked
+        try:
+            self.feed.begin(self.low)
+        except UsageError:
+            raise
+        except Exception as error:  # a source may raise anything
+            self.error = error
+            return
         given = for_workers(self._job())
         with InOrder(asked.place, done, given, self._leave_out, self.left_out) as workers:
             again = True
@@ -231,6 +239,7 @@ class ManyRun:
         return Job(
             asked.pipeline, asked.outputs, asked.seed, asked.verify, asked.output.ending,
             asked.output.full, asked.output.long, reading, self.division, asked.span.start,
+            is_long(asked.span.expected(self.report.n_expected)),
         )  # fmt: skip
 
     def _take(self, portion: Portion, came: Done) -> None:
