@@ -51,6 +51,8 @@ class Feed:
         Which frames, by their place in the source.
     division : Division
     ranges : Ranges, optional
+    in_stacks : bool
+        Whether frames that are sent go in stacks where the source has them so.
 
     Attributes
     ----------
@@ -66,10 +68,12 @@ class Feed:
         span: tuple[int, int | None],
         division: Division,
         ranges: Ranges | None,
+        in_stacks: bool = False,
     ) -> None:
         self._pipeline, self._seed, self._report = pipeline, seed, report
         self._division, self._ranges = division, ranges
         low, high = span
+        self._in_stacks = in_stacks and high is None
         self.start = low
         self._stop = high
         self.size = PortionSize()
@@ -124,5 +128,8 @@ class Feed:
         return (low + size) // together * together - low
 
     def _sent(self, low: int) -> Iterator[Portion]:
-        with closing(self._pipeline.frames(self._seed, self._report)) as frames:  # type: ignore[type-var]
+        pipeline = self._pipeline
+        in_stacks = self._in_stacks and low == 0  # places count frames
+        source = pipeline.frames_in_stacks if in_stacks else pipeline.frames
+        with closing(source(self._seed, self._report)) as frames:  # type: ignore[type-var]
             yield from sent(islice(frames, low, self._stop), low, self.size)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import islice
+from itertools import chain
+
+import numpy as np
 
 from tactile_graph.many.portion import Portion, packed
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 
 GOAL_S = 0.5
 """How long a worker should take over a portion: long beside the way to it, short for people."""
 FIRST, MOST = 16, 4096
 GROWTH = 4
 """Times that a portion may be longer than the one before."""
-MOST_BYTES = 1_000_000
+MOST_BYTES = 4_000_000
 """Of the frames that are sent with a portion."""
 
 
@@ -36,13 +39,14 @@ class PortionSize:
 
 
 def sent(
-    frames: Iterator[Frame], low: int, size: PortionSize, n_before: int = 0
+    frames: Iterator[Frame | FrameStack], low: int, size: PortionSize, n_before: int = 0
 ) -> Iterator[Portion]:
     """Yield portions with the frames in them.
 
     Parameters
     ----------
-    frames : iterator of Frame
+    frames : iterator of Frame or FrameStack
+        Stacks are sent as such; with ``n_before`` there are none.
     low : int
         Place in the source of the first of them.
     size : PortionSize
@@ -50,19 +54,31 @@ def sent(
     n_before : int
         How many of the frames before a portion are sent with it.
     """
-    before: list[Frame] = []
-    while taken := _taken(frames, size.n_frames):
-        yield Portion(low, low + len(taken), packed(before + taken), n_before=len(before))
-        low += len(taken)
+    before: list[Frame | FrameStack] = []
+    rest: FrameStack | None = None
+    while True:
+        taken, rest, n = _taken(frames if rest is None else chain([rest], frames), size.n_frames)
+        if not n:
+            return
+        yield Portion(low, low + n, packed(before + taken), n_before=len(before))
+        low += n
         before = (before + taken)[-n_before:] if n_before else []
 
 
-def _taken(frames: Iterator[Frame], most: int) -> list[Frame]:
-    taken: list[Frame] = []
-    n_bytes = 0
-    for frame in islice(frames, most):
-        taken.append(frame)
-        n_bytes += frame.image.values.nbytes
-        if n_bytes >= MOST_BYTES:
-            break
-    return taken
+def _taken(
+    frames: Iterator[Frame | FrameStack], most: int
+) -> tuple[list[Frame | FrameStack], FrameStack | None, int]:
+    """Return the next frames, what is left of the stack they end in, and how many they are."""
+    taken: list[Frame | FrameStack] = []
+    rest, n, n_bytes = None, 0, 0
+    while n < most and n_bytes < MOST_BYTES and (given := next(frames, None)) is not None:
+        if isinstance(given, FrameStack):
+            left = most - n
+            if len(given) > left:
+                rest = given.take(np.arange(left, len(given)))
+                given = given.take(np.arange(left))
+            n, n_bytes = n + len(given), n_bytes + given.images.values.nbytes
+        else:
+            n, n_bytes = n + 1, n_bytes + given.image.values.nbytes
+        taken.append(given)
+    return taken, rest, n

@@ -158,7 +158,8 @@ class _Bench:
             self.runner = self._settled(portion)
         frames, pipeline = self._frames(portion), self.job.pipeline
         if portion.high - self.job.start >= WORTH_BLOCKS:
-            return pipeline.blocks(frames, self.runner)
+            given = frames if portion.sent is None else iter(portion.given())
+            return pipeline.blocks(given, self.runner)
         return pipeline.results(frames, self.runner)
 
     def _settled(self, portion: Portion) -> Runner[Result]:

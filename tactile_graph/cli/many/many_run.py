@@ -81,7 +81,10 @@ class ManyRun:
         asked = self.asked
         self.report = Report()
         span = (asked.span.start, asked.span.stop)
-        self.feed = Feed(asked.pipeline, asked.seed, self.report, span, self.division, self.ranges)
+        in_stacks = asked.pipeline.runner(asked.only, asked.seed).in_blocks
+        self.feed = Feed(
+            asked.pipeline, asked.seed, self.report, span, self.division, self.ranges, in_stacks
+        )
         self.columns = columns_of(asked.pipeline, asked.outputs)
         self.tally = Tally(self.columns)
         self.people, self.stderr = console(stderr=True), console(stderr=True)
