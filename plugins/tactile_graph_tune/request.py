@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError, did_you_mean
+from tactile_graph.many import Place
 from tactile_graph.pipeline.document import assignment
 from tactile_graph_compare.variants.prepare import setting_names
 
@@ -50,6 +51,8 @@ class Request:
     rounds : int
         How often every frame is run: times are medians.
     seed : int
+    place : Place, optional
+        Where workers run everything on every frame; this process does where there is none.
     """
 
     pipeline: Pipeline
@@ -62,6 +65,7 @@ class Request:
     free: tuple[Free, ...] = ()
     rounds: int = 3
     seed: int = 0
+    place: Place | None = None
 
     def variants(self) -> list[dict[str, Any]]:
         """Return every combination of the free settings' values, the file's own first.

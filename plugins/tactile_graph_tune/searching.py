@@ -160,11 +160,12 @@ def _variants(
         for s in settings
     ]
     kept: set[str] = set()
+    rounds = Rounds(request.rounds, request.seed, told, request.place)
     while True:
         parted = [d.keeping(kept) for d in given]
         opened = [d.opened() for d in parted]
         also = [c.field for p in parted[0].places.values() for c in p.given]
-        tables = record(opened, also, frames, judged, Rounds(request.rounds, request.seed, told))
+        tables = record(opened, also, frames, judged, rounds)
         nodes = set().union(*(bound(p, t) for p, t in zip(opened, tables, strict=True)))
         stay = {p.name for d in parted for p in d.places.values() if nodes & set(p.nodes)}
         if not stay:

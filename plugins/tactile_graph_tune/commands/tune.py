@@ -15,6 +15,7 @@ from tactile_graph.cli.arguments import (
     parse_span,
     pipeline_argument,
 )
+from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -77,6 +78,7 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               help="Write the tuned pipeline; a file that is there stays.")  # fmt: skip
 @click.option("--plot", metavar="FILE", help="Draw error against time (.png, .svg, .pdf).")
 @click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+@workers_options
 def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Find the guards, the order of rungs and the settings of PIPELINE that are cheapest.
 
@@ -98,7 +100,7 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     )
     request = Request(
         opened, asked.answer, asked.quantity, asked.price, asked.most_loss, asked.most_us,
-        asked.fields, free, asked.rounds, asked.seed,
+        asked.fields, free, asked.rounds, asked.seed, place_asked(asked.workers, asked.on),
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
     try:
@@ -109,6 +111,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     finally:
         bar.stop()
     _show(found)
+    if request.place is not None:
+        told = f"of the table {side_by_side(request.place)}"
+        console().print(told, style="dim", soft_wrap=True)
     for name in _written(found, asked):
         console().print(f"wrote {name}", style="dim", soft_wrap=True)
 
@@ -134,6 +139,8 @@ class _Options:
     written: str | None
     plot: str | None
     json_path: str | None
+    workers: int | None
+    on: str | None
 
 
 def _check_files(asked: _Options) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -83,3 +83,25 @@ class Table:
             self.none[frames],
             self.scored[frames],
         )
+
+
+def joined(tables: Sequence[Table]) -> Table:
+    """Return the table of all frames of several, which have the same columns."""
+    first = tables[0]
+    return Table(
+        {k: _nodes([t.nodes[k] for t in tables]) for k in first.nodes},
+        {k: _fields([t.fields[k] for t in tables]) for k in first.fields},
+        {k: np.concatenate([t.losses[k] for t in tables]) for k in first.losses},
+        np.concatenate([t.none for t in tables]),
+        np.concatenate([t.scored for t in tables]),
+    )
+
+
+def _nodes(parts: Sequence[NodeColumn]) -> NodeColumn:
+    return NodeColumn(*map(np.concatenate, zip(*(vars(p).values() for p in parts), strict=True)))
+
+
+def _fields(parts: Sequence[FieldColumn]) -> FieldColumn:
+    n_read = [max(1, int((~np.isnan(p.values)).sum())) for p in parts]
+    time_us = float(np.average([p.time_us for p in parts], weights=n_read))
+    return FieldColumn(np.concatenate([p.values for p in parts]), time_us)

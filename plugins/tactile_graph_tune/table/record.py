@@ -13,9 +13,10 @@ from tactile_graph import Pipeline, Result
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Skipped
+from tactile_graph.many import Place, Portion, Sharing
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.variants.merge import Member, merge
-from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Reals, Table
+from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Reals, Table, joined
 from tactile_graph_tune.table.fields import guard_fields, value_at
 from tactile_graph_tune.table.losses import LossOf
 
@@ -34,11 +35,15 @@ class Judged(NamedTuple):
 
 
 class Rounds(NamedTuple):
-    """How often everything runs, times being medians; the seed; and who is told how far it is."""
+    """How often everything runs, times being medians; the seed; who is told how far it is; where.
+
+    Without a place everything runs in this process.
+    """
 
     n: int
     seed: int
     told: Told
+    place: Place | None = None
 
 
 def record(
@@ -67,20 +72,60 @@ def record(
     """
     for pipeline in pipelines:
         _check(pipeline)
-    warm_up()  # what answers as plain code meanwhile would be timed as such
-    merged = merge(pipelines, [tuple(p.nodes) for p in pipelines])
-    runner = merged.pipeline.runner(seed=rounds.seed)
-    for frame in frames[:WARM_FRAMES]:
-        runner(frame)
-    rows = [_Rows(p, m, also, judged) for p, m in zip(pipelines, merged.members, strict=True)]
-    for k in range(rounds.n):
-        for i, frame in enumerate(frames):
-            runner.forget()
-            result = runner(frame)
-            for its in rows:
-                its.add(result, first=k == 0)
-            rounds.told(k * len(frames) + i + 1, rounds.n * len(frames))
-    return [its.table(len(frames)) for its in rows]
+    given = _Given(pipelines, also, judged, rounds.n, rounds.seed)
+    if rounds.place is None:
+        return _Recorder(given).tables(frames, rounds.told)
+    parts: list[list[Table]] = []
+    with Sharing(rounds.place, _Recorder, given) as workers:
+        for tables in workers.over_frames(iter(frames)):
+            parts.append(tables)
+            rounds.told(rounds.n * sum(t[0].n for t in parts), rounds.n * len(frames))
+        if workers.left_out:
+            raise UsageError(f"frame {workers.left_out[0]}: workers died of it each time")
+    return [joined(of_one) for of_one in zip(*parts, strict=True)]
+
+
+class _Given(NamedTuple):
+    """What is recorded of frames."""
+
+    pipelines: Sequence[Pipeline]
+    also: Sequence[str]
+    judged: Judged
+    n_rounds: int
+    seed: int
+
+
+class _Recorder:
+    """Runs everything on frames, in this process or in a worker."""
+
+    def __init__(self, given: _Given) -> None:
+        warm_up()  # what answers as plain code meanwhile would be timed as such
+        self._given = given
+        asked = [tuple(p.nodes) for p in given.pipelines]
+        self._merged = merge(given.pipelines, asked)
+        self._runner = self._merged.pipeline.runner(seed=given.seed)
+        self._warm = False
+
+    def __call__(self, portion: Portion) -> list[Table]:
+        """Return the tables of a portion: what a worker does."""
+        return self.tables(portion.frames()[1], lambda n, of: None)
+
+    def tables(self, frames: Sequence[Frame], told: Told) -> list[Table]:
+        """Return the table of each pipeline."""
+        given, runner = self._given, self._runner
+        for frame in [] if self._warm else frames[:WARM_FRAMES]:
+            runner(frame)
+        self._warm = True
+        members = zip(given.pipelines, self._merged.members, strict=True)
+        rows = [_Rows(p, m, given.also, given.judged) for p, m in members]
+        for k in range(given.n_rounds):
+            for i, frame in enumerate(frames):
+                runner.forget()
+                result = runner(frame)
+                for its in rows:
+                    its.add(result, first=k == 0)
+                told(k * len(frames) + i + 1, given.n_rounds * len(frames))
+        return [its.table(len(frames)) for its in rows]
 
 
 def _check(pipeline: Pipeline) -> None:
