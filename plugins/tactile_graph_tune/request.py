@@ -38,12 +38,15 @@ class Request:
     quantity : str, optional
         Of its error; the first there is if not given.
     price : float, optional
-        What no answer, and one where nothing lies, counts.
-    most_loss : float, optional
-        Find the cheapest whose mean error is no greater. If neither this nor ``most_us`` is given:
-        than that of the pipeline as it is, or of its best rung always run, whichever is less.
+        What no answer counts, and the most that one can: who is off by it has missed.
+    most_error : float, optional
+        Find the cheapest whose mean error, where something lies, is no greater; no greater than
+        that of the pipeline as it is if neither this nor ``most_us`` is given.
+    most_missed, most_false : float, optional
+        Shares of the frames where something lies that may be missed, and of those where nothing
+        does that may be answered; the pipeline's own if not given.
     most_us : float, optional
-        Find the best that takes no longer, mean over the frames.
+        Find the least error that takes no longer, mean over the frames.
     fields : tuple of str
         The only fields that guards may ask; all where empty.
     free : tuple of Free
@@ -56,7 +59,9 @@ class Request:
     answer: str = ""
     quantity: str | None = None
     price: float | None = None
-    most_loss: float | None = None
+    most_error: float | None = None
+    most_missed: float | None = None
+    most_false: float | None = None
     most_us: float | None = None
     fields: tuple[str, ...] = ()
     free: tuple[Free, ...] = ()

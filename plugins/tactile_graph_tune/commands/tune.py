@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".svg", ".pdf")
 EPILOG = """\b
-Without a goal it finds what is cheapest and errs no more than the pipeline as it is, or than its
-best rung always run, whichever errs less. Half of the frames choose, the others report.
+Without a goal it finds what is cheapest and, against the pipeline as it is, errs no more where
+something lies, misses no more, and answers no more empty frames. Half of the frames choose, the
+others report.
 
 \b
   tactile-graph tune adaptive --frames 400 -o faster.yaml --plot front.png
@@ -61,12 +62,19 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               help="What of it counts: centre, radius, angle, identity, …; the first there is "
               "otherwise.")  # fmt: skip
 @click.option("--price", type=click.FloatRange(min=0.0, min_open=True), metavar="ERROR",
-              help="What no answer counts, and one where nothing lies; no error counts more.  "
+              help="What a missed object counts; an answer off by it has missed.  "
               "[default: 2 cm, 45°, 1 for a wrong name]")  # fmt: skip
-@click.option("--error-at-most", "most_loss", type=click.FloatRange(min=0.0), metavar="ERROR",
-              help="Find the cheapest whose mean error is no greater.")  # fmt: skip
+@click.option("--error-at-most", "most_error", type=click.FloatRange(min=0.0), metavar="ERROR",
+              help="Find the cheapest whose mean error, where something lies, is no greater.  "
+              "[default: as it is]")  # fmt: skip
+@click.option("--missed-at-most", "most_missed", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+              help="Miss no more of the frames where something lies.  [default: as it is]",
+              )  # fmt: skip
+@click.option("--false-at-most", "most_false", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+              help="Answer no more of the frames where nothing lies.  [default: as it is]",
+              )  # fmt: skip
 @click.option("--time-at-most", "most_us", type=click.FloatRange(min=0.0), metavar="µS",
-              help="Find the best that takes no longer, mean over the frames.")  # fmt: skip
+              help="Find the least error that takes no longer, mean over the frames.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
 @click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True,
@@ -97,8 +105,8 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
     request = Request(
-        opened, asked.answer, asked.quantity, asked.price, asked.most_loss, asked.most_us,
-        asked.fields, free, asked.rounds, asked.seed,
+        opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
+        asked.most_false, asked.most_us, asked.fields, free, asked.rounds, asked.seed,
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
     try:
@@ -127,7 +135,9 @@ class _Options:
     answer: str
     quantity: str | None
     price: float | None
-    most_loss: float | None
+    most_error: float | None
+    most_missed: float | None
+    most_false: float | None
     most_us: float | None
     rounds: int
     seed: int
@@ -138,7 +148,7 @@ class _Options:
 
 def _check_files(asked: _Options) -> None:
     """Refuse what could not be written in the end, before the work."""
-    if asked.most_loss is not None and asked.most_us is not None:
+    if asked.most_error is not None and asked.most_us is not None:
         raise UsageError("--error-at-most and --time-at-most: one of them is the goal, not both")
     if asked.written is not None:
         if not asked.written.endswith((".yaml", ".yml")):

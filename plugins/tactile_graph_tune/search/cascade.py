@@ -17,7 +17,8 @@ from tactile_graph import Pipeline
 from tactile_graph.inspect import FRAME, Node, NodeKind, Ref
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import Chosen, Declared
-from tactile_graph_tune.table.columns import Flags, Reals, Table
+from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.kinds import Flags, Reals
 
 YES = np.True_
 
@@ -100,6 +101,7 @@ class _Weighing:
         self.settled: dict[str, tuple[Any, Any]] = {}
         """Node -> where it has a value, and where it failed; each after what it reads."""
         self.passed: dict[str, Any] = {FRAME: YES}
+        self.none = table.truths.none
 
     def predicted(self) -> Predicted:
         for ref in self.cascade.outputs:
@@ -192,8 +194,8 @@ class _Weighing:
         node = self.nodes.get(ref.node)
         if node is None or node.kind is not NodeKind.FIRST_OF or not ref.whole:
             ok, _ = self._state(ref.node)
-            return np.where(ok, self.table.losses[str(ref)], self.table.none)
-        found: Any = self.table.none
+            return np.where(ok, self.table.losses[str(ref)], self.none)
+        found: Any = self.none
         passed = self.passed[ref.node]
         for choice in reversed(self._choices(node)):
             ok, _ = self._state(choice.node)

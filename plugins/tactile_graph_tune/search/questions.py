@@ -11,8 +11,9 @@ from tactile_graph import Pipeline
 from tactile_graph_tune.choices.comparisons import HOLDS, HOLDS_NOT, Comparison
 from tactile_graph_tune.choices.declared import Declared, Place
 from tactile_graph_tune.search.cascade import Asked
-from tactile_graph_tune.table.columns import Reals, Table
+from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.fields import is_flag
+from tactile_graph_tune.table.kinds import Reals
 
 SHARES = (0.01, 0.03, 0.06, *np.linspace(0.1, 0.9, 13), 0.94, 0.97, 0.99)
 """Shares of the frames on either side of the levels that are tried first."""

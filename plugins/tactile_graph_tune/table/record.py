@@ -15,8 +15,9 @@ from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Skipped
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.variants.merge import Member, merge
-from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Reals, Table
+from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Table
 from tactile_graph_tune.table.fields import guard_fields, value_at
+from tactile_graph_tune.table.kinds import Reals, Truths
 from tactile_graph_tune.table.losses import LossOf
 
 WARM_FRAMES = 8
@@ -161,7 +162,7 @@ class _Rows:
             },
             {f.name: _column(f) for f in self._fields},
             {k: np.where(np.isnan(v), price, v) for k, v in lost.items()},
-            np.where(truths > 0, price, 0.0),
+            Truths(truths > 0, price),
             (truths >= 0) & known,
         )
 
