@@ -36,7 +36,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
     ran = rerun(pipelines, frames, tuning.judged, request.rounds, request.seed)
     told("run the last", 1, 1)
     points = {
-        k: Point(k, c, _predicted(tuning, c), _weight(tuning, ran[k])) for k, c in last.items()
+        k: Point(k, c, _predicted(tuning, c), weight_of(tuning, ran[k])) for k, c in last.items()
     }
     (given_us, given), (tuned_us, tuned) = ran[GIVEN], ran[CHOSEN]
     return Tuned(
@@ -52,9 +52,9 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         bound=tuning.bound(),
         everything_us=tuning.everything_us(),
         worths=worths,
-        settings=tuning.variants[tuning.chosen.variant].settings,
+        settings=_settings(tuning, pipelines[CHOSEN]),
         ratio=_interval(tuning, tuned_us, given_us),
-        difference=_weight(tuning, (tuned_us, tuned), (given_us, given)),
+        difference=weight_of(tuning, (tuned_us, tuned), (given_us, given)),
         pipeline=pipelines[CHOSEN],
         text=text,
     )
@@ -86,7 +86,7 @@ Columns = tuple[Reals, Reals]
 """Time and error of each frame that reports."""
 
 
-def _weight(tuning: Tuning, found: Columns, less: Columns | None = None) -> Weight:
+def weight_of(tuning: Tuning, found: Columns, less: Columns | None = None) -> Weight:
     """Return the means of some columns, or of what they are more than others."""
     truths = tuning.truths.taken(tuning.split.reporting)
     time_us, loss = found
@@ -100,7 +100,7 @@ def _weight(tuning: Tuning, found: Columns, less: Columns | None = None) -> Weig
 
 
 def _predicted(tuning: Tuning, choice: Choice) -> Weight:
-    return _weight(tuning, _columns(tuning, choice))
+    return weight_of(tuning, _columns(tuning, choice))
 
 
 def _worth(tuning: Tuning, place: str) -> GuardWorth:
@@ -113,7 +113,7 @@ def _worth(tuning: Tuning, place: str) -> GuardWorth:
         comparisons=choice.chosen[place],
         n_stopped=int(_stopped(tuning, place).sum()),
         saved_share=saved / whole if whole else 0.0,
-        cost=_weight(tuning, found, other),
+        cost=weight_of(tuning, found, other),
         rivals=_rivals(tuning, place),
     )
 
@@ -166,6 +166,14 @@ def _text(tuning: Tuning, worths: tuple[GuardWorth, ...]) -> str:
     own = tuning.request.pipeline
     head = {"pipeline": f"{own.name}-tuned", **_parent(own)}
     return its.text(tuning.chosen.order, tuning.chosen.chosen, head, notes)
+
+
+def _settings(tuning: Tuning, tuned: Pipeline) -> dict[str, Any]:
+    """Return what was chosen of the free settings, of nodes that are left."""
+    chosen = tuning.variants[tuning.chosen.variant].settings
+    nodes = {name: name.rpartition(".")[0] for name in chosen}
+    left = {n for n in nodes.values() if {n, n.replace("/", "_")} & set(tuned.nodes)}
+    return {name: value for name, value in chosen.items() if nodes[name] in left}
 
 
 def _parent(own: Pipeline) -> Mapping[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -50,6 +51,8 @@ class Request:
     fields : tuple of str
         The only fields that guards may ask; all where empty.
     free : tuple of Free
+        Settings that may be chosen, besides those that the file marks; instead of its values where
+        it marks the same.
     rounds : int
         How often every frame is run: times are medians.
     seed : int
@@ -83,15 +86,15 @@ class Request:
                 raise UsageError(
                     f"--free {free.name}: pipeline {self.pipeline.name!r} has no such setting{hint}"
                 )
-        n = int(np.prod([len(f.values) for f in self.free]))
+        every = {**self.pipeline.free, **{f.name: f.values for f in self.free}}
+        n = math.prod(map(len, every.values()))
         if n > MOST_VARIANTS:
             raise UsageError(
-                f"--free: {n} combinations of values, at most {MOST_VARIANTS}: name fewer values "
-                "(node.setting=low:high:count)"
+                f"{', '.join(every)}: {n} combinations of values, at most {MOST_VARIANTS}: name "
+                "fewer values (--free node.setting=low:high:count), or mark fewer settings free"
             )
-        names = [f.name for f in self.free]
-        combined = product(*(f.values for f in self.free)) if self.free else ()
-        return [{}, *(dict(zip(names, values, strict=True)) for values in combined)]
+        combined = product(*every.values()) if every else ()
+        return [{}, *(dict(zip(every, values, strict=True)) for values in combined)]
 
 
 def parse_free(text: str) -> Free:

@@ -128,7 +128,7 @@ def searched(
 def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:
     variant = variants[choice.variant]
     found = variant.predicted(choice)
-    return variant.table.truths.taken(rows).means(found.time_us[rows], found.loss[rows])
+    return found.taken(rows).means(variant.table.truths.taken(rows))
 
 
 # -- before the search -----------------------------------------------------------------------
@@ -161,7 +161,7 @@ def _check_choices(request: Request, spaces: Sequence[Space]) -> None:
         raise UsageError(
             f"pipeline {request.pipeline.name!r}: nothing to choose: it has no guard, no first_of "
             "that answers, and no costly step before which a field is known; mark a setting free "
-            "(--free node.setting=low:high)"
+            "(free: {setting: [values]}, or --free node.setting=low:high)"
         )
 
 
@@ -298,4 +298,4 @@ def _aims(whole_us: float, price: float, limits: Means) -> list[Aim]:
 
 def _alone(space: Space, choice: Choice) -> Means:
     found = space.cascade.predicted(space.table, choice.order, choice.chosen)
-    return space.table.truths.means(found.time_us, found.loss)
+    return found.means(space.table.truths)

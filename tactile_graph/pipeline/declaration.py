@@ -10,7 +10,7 @@ from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
 TOP_KEYS = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
-NODE_KEYS = ("step", "use", "first_of", "in", "with", "when", "each", "about")
+NODE_KEYS = ("step", "use", "first_of", "in", "with", "free", "when", "each", "about")
 SOURCE_KEYS = ("step", "with")
 RESERVED = ("frame", "and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
 MOST_NODES = 2_000
@@ -40,6 +40,7 @@ class NodeDeclaration:
     first_of: list[str] | None = None
     inputs: Any = None
     settings: dict[str, Any] = field(default_factory=dict)
+    free: dict[str, list[Any]] = field(default_factory=dict)
     when: str | None = None
     each: bool = False
 
@@ -228,13 +229,14 @@ class _Declarer:
         self.text(body, "about", *path, what=f"{what}, 'about'")
         if "first_of" in body:
             node.first_of = self.refs(body["first_of"], (*path, "first_of"), f"{what}, 'first_of'")
-            for key in ("in", "with", "each"):
+            for key in ("in", "with", "free", "each"):
                 if key in body:
                     self.problem(
                         f"{what}: {key!r} makes no sense beside 'first_of'", *path, key, key=True
                     )
         node.inputs = self.inputs(body.get("in"), (*path, "in"), what)
         node.settings = self.mapping(body.get("with"), (*path, "with"), what)
+        node.free = self.free(body.get("free"), (*path, "free"), what)
         when = body.get("when")
         given = {"when": self.document.spelled(*path, "when")} if isinstance(when, bool) else body
         node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
@@ -245,6 +247,19 @@ class _Declarer:
             )
         node.each = each is True
         return node
+
+    def free(self, data: Any, path: Path, what: str) -> dict[str, list[Any]]:
+        if data is None:
+            return {}
+        wanted = "a mapping of settings to lists of the values they may take"
+        if not isinstance(data, dict):
+            self.problem(f"{what}: 'free' must be {wanted}, got {kind_of(data)}", *path)
+            return {}
+        for name, values in data.items():
+            if not isinstance(values, list) or not values:
+                text = f"{what}, 'free': {name!r} needs a list of the values it may take"
+                self.problem(f"{text}, got {kind_of(values)}", *path, name)
+        return {k: v for k, v in data.items() if isinstance(v, list) and v}
 
     def refs(self, data: Any, path: Path, what: str) -> list[str]:
         if not isinstance(data, list) or not data:

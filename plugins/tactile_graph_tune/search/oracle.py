@@ -81,7 +81,8 @@ class Bound:
         missed = losses >= truths.price
         self._share, self._n = float(full.mean()), int(full.sum())
         self._time_us, n_options = times.ravel(), len(times)
-        self._limited = np.stack([losses.ravel(), missed.ravel()]) / max(1, self._n)
+        limited: Reals = np.stack([losses.ravel(), missed.ravel()]).astype(np.float64)
+        self._limited = limited / max(1, self._n)
         # Of each frame's options, side by side in the columns, the shares sum to 1. (SciPy's types
         # know nothing of sparse constraints, which linprog takes.)
         self._shares: Any = sparse.hstack([sparse.identity(self._n, format="csr")] * n_options)
@@ -95,4 +96,6 @@ class Bound:
             self._time_us, self._limited, np.array([error, missed]) + SLACK,
             self._shares, np.ones(self._n),
         )  # fmt: skip
-        return self._share * float(found.fun) / self._n if found.success else float("nan")
+        if found.fun is None:
+            return float("nan")
+        return self._share * float(found.fun) / self._n

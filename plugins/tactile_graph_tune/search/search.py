@@ -143,10 +143,7 @@ class Search:
         for place, questions in more.items():
             asked[place] = [*asked.get(place, ()), *questions]
         found = self.space.cascade(table, order, asked)
-        shape = (len(added), table.n)
-        means = table.truths.means(
-            np.broadcast_to(found.time_us, shape), np.broadcast_to(found.loss, shape)
-        )
+        means = found.spread((len(added), table.n)).means(table.truths)
         made: dict[int, Chosen] = {}
 
         def chosen_at(k: int) -> Chosen:
@@ -228,4 +225,4 @@ def pruned(space: Space, choice: Choice, limits: Means, by_time: bool = False) -
 
 def _means(space: Space, choice: Choice) -> Means:
     found = space.cascade.predicted(space.table, choice.order, choice.chosen)
-    return space.table.truths.means(found.time_us, found.loss)
+    return found.means(space.table.truths)

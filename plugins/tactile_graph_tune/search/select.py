@@ -35,7 +35,7 @@ class Goal:
     """What is sought: the cheapest within limits on error, or the best within one on time.
 
     Each is None where it was not said: then an error, a share of misses, or one of false answers
-    may be no greater than ``given``'s, and a time may be anything.
+    may be no greater than ``given``'s, and a time may be anything. Steps never fail in more frames.
     """
 
     given: Choice
@@ -57,6 +57,7 @@ class Goal:
             inf if self.by_time else _said(self.error, own.error),
             _said(self.missed, own.missed),
             _said(self.false, own.false),
+            float(own.failed),
         )
 
     def sought(self, means: Means) -> float:

@@ -31,12 +31,15 @@ class Means(NamedTuple):
         Share of the frames where something lies of which nothing answers within the price.
     false : float
         Share of the frames where nothing lies that are answered all the same.
+    failed : float
+        Share of the frames in which a step fails: reported and counted, whatever answers then.
     """
 
     time_us: Any
     error: Any
     missed: Any
     false: Any
+    failed: Any
 
     def within(self, limits: Means) -> Any:
         """Return where none of them is greater than its limit."""
@@ -76,11 +79,12 @@ class Truths:
             ("false", (loss > 0.0) & ~full, ~full),
         ]
 
-    def means(self, time_us: Reals, loss: Reals) -> Means:
+    def means(self, time_us: Reals, loss: Reals, failed: Flags) -> Means:
         """Return the means of columns of shape (n_frames,) or (n_choices, n_frames).
 
         Where nothing lies in any frame there is no error, and nothing false where something lies in
         all.
         """
-        kinds = [its.sum(axis=-1) / max(1, of.sum()) for _, its, of in self.parts(loss)]
-        return Means(time_us.mean(axis=-1), *kinds)
+        parts = self.parts(loss)
+        error, missed, false = (its.sum(axis=-1) / max(1, of.sum()) for _, its, of in parts)
+        return Means(time_us.mean(axis=-1), error, missed, false, failed.mean(axis=-1))

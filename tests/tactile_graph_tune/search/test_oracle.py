@@ -34,7 +34,7 @@ def test_no_choice_of_one_option_for_all_lies_below_it():
     truths = Truths(rng.random(30) < 0.6, PRICE)
     bound = Bound(Options(times, losses), truths)
     for k in range(4):
-        own = truths.means(times[k], losses[k])
+        own = truths.means(times[k], losses[k], np.zeros(30, bool))
         assert bound.time_at(own.error, own.missed) <= own.time_us
 
 
