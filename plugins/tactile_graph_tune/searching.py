@@ -20,7 +20,7 @@ from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
 from tactile_graph_tune.search.search import Aim, Search, Space, orders_of, pruned
-from tactile_graph_tune.search.select import Allowed, Goal, Rows, selected
+from tactile_graph_tune.search.select import Goal, Rows, merged, selected
 from tactile_graph_tune.split import Split, halves_of, split_of
 from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.kinds import Means, Truths
@@ -105,20 +105,23 @@ def searched(
     spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
     _check_choices(request, spaces)
 
-    own, always = spaces[0], _always(spaces[0])
-    goal = Goal(request.most_us, request.most_error, request.most_missed, request.most_false)
-    halves = [
-        np.flatnonzero(np.isin(split.choosing, rows))
-        for rows in halves_of(every, split, request.seed)
-    ]
-    allowed = Allowed(goal, own.table.truths, own.predicted(own.given), halves)
-    front = Front()
-    for k, space in enumerate(spaces):
-        _search(space, own, front, allowed)
-        told("weigh choices", k + 1, len(spaces))
-    candidates = [own.given, always, *(p.choice for p in front.points)]
-    chosen = selected(allowed, candidates, lambda c: spaces[c.variant].predicted(c))
-    chosen = pruned(spaces[chosen.variant], chosen, allowed)
+    def weigh(choice: Choice, rows: Rows) -> Means:
+        return _means(variants, choice, rows)
+
+    always = _always(spaces[0])
+    goal = Goal(spaces[0].given, request.most_us, request.most_error,
+                request.most_missed, request.most_false)  # fmt: skip
+    folds = halves_of(every, split, request.seed)
+    fronts = [Front() for _ in folds]
+    for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
+        half = [_space(v, v.table.taken(rows), request) for v in variants]
+        _search(half, front, goal.limits(rows, weigh))
+        told("weigh choices", k + 1, len(folds))
+    found = [p.choice for front in fronts for p in front.points]
+    chosen = selected(goal, [goal.given, always, *found], folds, weigh)
+    limits = goal.limits(split.choosing, weigh)
+    chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
+    front = merged(fronts, found, split.choosing, weigh, limits)
     return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
 
 
@@ -272,13 +275,14 @@ def _always(space: Space) -> Choice:
 # -- the search ------------------------------------------------------------------------------
 
 
-def _search(space: Space, own: Space, front: Front, allowed: Allowed) -> None:
-    """Search one combination of the free settings' values; ``own`` is that of the file."""
+def _search(spaces: Sequence[Space], front: Front, limits: Means) -> None:
+    own = spaces[0]
     whole_us = float(_alone(own, Choice(0, own.given.order, {})).time_us)
-    aims = _aims(whole_us, own.table.truths.price, allowed.limits)
-    rungs = space.given.order
-    alone = [float(_alone(space, Choice(space.variant, (r,), {})).time_us) for r in rungs]
-    Search(space, front, aims, allowed).run(orders_of(rungs, alone))
+    aims = _aims(whole_us, own.table.truths.price, limits)
+    allowed = limits._replace(time_us=inf, error=inf)
+    for space in spaces:
+        alone = [float(_alone(space, Choice(0, (r,), {})).time_us) for r in space.given.order]
+        Search(space, front, aims, allowed).run(orders_of(space.given.order, alone))
 
 
 def _aims(whole_us: float, price: float, limits: Means) -> list[Aim]:
@@ -293,4 +297,5 @@ def _aims(whole_us: float, price: float, limits: Means) -> list[Aim]:
 
 
 def _alone(space: Space, choice: Choice) -> Means:
-    return space.predicted(choice).means(space.table.truths)
+    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
+    return found.means(space.table.truths)

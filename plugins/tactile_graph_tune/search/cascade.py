@@ -65,11 +65,6 @@ class Predicted(NamedTuple):
         """Return the means of each choice over the frames."""
         return truths.means(self.time_us, self.loss, self.failed)
 
-    def at(self, k: int) -> Predicted:
-        """Return one of many choices."""
-        columns: list[Any] = [column[k] for column in self]
-        return Predicted(*columns)
-
     def taken(self, frames: NDArray[np.int64]) -> Predicted:
         """Return some frames of one choice."""
         columns: list[Any] = [column[frames] for column in self]

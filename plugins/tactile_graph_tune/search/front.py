@@ -6,9 +6,11 @@ import bisect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from tactile_graph_tune.choices.declared import Chosen
 from tactile_graph_tune.search.cascade import Order
-from tactile_graph_tune.table.kinds import Means
+from tactile_graph_tune.table.kinds import Flags, Reals
 
 
 @dataclass(frozen=True)
@@ -32,9 +34,6 @@ class Weighed:
     choice: Choice
 
 
-Made = Callable[[int], Choice]
-
-
 @dataclass
 class Front:
     """The Pareto front of all that was weighed, by time; the error falls along it.
@@ -48,35 +47,30 @@ class Front:
     points: list[Weighed] = field(default_factory=list)
     n_weighed: int = 0
 
-    def enter(self, means: Means, allowed: Callable[[int], bool], choice: Made) -> None:
-        """Enter choices by their means, of shape (n_choices,).
+    def enter(
+        self, times_us: Reals, errors: Reals, allowed: Flags, choice: Callable[[int], Choice]
+    ) -> None:
+        """Enter choices by their means, shapes (n_choices,).
 
         Parameters
         ----------
-        means : Means
-        allowed : callable
-            Whether one may stand on the front, by its number; asked only of what would.
+        times_us, errors : ndarray of float64
+        allowed : ndarray of bool
+            Those not allowed are counted and no more.
         choice : callable
             Makes one by its number, if it is needed.
         """
-        times, errors = means.time_us, means.error
-        self.n_weighed += len(times)
-        for k in sorted(range(len(times)), key=lambda k: (times[k], errors[k])):
-            time_us, error = float(times[k]), float(errors[k])
-            if not self.beats(time_us, error) and allowed(k):
-                self._enter(Weighed(time_us, error, choice(k)))
+        self.n_weighed += len(times_us)
+        for k in sorted(np.flatnonzero(allowed), key=lambda k: (times_us[k], errors[k])):
+            self._enter(float(times_us[k]), float(errors[k]), choice, int(k))
 
-    def beats(self, time_us: float, error: float) -> bool:
-        """Return whether something on the front is as good in both."""
+    def _enter(self, time_us: float, error: float, choice: Callable[[int], Choice], k: int) -> None:
         at = bisect.bisect_right(self.points, time_us, key=lambda p: p.time_us)
-        return bool(at) and self.points[at - 1].error <= error
-
-    def _enter(self, new: Weighed) -> None:
-        time_us, error = new.time_us, new.error
-        at = bisect.bisect_right(self.points, time_us, key=lambda p: p.time_us)
+        if at and self.points[at - 1].error <= error:
+            return
         end = at
         while end < len(self.points) and self.points[end].error >= error:
             end += 1
         if at and self.points[at - 1].time_us == time_us:
             at -= 1
-        self.points[at:end] = [new]
+        self.points[at:end] = [Weighed(time_us, error, choice(k))]

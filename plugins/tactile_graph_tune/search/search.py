@@ -18,10 +18,9 @@ import numpy as np
 
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import Chosen
-from tactile_graph_tune.search.cascade import Asked, Cascade, Order, Predicted
+from tactile_graph_tune.search.cascade import Asked, Cascade, Order
 from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.questions import Batch, Questions
-from tactile_graph_tune.search.select import Allowed
 from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.kinds import Means, Reals
 
@@ -43,10 +42,6 @@ class Space:
     table: Table
     questions: Questions
     given: Choice
-
-    def predicted(self, choice: Choice) -> Predicted:
-        """Return what a choice comes to in each of the frames."""
-        return self.cascade.predicted(self.table, choice.order, choice.chosen)
 
 
 @dataclass(frozen=True)
@@ -84,12 +79,12 @@ class Search:
     space : Space
     front : Front
     aims : sequence of Aim
-    allowed : Allowed
-        Tells what may stand on the front.
+    limits : Means
+        What a choice on the front may not exceed.
     """
 
-    def __init__(self, space: Space, front: Front, aims: Sequence[Aim], allowed: Allowed) -> None:
-        self.space, self.front, self.aims, self.allowed = space, front, aims, allowed
+    def __init__(self, space: Space, front: Front, aims: Sequence[Aim], limits: Means) -> None:
+        self.space, self.front, self.aims, self.limits = space, front, aims, limits
         self._best: dict[tuple[Order, Aim], tuple[float, Chosen]] = {}
 
     def run(self, orders: Sequence[Order]) -> None:
@@ -148,8 +143,7 @@ class Search:
         for place, questions in more.items():
             asked[place] = [*asked.get(place, ()), *questions]
         found = self.space.cascade(table, order, asked)
-        found = found.spread((len(added), table.n))
-        means = found.means(table.truths)
+        means = found.spread((len(added), table.n)).means(table.truths)
         made: dict[int, Chosen] = {}
 
         def chosen_at(k: int) -> Chosen:
@@ -159,10 +153,9 @@ class Search:
 
         variant = self.space.variant
         self.front.enter(
-            means,
-            lambda k: self.allowed(found.at(k), by_time_too=False),
+            means.time_us, means.error, means.within(self.limits),
             lambda k: Choice(variant, order, chosen_at(k)),
-        )
+        )  # fmt: skip
         self._note(order, means, chosen_at, sum(map(len, chosen.values())) + len(more))
 
     def _note(
@@ -206,16 +199,30 @@ def orders_of(rungs: Order, mean_us: Sequence[float]) -> list[Order]:
     return list(dict.fromkeys([rungs, *(tuple(rungs[k] for k in o) for o in found)]))
 
 
-def pruned(space: Space, choice: Choice, allowed: Allowed) -> Choice:
-    """Return a choice without the comparisons that bring next to nothing."""
-    sought = allowed.goal.sought
-    best = sought(space.predicted(choice).means(space.table.truths))
+def pruned(space: Space, choice: Choice, limits: Means, by_time: bool = False) -> Choice:
+    """Return a choice without the comparisons that bring next to nothing.
+
+    Parameters
+    ----------
+    space : Space
+    choice : Choice
+    limits : Means
+        Over the frames of the space.
+    by_time : bool
+        Whether the error is to be least, not the time.
+    """
+    best = _means(space, choice)
     for place, comparisons in choice.chosen.items():
         for comparison in comparisons:
             left = tuple(c for c in choice.chosen[place] if c != comparison)
             simpler = replace(choice, chosen={**choice.chosen, place: left})
-            found = space.predicted(simpler)
-            now = sought(found.means(space.table.truths))
-            if now <= best * (1.0 + 2.0 * GAIN) and allowed(found):
-                choice, best = simpler, now
+            found = _means(space, simpler)
+            sought, most = (m.error if by_time else m.time_us for m in (found, best))
+            if found.within(limits) and sought <= most * (1.0 + 2.0 * GAIN):
+                choice, best = simpler, found
     return replace(choice, chosen={p: cs for p, cs in choice.chosen.items() if cs})
+
+
+def _means(space: Space, choice: Choice) -> Means:
+    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
+    return found.means(space.table.truths)

@@ -1,8 +1,7 @@
-"""What may be taken of all that is weighed: what keeps every limit on either half of the frames.
+"""Which of all that was found is taken: what holds on frames that the search did not see either.
 
-A choice that is best on the frames it was searched by looks better than it is. So it has to keep
-its limits on both halves of these frames, whole recordings on one side, and what it errs more than
-the pipeline as it is, in the mean, has to lie a standard error below 0, or be 0 in every frame.
+A choice that is best on the frames it was searched by looks better than it is. So the frames that
+choose are halved, whole recordings on one side: what one half finds has to hold on the other.
 """
 
 from __future__ import annotations
@@ -16,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
-from tactile_graph_tune.search.cascade import Predicted
-from tactile_graph_tune.search.front import Choice
-from tactile_graph_tune.table.kinds import SLACK, Means, Truths
+from tactile_graph_tune.search.front import Choice, Front
+from tactile_graph_tune.table.kinds import Means
 
 Rows = NDArray[np.int64]
-SURE = 1.0
-"""Standard errors by which a choice has to be better than what it takes the place of."""
+Weigh = Callable[[Choice, Rows], Means]
+"""Gives the means of a choice over some frames."""
 
 OPTIONS = {
     "time_us": ("--time-at-most", "the cheapest choice takes {:.3g} µs a frame"),
@@ -37,10 +35,10 @@ class Goal:
     """What is sought: the cheapest within limits on error, or the best within one on time.
 
     Each is None where it was not said: then an error, a share of misses, or one of false answers
-    may be no greater than that of the pipeline as given, and a time may be anything. Steps never
-    fail in more frames.
+    may be no greater than ``given``'s, and a time may be anything. Steps never fail in more frames.
     """
 
+    given: Choice
     time_us: float | None = None
     error: float | None = None
     missed: float | None = None
@@ -51,14 +49,15 @@ class Goal:
         """Whether time is limited, and the least error sought."""
         return self.time_us is not None
 
-    def limits(self, given: Means) -> Means:
-        """Return what may not be exceeded on some frames, ``given`` being today's."""
+    def limits(self, rows: Rows, weigh: Weigh) -> Means:
+        """Return what may not be exceeded on some frames."""
+        own = weigh(self.given, rows)
         return Means(
             inf if self.time_us is None else self.time_us,
-            inf if self.by_time else _said(self.error, given.error),
-            _said(self.missed, given.missed),
-            _said(self.false, given.false),
-            float(given.failed),
+            inf if self.by_time else _said(self.error, own.error),
+            _said(self.missed, own.missed),
+            _said(self.false, own.false),
+            float(own.failed),
         )
 
     def sought(self, means: Means) -> float:
@@ -70,81 +69,54 @@ def _said(limit: float | None, own: Any) -> float:
     return float(own) if limit is None else limit
 
 
-class Allowed:
-    """Tells of choices whether they keep every limit.
+def selected(
+    goal: Goal, candidates: Sequence[Choice], folds: Sequence[Rows], weigh: Weigh
+) -> Choice:
+    """Return the choice that comes nearest to the goal, of those within its limits on either half.
 
     Parameters
     ----------
     goal : Goal
-    truths : Truths
-        Of the frames that choose.
-    given : Predicted
-        What the pipeline as given comes to in them.
-    halves : sequence of ndarray of int64
-        The frames in two halves.
-    """
-
-    def __init__(
-        self, goal: Goal, truths: Truths, given: Predicted, halves: Sequence[Rows]
-    ) -> None:
-        self.goal, self.truths, self.given = goal, truths, given
-        self.limits = goal.limits(given.means(truths))
-        self._halves = [
-            (rows, truths.taken(rows), goal.limits(given.taken(rows).means(truths.taken(rows))))
-            for rows in halves
-        ]
-
-    def __call__(self, found: Predicted, by_time_too: bool = True) -> bool:
-        """Return whether a choice keeps every limit on either half, surely that on its error.
-
-        With ``by_time_too`` false only misses, false answers and failures count: what may stand on
-        the front.
-        """
-        for rows, truths, limits in self._halves:
-            most = limits if by_time_too else limits._replace(time_us=inf, error=inf)
-            if not found.taken(rows).means(truths).within(most):
-                return False
-        return not by_time_too or self._surely(found)
-
-    def _surely(self, found: Predicted) -> bool:
-        """Return whether the error is no greater than as given, were other frames drawn, too."""
-        if self.goal.by_time or self.goal.error is not None or not self.truths.full.any():
-            return True
-        more = (found.loss - self.given.loss)[self.truths.full]
-        return bool(more.mean() + SURE * more.std() / np.sqrt(len(more)) <= SLACK)
-
-
-def selected(
-    allowed: Allowed, candidates: Sequence[Choice], predict: Callable[[Choice], Predicted]
-) -> Choice:
-    """Return the choice that comes nearest to the goal, of those within its limits.
-
-    Parameters
-    ----------
-    allowed : Allowed
     candidates : sequence of Choice
-        What was found, and what was there before.
-    predict : callable
-        Gives what a choice comes to in the frames that choose.
+        What the halves found, and what was there before.
+    folds : sequence of ndarray of int64
+        The rows of each half.
+    weigh : callable
 
     Raises
     ------
     UsageError
         If none is within the limits.
     """
+    limits = [goal.limits(rows, weigh) for rows in folds]
+    both = np.concatenate(list(folds))
     best: tuple[float, Choice] | None = None
-    every = []
+    found = []
     for choice in candidates:
-        found = predict(choice)
-        means = found.means(allowed.truths)
-        every.append(means)
-        if allowed(found):
-            sought = allowed.goal.sought(means)
+        means = [weigh(choice, rows) for rows in folds]
+        found.append(Means(*np.max(means, axis=0)))
+        if all(m.within(most) for m, most in zip(means, limits, strict=True)):
+            sought = goal.sought(weigh(choice, both))
             if best is None or sought < best[0]:
                 best = (sought, choice)
     if best is None:
-        raise UsageError(_out_of_reach(allowed.goal, every))
+        raise UsageError(_out_of_reach(goal, found))
     return best[1]
+
+
+def merged(
+    fronts: Sequence[Front], choices: Sequence[Choice], rows: Rows, weigh: Weigh, limits: Means
+) -> Front:
+    """Return the front of all that was found, by all the frames that choose.
+
+    Only misses and false answers are limited on it.
+    """
+    whole = Front()
+    means = Means(*np.array([weigh(c, rows) for c in choices]).T)
+    allowed = means.within(limits._replace(time_us=inf, error=inf))
+    whole.enter(means.time_us, means.error, allowed, lambda k: choices[k])
+    whole.n_weighed = sum(front.n_weighed for front in fronts)
+    return whole
 
 
 def _out_of_reach(goal: Goal, found: Sequence[Means]) -> str:

@@ -7,9 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tactile_graph_tune.search.front import Choice, Front
-from tactile_graph_tune.table.kinds import Means
 
-NOTHING = [np.zeros(2)] * 3
 POINTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=30)
 
 
@@ -18,8 +16,8 @@ POINTS = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, m
 def test_it_holds_all_that_is_not_beaten_and_nothing_else(points):
     front = Front()
     for time_us, error in points:
-        means = Means(np.array([time_us] * 2), np.array([error, -1]), *NOTHING)
-        front.enter(means, lambda k: k == 0, lambda k: Choice(0, (), {}))
+        times, errors = np.array([time_us] * 2), np.array([error, -1])
+        front.enter(times, errors, np.array([True, False]), lambda k: Choice(0, (), {}))
     kept = {
         p for p in points
         if not any(q != p and q[0] <= p[0] and q[1] <= p[1] for q in points)
