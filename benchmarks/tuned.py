@@ -72,7 +72,7 @@ class Case:
     other : callable
         Frames of a kind of pad of the second simulator: which, how many, and of which seed.
     fields : tuple of str
-        What guards may ask: what a pad's units, its noise and the weight of things say nothing of.
+        What guards may ask: what tells neither a pad's units and noise nor which thing lies there.
     """
 
     ladder: str
@@ -144,12 +144,12 @@ def streamed(n: int, seed: int) -> Frames:
 
 COUNTED = ("footprint.mask.count", "footprint.mask.fraction", "footprint.rise")
 CIRCLES = ("cells.share", *COUNTED[:2], "even.uneven", "even.n_cells", "even.centre_std_cm",
-           "even.radius_std_cm", "even.radius_cm", "likely.centre_std_cm", "likely.surprise",
-           "likely.fits", "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
+           "even.radius_std_cm", "likely.centre_std_cm", "likely.surprise", "likely.fits",
+           "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
 RECTANGLES = (*COUNTED[:2], "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise",
               "likely.fits", "located.centre_std_cm", "located.angle_std_deg",
-              "located.surprise", "located.fits", "loaded.length_cm",
-              "loaded.breadth_cm")  # fmt: skip
+              "located.surprise", "located.fits", "loaded.misfit", "loaded.ambiguous",
+              "loaded.n_points")  # fmt: skip
 NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distance",
             "near.margin", "likely.known", "likely.probability")  # fmt: skip
 
