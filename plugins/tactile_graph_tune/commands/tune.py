@@ -90,7 +90,7 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
 
     Every node is run on every frame once; from what each took and how far off it was thousands of
     choices are weighed: comparisons with any node's field, the order of the first_of that answers,
-    settings marked --free. Only the last few are run again.
+    settings that the file marks free, or --free. Only the last few are run again.
     """
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
