@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-Reals = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from tactile_graph_tune.table.kinds import Flags, Reals, Truths
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +56,7 @@ class Table:
         Every number and every yes or no that a guard could read, by ``node.field``.
     losses : mapping of str to ndarray, shape (n_frames,)
         For each node that may answer, the error if it does where it has a value.
-    none : ndarray of float64, shape (n_frames,)
-        The error if nothing answers.
+    truths : Truths
     scored : ndarray of bool, shape (n_frames,)
         Frames whose truth is known.
     """
@@ -66,13 +64,13 @@ class Table:
     nodes: Mapping[str, NodeColumn]
     fields: Mapping[str, FieldColumn]
     losses: Mapping[str, Reals]
-    none: Reals
+    truths: Truths
     scored: Flags
 
     @property
     def n(self) -> int:
         """Frames."""
-        return len(self.none)
+        return len(self.scored)
 
     def taken(self, frames: NDArray[np.int64]) -> Table:
         """Return the table of some frames."""
@@ -80,7 +78,7 @@ class Table:
             {k: c.taken(frames) for k, c in self.nodes.items()},
             {k: replace(c, values=c.values[frames]) for k, c in self.fields.items()},
             {k: v[frames] for k, v in self.losses.items()},
-            self.none[frames],
+            self.truths.taken(frames),
             self.scored[frames],
         )
 
@@ -92,7 +90,7 @@ def joined(tables: Sequence[Table]) -> Table:
         {k: _nodes([t.nodes[k] for t in tables]) for k in first.nodes},
         {k: _fields([t.fields[k] for t in tables]) for k in first.fields},
         {k: np.concatenate([t.losses[k] for t in tables]) for k in first.losses},
-        np.concatenate([t.none for t in tables]),
+        Truths(np.concatenate([t.truths.full for t in tables]), first.truths.price),
         np.concatenate([t.scored for t in tables]),
     )
 
