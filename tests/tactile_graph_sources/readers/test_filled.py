@@ -32,7 +32,9 @@ def test_what_the_project_wrote_is_taken_at_its_word(tmp_path: Path) -> None:
     np.savez(ours, values=values, quantity=np.array("raw"), pitch_cm=np.array([1.0, 1.0]))
     np.savez(other, frames=values)
     (kept, *_), _ = frames_of(ours)
-    assert kept.image.valid is None and kept.image.values[1, 1] == -999.0
+    assert kept.image.valid is None
+    assert kept.image.values[1, 1] == -999.0
     (left_out, *_), report = frames_of(other)
-    assert left_out.image.valid is not None and not left_out.image.valid[1, 1]
+    assert left_out.image.valid is not None
+    assert not left_out.image.valid[1, 1]
     assert "recordings with cells of -999 taken for missing" in report.counts
