@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from tactile_graph_sources.inspection.look import Looked
 
 MOST_SHOWN = 6
+MOST_TRIED = 1024
+"""Cells of a frame up to which what is shown is run on it first: without machine code, loops over
+more would take seconds."""
 
 
 class _Works(NamedTuple):
@@ -114,7 +117,7 @@ def _show(
             told = {"file": str(path), "sensor": name, "error": str(looked)}
             say(json.dumps(told) if as_json else f"{name}: {looked}" if name else looked)
             continue
-        works = _works(looked.sensors[0].frames[0])
+        works = _works(looked.sensors[0].frames)
         if as_json:
             commands = [*_commands(looked, works, chosen), _levelled(looked, works, chosen)]
             commands = [command for command in commands if command]
@@ -183,11 +186,14 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
     return f"tactile-graph run {name} {shlex.quote(path)}{told} --set {setting}"
 
 
-def _works(frame: Frame) -> _Works:
-    """Return which of the installed pipelines take a frame such as this."""
+def _works(frames: Sequence[Frame]) -> _Works:
+    """Return which of the installed pipelines take frames such as these.
+
+    Those that are shown have answered the fullest of them.
+    """
     names, about, levels = [], {}, {}
     reasons: dict[str, list[str]] = {}
-    for name, text, trouble, level in _tried(frame):
+    for name, text, trouble, level in _tried(frames[0]):
         about[name], levels[name] = text, level
         if trouble:
             reasons.setdefault(trouble, []).append(name)
@@ -195,7 +201,39 @@ def _works(frame: Frame) -> _Works:
             names.append(name)
     # The plainest first: what says of itself that it is for any recording.
     names.sort(key=lambda n: ("any" not in about[n], n))
+    if frames[0].image.values.size <= MOST_TRIED:
+        fullest = max(frames, key=lambda frame: float(frame.image.filled(0.0).sum()))
+        for name in _first(names, MOST_SHOWN):
+            if trouble := _failure(name, fullest):
+                names.remove(name)
+                reasons.setdefault(trouble, []).append(name)
     return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()}, levels)
+
+
+def _first(names: Sequence[str], n: int) -> Iterator[str]:
+    """Yield names that stand among the first n, though those yielded may be taken out meanwhile."""
+    seen: set[str] = set()
+    while waiting := [name for name in names[:n] if name not in seen]:
+        seen.add(waiting[0])
+        yield waiting[0]
+
+
+def _failure(name: str, frame: Frame) -> str:
+    """Return why a pipeline gives no answer to a frame, empty where it does or skips it."""
+    from tactile_graph.api.pipeline import load
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.inspect import Failed
+
+    pipeline = load(name)
+    try:
+        result = pipeline.runner()(frame)
+    except TactileGraphError as error:
+        return _reason(str(error))
+    outcomes = [result.outcome(output) for output in pipeline.outputs]
+    failed = [outcome for outcome in outcomes if isinstance(outcome, Failed)]
+    if not failed or len(failed) < len(outcomes):
+        return ""
+    return f"its fullest frame fails: {failed[0].error}"
 
 
 def _tried(frame: Frame) -> Iterator[_Tried]:

@@ -127,6 +127,25 @@ def test_pipelines_that_cannot_take_it_are_named_with_the_reason(mat: Path) -> N
 
 
 @pytest.mark.slow
+def test_what_fails_on_the_fullest_frame_is_not_among_the_commands(tmp_path: Path) -> None:
+    """Volts far above what the circuit can give: they say which cells are touched, but no load."""
+    values = np.zeros((14, 8, 8))
+    values[:, 2:5, 2:6] = RNG.uniform(100.0, 900.0, (14, 3, 4))
+    write_npz(
+        tmp_path / "v.npz",
+        [Frame.of(v, 1.0, (0, 0), "volt", index=k) for k, v in enumerate(values)],
+    )
+    shown = run(tmp_path / "v.npz")
+    assert "not circle-by-order: its fullest frame fails: no element is touched" in shown
+    commands = [line.split() for line in shown.splitlines() if " tactile-graph run " in line]
+    assert len(commands) >= 6
+    for command in commands:
+        text = " ".join(command[1:])
+        result = CliRunner().invoke(cli, shlex.split(text))
+        assert result.exit_code == 0, (text, result.output)
+
+
+@pytest.mark.slow
 def test_each_sensor_is_told_for_itself_and_drawn(tmp_path: Path) -> None:
     path = tmp_path / "walk.csv"
     path.write_text(xsensor_text({"LF": film(9, 6, 5), "RF": film(9, 7, 5, seed=1)}))
