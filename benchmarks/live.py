@@ -109,7 +109,9 @@ async def look(address: str, seconds: float, show: Sequence[str] = ()) -> Seen:
     """Look for so long, answering each picture as a page does."""
     seen = Seen()
     end = time.perf_counter() + seconds
-    async with websockets.connect(f"{address}live", max_size=None, compression=None) as page:
+    async with websockets.connect(
+        f"{address}live", max_size=None, compression=None, open_timeout=120
+    ) as page:
         await page.send(json.dumps({"type": "show", "nodes": list(show)}))
         while (left := end - time.perf_counter()) > 0:
             try:
