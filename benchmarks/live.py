@@ -296,7 +296,10 @@ async def remember(running: Running, minutes: float) -> None:
     end = time.perf_counter() + 60 * minutes
     viewer = deaf(running.address)
     while time.perf_counter() < end:
-        seen = await look(running.address, min(30.0, max(1.0, end - time.perf_counter())))
+        try:
+            seen = await look(running.address, min(30.0, max(1.0, end - time.perf_counter())))
+        except (websockets.ConnectionClosed, TimeoutError):  # this process was held up
+            continue
         server, bench = running.memory_mb()
         last = seen.pulses[-1]
         print(f"  {minutes - (end - time.perf_counter()) / 60:5.1f} min: server {server:.1f} MB, "
