@@ -260,3 +260,11 @@ KINDS: dict[str, Kind] = {
     "8 bits": replace(BASE, noise_v=1.6e-3, step_v=10.0 / 256),
 }
 """Name -> kind; all but the one thing named are as in `BASE`."""
+
+FINGERS = replace(KINDS["small objects"], strays=0.01)
+
+MORE_KINDS: dict[str, Kind] = {
+    "fingertips and strays": FINGERS,
+    "light fingertips and strays": replace(FINGERS, discs=((150.0, 1.2), (200.0, 1.5))),
+}
+"""Kinds that are looked at by name only."""

@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from second_simulator import KINDS, Bench, Outline
+from second_simulator import KINDS, MORE_KINDS, Bench, Outline
 
 from tactile_graph import Circle, Frame, Pipeline, Rectangle, load
 from tactile_graph.compiled import warm_up
@@ -122,7 +122,7 @@ def frames_of(kind: str, asked: Asked) -> list[Frame]:
     rng = np.random.default_rng([asked.seed, *kind.encode()])
     frames: list[Frame] = []
     while len(frames) < asked.n_scenes:
-        frames += Bench(KINDS[kind], rng).frames(BENCH_FRAMES, asked.shape)
+        frames += Bench({**KINDS, **MORE_KINDS}[kind], rng).frames(BENCH_FRAMES, asked.shape)
     return [frame.with_index(i) for i, frame in enumerate(frames[: asked.n_scenes])]
 
 
@@ -206,7 +206,9 @@ def main() -> None:
     parser.add_argument("--shape", choices=PIPELINES, default="disc")
     parser.add_argument("--scenes", type=int, default=36)
     parser.add_argument("--seed", type=int, default=2)
-    parser.add_argument("--kinds", nargs="*", choices=KINDS, default=[*KINDS], metavar="KIND")
+    parser.add_argument(
+        "--kinds", nargs="*", choices=[*KINDS, *MORE_KINDS], default=[*KINDS], metavar="KIND"
+    )
     parser.add_argument("--markdown", type=Path)
     args = parser.parse_args()
     asked = Asked(args.shape, args.scenes, args.seed)

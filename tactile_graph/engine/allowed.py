@@ -26,7 +26,7 @@ def where_allowed(option: Option, body: Operation, decider: Decider) -> Operatio
     def operation(state: State) -> None:
         if allows(option, state):
             body(state)
-            ended(option)
+            ended(option, state)
         else:
             state[slot] = skipped
 
@@ -75,7 +75,7 @@ def _rung(source: int, option: Option, whole: Operation, decider: Decider) -> Op
         known = state[slot]
         if known is None and allows(option, state):
             whole(state)
-            ended(option)
+            ended(option, state)
         elif known is None:
             state[slot] = state[source] = skipped
         elif known.__class__ in NO_VALUE:  # left undone by another ladder, for one

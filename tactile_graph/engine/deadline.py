@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.options import Option, Options
+from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.wires.frame import Frame
 
 LATE_SHARE = 0.001
@@ -33,15 +34,21 @@ FADES = 0.03
 is not timed, and one slow spell must not shut it out for ever."""
 PACE = 0.02
 """How fast the allowed risk follows what becomes of frames."""
+RESERVE_RISK = 0.01
+"""Share of times that may exceed what is kept for what must be done: not for any rare stall."""
+MUCH = log(3.0)
+"""A last choice is not spared where one before it is quicker by more than this factor."""
 LEAST_RISK, FIRST_RISK, MOST_RISK = 0.002, 0.01, 0.3
 
 
 class Expected:
     """How long an option takes, as it has taken so far."""
 
-    __slots__ = ("_faded", "_strayed", "_strayed_in_order", "_usual")
+    __slots__ = ("_faded", "_strayed", "_strayed_in_order", "_usual", "answers_in")
 
     def __init__(self) -> None:
+        self.answers_in: float | None = None
+        """Logarithm of the usual time, of frames of any kind, where it came out with a value."""
         self._usual: dict[int, float] = {}
         self._strayed: deque[float] = deque()
         self._strayed_in_order: list[float] = []
@@ -73,9 +80,12 @@ class Expected:
         strayed = self._strayed_in_order
         return exp(usual + strayed[min(int((1.0 - risk) * len(strayed)), len(strayed) - 1)])
 
-    def took(self, kind: int, ns: float) -> None:
-        """Take a time into account."""
+    def took(self, kind: int, ns: float, has_value: bool) -> None:
+        """Take a time into account, and whether a value came of it."""
         time, usual = log(max(ns, 1.0)), self.usual(kind)
+        if has_value:
+            before = time if self.answers_in is None else self.answers_in
+            self.answers_in = before + FOLLOWS * (time - before)
         strayed = 0.0 if usual is None else time - usual
         # After many refusals nothing of late is known: then this one time counts for all.
         follows = max(FOLLOWS, 1.0 - exp(-self._faded))
@@ -135,24 +145,26 @@ class Deadline:
         return True
 
     def _is_spared(self, option: Option) -> bool:
-        """Return whether the option is done in any case: a last choice only if it is quickest."""
+        """Return whether it is done in any case: a last choice unless another is much quicker."""
         if not option.spared or not option.instead:
             return option.spared
-        own = self._expected[option.number].usual(self._kind)
-        others = [self._expected[number].usual(self._kind) for number in option.instead]
-        return own is None or all(other is None or own <= other for other in others)
+        own = self._expected[option.number].answers_in
+        others = [self._expected[number].answers_in for number in option.instead]
+        return own is None or all(other is None or own < other + MUCH for other in others)
 
     def _least_ns(self, option: Option, state: list[Any]) -> float:
         """Return how long all else takes which must be done in any case, and is not yet."""
         return sum(
-            self._expected[spared.number].high_ns(self._kind, LATE_SHARE)
+            self._expected[spared.number].high_ns(self._kind, RESERVE_RISK)
             for spared in self._spared
             if spared is not option and state[spared.settles] is None and self._is_spared(spared)
         )
 
-    def ended(self, option: Option) -> None:
+    def ended(self, option: Option, state: list[Any]) -> None:
         """Take into account how long the option has taken."""
-        self._expected[option.number].took(self._kind, self._clock() - self._begun.pop())
+        has_value = state[option.slot].__class__ not in NO_VALUE
+        took_ns = self._clock() - self._begun.pop()
+        self._expected[option.number].took(self._kind, took_ns, has_value)
 
     def end(self) -> None:
         """Allow more or less, by whether the frame was on time."""

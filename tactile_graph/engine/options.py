@@ -1,8 +1,9 @@
 """What of a plan may be left undone when time is short, and who decides about it.
 
 Two things may be: a choice of a ``first_of``, with all that only it needs; and any other node of a
-step when its turn comes. The last choice of each ladder, with all that it needs, is spared where it
-is the quickest: it is what a frame comes to at the least. So are sinks: what is written is whole.
+step when its turn comes. The last choice of each ladder, with all that it needs, is spared unless
+one before it is much quicker: it is what a frame comes to at the least. So are sinks: what is
+written is written whole.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Option:
     settles : int
         The slot that is settled once nothing of it is left to do: the node's, or its ladder's.
     spared : bool
-        Whether it is done in any case, as long as nothing ``instead`` of it is quicker.
+        Whether it is done in any case, as long as nothing ``instead`` of it is much quicker.
     always : bool
         Whether every frame comes to it, or to what stands in its place.
     instead : tuple of int
@@ -78,7 +79,7 @@ class Decider(Protocol):
     def allows(self, option: Option, state: list[Any]) -> bool:
         """Return whether to begin an option."""
 
-    def ended(self, option: Option) -> None:
+    def ended(self, option: Option, state: list[Any]) -> None:
         """Note that an option that was begun has ended."""
 
     def end(self) -> None:
@@ -167,7 +168,7 @@ class Recorded:
         """Return whether the option was begun then."""
         return option.node not in self.skipped
 
-    def ended(self, option: Option) -> None:
+    def ended(self, option: Option, state: list[Any]) -> None:
         """Note nothing: time plays no part."""
 
     def end(self) -> None:

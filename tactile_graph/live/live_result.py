@@ -27,7 +27,7 @@ class LiveResult(Generic[ResultT]):
         How many times the source has said that frames were lost just before one it gave
         (``Frame.gap``).
     decisions : tuple of str
-        The nodes that were skipped to keep the deadline, in the order they were decided on.
+        The nodes that were skipped to keep the deadline, in the order of the plan.
     """
 
     result: ResultT

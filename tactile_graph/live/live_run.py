@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from threading import Condition, Thread
+from threading import Lock, Thread
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from tactile_graph.engine.deadline import Deadline
@@ -107,7 +107,7 @@ class LiveRun(Generic[ResultT]):
         self._stopped = False
         self._paused = False
         self._steps = 0
-        self._may_go = Condition()
+        self._asking = Lock()
         self.n_lost = 0
         self.beside: Beside | None = None
         """A variant that is given the newest frames, in what time is left."""
@@ -146,12 +146,23 @@ class LiveRun(Generic[ResultT]):
         else:
             self.swap(self._pipeline)
 
-    def swap(self, pipeline: Runnable[ResultT]) -> None:
+    def swap(self, pipeline: Runnable[ResultT], tried_on: Iterable[Frame] = ()) -> None:
         """Run another pipeline from the next frame on, over the same source.
 
         It is made ready in the caller's thread, so that no frame waits for that. Its stateful steps
         start anew.
+
+        Parameters
+        ----------
+        pipeline : Pipeline
+        tried_on : iterable of Frame, optional
+            Frames that it is run on before, with a state of their own: kernels are then compiled
+            when the first frame comes. Not for pipelines that write.
         """
+        if frames := list(tried_on):
+            trial = pipeline.runner(self._only, self._seed)
+            for frame in frames:
+                trial(frame)
         ready = self._made_ready(pipeline)
         self._pipeline = pipeline
         self._ready = ready
@@ -169,21 +180,16 @@ class LiveRun(Generic[ResultT]):
 
     def resume(self) -> None:
         """Go on with the next frame that comes."""
-        with self._may_go:
-            self._paused = False
-            self._may_go.notify_all()
+        self._paused = False
 
     def step(self) -> None:
         """While paused: answer one more frame, the next that comes."""
-        with self._may_go:
+        with self._asking:
             self._steps += 1
-            self._may_go.notify_all()
 
     def stop(self) -> None:
         """End the run after the frame that is under way."""
-        with self._may_go:
-            self._stopped = True
-            self._may_go.notify_all()
+        self._stopped = True
         self._waiting.end()
 
     # -- the loop ------------------------------------------------------------------------------
@@ -247,7 +253,7 @@ class LiveRun(Generic[ResultT]):
                 self._source.close()  # a port is free again, a file closed
 
     def _one_more(self) -> bool:
-        with self._may_go:
+        with self._asking:
             asked = self._steps > 0
             self._steps -= asked
             return asked

@@ -46,24 +46,17 @@ class Waiting:
             self._ended = True
             self._changed.notify_all()
 
-    def wake(self) -> None:
-        """Have `take` return, though there may be no frame."""
+    def take(self) -> Arrival | None:
+        """Return the frame that has waited longest, or None at the end."""
         with self._changed:
-            self._changed.notify_all()
-
-    def take(self, timeout_s: float | None = None) -> Arrival | None:
-        """Return the frame that has waited longest; None after the time, or when woken in vain."""
-        with self._changed:
-            if not self._frames and not self._ended:
-                self._changed.wait(timeout_s)
+            while not self._frames and not self._ended:
+                self._changed.wait()
             return self._frames.popleft() if self._frames else None
 
-    def clear(self) -> int:
-        """Let go of all frames that wait, uncounted; return how many that were."""
+    def clear(self) -> None:
+        """Let go of all frames that wait, uncounted."""
         with self._changed:
-            n = len(self._frames)
             self._frames.clear()
-            return n
 
     @property
     def over(self) -> bool:

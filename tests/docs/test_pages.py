@@ -38,7 +38,7 @@ DOCS = ROOT / "docs"
 MADE = DOCS / "catalogue"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
 PAGES += [p for p in sorted(DOCS.rglob("*.md")) if MADE not in p.parents]
-FILES = (".npz", ".npy", ".csv", ".zarr", ".yaml", ".html", ".md")
+FILES = (".npz", ".npy", ".csv", ".zarr", ".yaml", ".html", ".md", ".jsonl")
 pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests")
 
 

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.clump import clump_of
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
     is_partly_hidden,
@@ -148,6 +149,8 @@ class AnyPad:
         even = model.likeliest(readings, start=start)
         if even.unsure and not large:
             even = model.likeliest(readings, before=even)
+        if start is None and readings.touched <= FEW:
+            even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         point = self.told.point_of(even)
@@ -166,6 +169,17 @@ class AnyPad:
             if top.mode.height > -math.inf:
                 found[part] = top
         return found
+
+    def _by_clump(self, readings: Readings, found: Likeliest) -> Likeliest:
+        """Return a likelier outline around what hangs together, where some elements lie apart."""
+        clump, model = clump_of(readings), self._fits[EVEN]
+        if clump is None:
+            return found
+        begin = model.likeliest(clump)
+        if begin.mode.height == -math.inf:
+            return found
+        near = model.likeliest_near(readings, self.told.point_of(begin))
+        return max(found, near, key=lambda its: its.mode.height)
 
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
         n, p = self._count, self.told.point_of(even)

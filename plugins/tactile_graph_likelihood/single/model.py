@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import NamedTuple
 
@@ -131,13 +131,22 @@ class Model:
         start: Start = None,
         belief: tuple[Values, Values] | None = None,
     ) -> Posterior:
-        """Return the same from readings."""
+        """Return the same from readings.
+
+        A sample whose points are worth fewer than there are unknowns promises far too much: its
+        covariance is then wider by that of a normal distribution around the top.
+        """
         problem = self._problem(readings, belief)
-        table = self._table(problem)
-        mode = self._find(problem, table, self._begin(start, problem), (0, ATTEMPTS), None)[0]
+        table, begin = self._table(problem), self._begin(start, problem)
+        mode, unsure, fit = self._find(problem, table, begin, (0, ATTEMPTS), None)
         if mode.height == -math.inf:
             raise self.impossible(readings)
-        return self._sampled(readings, problem, table, mode)
+        found = self._sampled(readings, problem, table, mode)
+        if found.equal_points > len(mode.p):
+            return found
+        top = Likeliest(mode, mode.height + _log_volume(problem.kind, mode), unsure, fit)
+        normal = self.normal_around(top, len(mode.p))
+        return replace(found, covariance=found.covariance + normal.covariance)
 
     def likeliest(
         self, readings: Readings, before: Likeliest | None = None, start: Start = None

@@ -113,6 +113,12 @@ def test_another_pipeline_takes_over_between_two_frames() -> None:
     assert values == [1, 2, 102, 103]
 
 
+def test_a_pipeline_that_is_to_take_over_may_be_tried_before_with_a_state_of_its_own() -> None:
+    run = LiveRun(pipeline(), [frame(5, 0, 0.0), frame(5, 1, 0.01)])
+    run.swap(pipeline(COUNTING), tried_on=frames(10))
+    assert [live.result["more"] for live in run] == [5, 11]
+
+
 def test_a_paused_run_lets_frames_pass_and_answers_one_for_each_step() -> None:
     fed = Fed()
     run = LiveRun(pipeline(), fed)

@@ -50,3 +50,15 @@ def test_of_nothing_kept_nothing_is_found() -> None:
     assert Ring().back(1.0) == ([], 0.0, False)
     assert Ring().after(0) == ([], 0.0, False)
     assert Ring().kept() == (0.0, 0)
+
+
+def test_what_is_gone_is_let_go_of_and_finding_stays_right() -> None:
+    ring = filled(5000, Ring(seconds=10.0))
+    assert ring.kept() == (10.0, 11)
+    assert len(ring._kept) < 2100
+    assert ring.back(3.0)[0][-1].index == 4996
+    assert [f.index for f in ring.after(4990, lead=5)[0]] == [4989, 4990, 4991]
+
+
+def test_the_newest_frame_is_kept_however_large_it_is() -> None:
+    assert filled(3, Ring(n_bytes=1)).kept() == (0.0, 1)

@@ -55,7 +55,7 @@ def test_a_slider_holds_the_value_wherever_it_is(value: float) -> None:
 
 def test_a_graph_is_boxes_wires_settings_and_columns() -> None:
     pipeline = tg.load("circle-3")
-    graph = graph_message(pipeline, 7, pipeline.text, {"footprint": {"level_v": 0.02}})
+    graph = graph_message(pipeline, 7, (pipeline.text, ""), {"footprint": {"level_v": 0.02}})
     assert graph.version == 7
     names = [box.name for box in graph.boxes]
     assert names == ["(source)", "frame", *pipeline.nodes]
@@ -71,7 +71,7 @@ def test_a_graph_is_boxes_wires_settings_and_columns() -> None:
 
 
 def test_boxes_do_not_lie_on_one_another() -> None:
-    boxes = graph_message(tg.load("locate"), 1, "", {}).boxes
+    boxes = graph_message(tg.load("locate"), 1, ("", ""), {}).boxes
     for i, a in enumerate(boxes):
         for b in boxes[:i]:
             apart = a.x + a.w <= b.x or b.x + b.w <= a.x or a.y + a.h <= b.y or b.y + b.h <= a.y
@@ -84,7 +84,7 @@ def test_every_shipped_pipeline_goes_as_json() -> None:
 
     for name in installed().names("pipelines"):
         pipeline = tg.load(name)
-        graph = graph_message(pipeline, 1, pipeline.text, {})
+        graph = graph_message(pipeline, 1, (pipeline.text, pipeline.text), {})
         json.loads(encoded(graph), parse_constant=pytest.fail)
         for node in graph.nodes:
             for setting in node.settings:

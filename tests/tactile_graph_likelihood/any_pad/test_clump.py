@@ -1,0 +1,49 @@
+"""What hangs together among a few touched elements."""
+
+import numpy as np
+import pytest
+
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.clump import clump_of
+from tactile_graph_likelihood.any_pad.locate import LocateDisc
+from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.readings import Readings
+
+
+def readings(*touched: tuple[int, int], load: float = 0.0) -> Readings:
+    states, logs = np.zeros((9, 9), np.uint8), np.zeros((9, 9))
+    for place in touched:
+        states[place], logs[place] = ON, load
+    grid = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
+    return Readings(grid, logs, states, len(touched))
+
+
+def test_what_lies_apart_from_the_largest_clump_says_nothing():
+    its = readings((1, 1), (1, 2), (2, 1), (6, 6), (6, 8), (8, 1))
+    its.logs[8, 1] = 5.0  # a stray that bears more than the clump
+    found = clump_of(its)
+    assert found.touched == 3
+    assert [tuple(p) for p in np.argwhere(found.states == ON)] == [(1, 1), (1, 2), (2, 1)]
+    assert [tuple(p) for p in np.argwhere(found.states == UNKNOWN)] == [(6, 6), (6, 8), (8, 1)]
+    assert np.count_nonzero(its.states == ON) == 6, "what came is not written into"
+
+
+@pytest.mark.parametrize("touched", [[(4, 4)], [(0, 0), (2, 2), (4, 4), (6, 4)]])
+def test_what_hangs_together_over_single_voids_is_one_clump(touched):
+    assert clump_of(readings(*touched)) is None
+
+
+def test_a_chain_is_one_clump_in_whatever_order_it_is_met():
+    ring = [(0, 0), (0, 8), (2, 0), (2, 8), (4, 2), (4, 4), (4, 6), (3, 8)]
+    assert clump_of(readings(*ring, (8, 0))).touched == len(ring)
+
+
+@pytest.mark.usefixtures("plain_kernels")
+def test_two_strays_do_not_lead_away_from_a_fingertip():
+    values = np.zeros((16, 16))
+    values[9:12, 5:8] = [[0.0, 33.0, 0.0], [37.0, 57.0, 16.0], [40.0, 45.0, 0.0]]
+    values[1, 8] = values[4, 13] = 4.0
+    found = LocateDisc()(Image(values, (1.3, 1.3), (-0.15, -0.15), "gram"))
+    assert found.x_cm == pytest.approx(7.6, abs=0.4)
+    assert found.y_cm == pytest.approx(13.4, abs=0.4)
+    assert found.radius_cm < 2.2
