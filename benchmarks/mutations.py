@@ -14,8 +14,13 @@ that call a mutant's (``BY_MACHINE_CODE``) are not changed, and are compiled. ``
 tests that are too slow for that judge the survivors, each with a copy of the machine code on disk.
 A sample is drawn from all places in a family with a seed; the interval is Wilson's, at 95 %.
 
+A number of at most a millionth is a bound on rounding, and taken a million times as large, since
+half as much again tells nothing (below `NEVER_REACHED` it only keeps from dividing by nothing, and
+is left out); one in the shape of ``np.empty``, which is mere room, one smaller.
+
 Left out: annotations, texts, what only draws, prints or writes, flags that only refuse what no
-right code does (``strict`` of a zip, ``frozen``), and tests that take more processor time than
+right code does (``strict`` of a zip, ``frozen``), the 1 of ``reshape(-1)`` (any negative number
+asks for the rest), and tests that take more processor time than
 ``SLOW_S`` each by plain loops, ``COMPILED_SLOW_S`` by machine code (their number is told).
 """
 
@@ -53,6 +58,10 @@ DRAWS = re.compile(r"\baxes\b|\bfigure\b|\bpanels\(|_FIGURE\b")
 GUARDS = ("strict", "frozen")
 """Flags that refuse what no right code does: lists of two lengths in a zip, a changed record."""
 THESIS_WAYS = ("circle-1", "circle-2", "circle-3", "rectangle-1", "rectangle-2", "identify")
+ROUNDING, BEYOND_ROUNDING = 1e-6, 1e6
+"""The largest bound on rounding, and what is none any more, in such bounds."""
+NEVER_REACHED = 1e-100
+"""Numbers below it only keep a division or a logarithm from 0."""
 UNWARNED = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Of modules imported before the tests, once for all mutants."""
 BY_MACHINE_CODE = ("thesis", "pipelines")
@@ -162,11 +171,11 @@ def changes(tree: ast.Module) -> Iterator[Change]:
     tree : ast.Module
         Is left as it is.
     """
-    defaults, out = _defaults(tree), _left_out(tree)
+    defaults, out, room = _defaults(tree), _left_out(tree), _room(tree)
     for k, node in enumerate(ast.walk(tree)):
         if id(node) in out:
             continue
-        for kind, other in _changed(node):
+        for kind, other in _smaller(node) if id(node) in room else _changed(node):
             shown = "default" if id(node) in defaults else kind
             line: int = node.lineno  # type: ignore[attr-defined]
             yield Change(line, shown, _words(node), _words(other), k, other)
@@ -210,12 +219,21 @@ def _changed(node: ast.AST) -> Iterator[tuple[str, Any]]:
         other_op = ast.Or() if isinstance(node.op, ast.And) else ast.And()
         yield "condition", _but(node, op=other_op)
     elif isinstance(node, ast.Constant) and type(node.value) in (int, float, bool):
+        if type(node.value) is float and 0.0 < abs(node.value) < NEVER_REACHED:
+            return
         kind = "flag" if type(node.value) is bool else "number"
         yield kind, _but(node, value=_other(node.value))
     elif isinstance(node, (ast.If, ast.IfExp, ast.While)):
         yield "condition", _but(node, test=ast.UnaryOp(ast.Not(), node.test))
     elif isinstance(node, ast.Return) and node.value is not None and not _is_none(node.value):
         yield "returned", _but(node, value=ast.Constant(None))
+
+
+def _smaller(node: ast.AST) -> Iterator[tuple[str, Any]]:
+    """Yield a number less 1."""
+    assert isinstance(node, ast.Constant)
+    assert isinstance(node.value, int)
+    yield "number", _but(node, value=node.value - 1)
 
 
 def _but(node: ast.AST, **fields: Any) -> ast.AST:
@@ -235,6 +253,8 @@ def _other(value: Any) -> Any:
         return not value
     if isinstance(value, int):
         return value + 1
+    if 0.0 < abs(value) <= ROUNDING:
+        return BEYOND_ROUNDING * value
     return 1.5 * value if value and math.isfinite(value) else 1.0
 
 
@@ -250,6 +270,19 @@ def _defaults(tree: ast.Module) -> set[int]:
     return {id(n) for default in found for n in ast.walk(default)}
 
 
+def _room(tree: ast.Module) -> set[int]:
+    """Return the whole numbers that stand in the shape of ``np.empty``."""
+    shapes = [
+        node.args[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "np.empty"
+    ]
+    found = [
+        n for shape in shapes for n in (shape.elts if isinstance(shape, ast.Tuple) else [shape])
+    ]
+    return {id(n) for n in found if isinstance(n, ast.Constant)}
+
+
 def _left_out(tree: ast.Module) -> set[int]:
     """Return the nodes of annotations, texts, mere guards, and functions that draw."""
     roots: list[ast.AST] = []
@@ -259,6 +292,8 @@ def _left_out(tree: ast.Module) -> set[int]:
         roots += [v for n in ("annotation", "returns") if (v := getattr(node, n, None))]
         if isinstance(node, (ast.JoinedStr, ast.Subscript)) and _only_words(node):
             roots.append(node)
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith(".reshape"):
+            roots += [a.operand for a in node.args if isinstance(a, ast.UnaryOp)]
         if isinstance(node, ast.FunctionDef) and DRAWS.search(ast.unparse(node)):
             roots.append(node)
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":

@@ -6,6 +6,13 @@ import pytest
 from helpers_filters import image_of
 from tactile_graph.errors import DataError
 from tactile_graph_filters.nan import all_finite, refuse_nan
+from tactile_graph_filters.readings.decouple import Decouple
+from tactile_graph_filters.readings.find_bad import FindBad
+from tactile_graph_filters.readings.gain import Gain
+from tactile_graph_filters.readings.tare import Tare
+from tactile_graph_filters.thresholds.threshold_otsu import threshold_otsu
+from tactile_graph_filters.thresholds.threshold_valley import threshold_valley
+from tactile_graph_filters.thresholds.threshold_variable import threshold_variable
 
 
 @pytest.mark.parametrize("form", ["loops", "compiled"])
@@ -30,3 +37,23 @@ def test_the_first_bad_cell_is_named_and_the_others_counted():
 
 def test_good_and_invalid_cells_are_let_through():
     refuse_nan(image_of([[1.0, math.nan]], valid=[[True, False]]), infinite=True)
+
+
+FINITE = {
+    "decouple": (Decouple, "volt"),
+    "find_bad": (FindBad, "volt"),
+    "gain": (lambda: Gain(elements=None, rows=[2.0, 1.0]), "counts"),
+    "tare": (Tare, "volt"),
+    "threshold_otsu": (lambda: threshold_otsu, "volt"),
+    "threshold_valley": (lambda: threshold_valley, "volt"),
+    "threshold_variable": (lambda: threshold_variable, "volt"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FINITE)
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_refused_by_all_that_sum_or_remember(name, bad):
+    made, quantity = FINITE[name]
+    with pytest.raises(DataError, match=f"row 1, column 0: must be a number, got {bad}"):
+        made()(image_of([[0.01, 0.02], [bad, 0.015]], quantity))

@@ -62,3 +62,15 @@ def test_without_a_dead_line_the_mask_is_the_very_same() -> None:
     nothing = Image(np.zeros((5, 5)))
     empty = Mask(np.zeros((5, 5), bool))
     assert bridge_lines(nothing, empty) is empty
+
+
+def test_only_cells_of_dead_lines_change() -> None:
+    on = np.random.default_rng(2).random((12, 14)) < 0.5
+    image = pressed((3, 4), (6,))
+    found = bridge_lines(image, Mask(on), most=2).values
+    dead = np.zeros((12, 14), bool)
+    dead[[3, 4]] = dead[:, 6] = True
+    assert np.array_equal(found[~dead], on[~dead])
+    live = [j for j in range(14) if j != 6]
+    for row in found[3:5, live]:
+        assert np.array_equal(row, (on[2] & on[5])[live])

@@ -143,3 +143,13 @@ def test_the_centre_of_load_lies_right_of_the_images_origin():
     (one,) = contacts(image_of(np.eye(1, 4, 2), "gram"), drawn("..#.")).contacts
     assert one.x_cm == pytest.approx(ORIGIN[0] + 2.5 * PITCH[0])
     assert one.y_cm == pytest.approx(ORIGIN[1] + 0.5 * PITCH[1])
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 5), (4, 5), (5, 5)])
+def test_of_cells_that_touch_at_corners_alone_each_is_a_contact(shape):
+    """There are never more: so many the kernel has room for."""
+    on = np.indices(shape).sum(axis=0) % 2 == 0
+    labels = np.empty(shape, np.int32)
+    sums = label.loops(on.astype(float), on, False, labels)
+    assert labels.max() == len(sums) == np.count_nonzero(on)
+    assert (labels > 0).tolist() == on.tolist()

@@ -14,6 +14,7 @@ from tactile_graph_filters.parting.joined_basins import (
     _cost_plain,
     _cuts_plain,
     _joined_plain,
+    _near,
     joined,
 )
 from tactile_graph_filters.parting.partition import Partition
@@ -56,7 +57,10 @@ def test_the_survey_says_where_groups_lie_and_what_they_share(seed: int, half: f
             at = np.flatnonzero(row)
             assert groups.right[a, i] == (at[-1] if at.size else -1)
             assert groups.left[a, i] == (at[0] if at.size else cells.owner.shape[1])
-    assert groups.alive.all()
+    assert groups.alive.tolist() == [True] * (COUNT + 1)
+    assert groups.cost.tolist() == [0.0] * (COUNT + 1)
+    assert groups.union.shape == wanted.shape
+    assert groups.left.shape == groups.right.shape == (COUNT + 1, cells.owner.shape[0])
     assert np.isnan(groups.union).all()
 
 
@@ -92,6 +96,7 @@ def test_only_groups_within_reach_are_joined(
     groups = plainly(surveyed)(cells.owner, 2, cells.values, rules[4])
     groups.cost[1:] = 50.0
     assert plainly(best_pair)(cells, groups, rules) == pair
+    assert _near(_boxes(cells.owner, 2), [1, 2]) == ([pair] if pair[0] else [])
     groups.alive[2] = False
     assert plainly(best_pair)(cells, groups, rules) == (0, 0)
 
@@ -139,3 +144,12 @@ def test_loops_cut_the_same_basins(seed: int, sigma: float) -> None:
         count = _basins_plain(values, on, taps_of(sigma), one)
         assert basins.loops(values, on, taps_of(sigma), other) == count
         np.testing.assert_array_equal(other, one)
+
+
+def test_groups_that_do_not_touch_make_no_chain() -> None:
+    for numbers in ((1, 2, 0, 3), (3, 1, 0, 2), (2, 0, 3, 1), (1, 0, 2, 0)):
+        owner = np.repeat(np.array([numbers], np.int32), 4, axis=0)
+        cells = Partition(owner, (owner > 0) * 1.0, owner > 0)
+        groups = plainly(surveyed)(owner, 3, cells.values, 0.5)
+        groups.cost[1:] = 50.0
+        assert plainly(best_three)(cells, groups, rules_of(cells)) == (0, 0, 0)

@@ -154,3 +154,17 @@ def test_so_many_cells_at_most_are_on_in_what_is_split(working_cells, shape):
     n = 8 // shape[0]
     blocks = values.reshape(shape[0], n, shape[1], n).mean(axis=(1, 3))
     np.testing.assert_array_equal(seen[0], blocks)
+
+
+def test_blocks_are_made_smaller_only_where_objects_on_them_have_too_few():
+    """Of 400 cells on blocks of 4 by 4, each object must hold 12 blocks: two may be, three not."""
+    for n_objects, shapes in ((1, [(5, 5)]), (2, [(5, 5)]), (3, [(5, 5), (7, 7)])):
+        seen = []
+
+        def split(cells, n=n_objects, seen=seen):
+            seen.append(cells.on.shape)
+            columns = np.arange(cells.on.shape[1]) * n // cells.on.shape[1]
+            return np.broadcast_to(columns + 1, cells.on.shape).astype(np.int32)
+
+        split_by_scale(cells_of(np.ones((20, 20))), split, 25)
+        assert seen[: len(shapes)] == shapes

@@ -19,6 +19,7 @@ from tactile_graph_filters.parting.hull_terms import (
 from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.split_contacts import SplitContacts
 from tactile_graph_filters.parting.straight_cuts import (
+    REACH_CELLS,
     best_join,
     boxes_of,
     cut_best,
@@ -276,3 +277,19 @@ def test_touching_pairs_are_told_apart_more_often_and_single_objects_cut_no_more
     assert right["pairs", "new"] > right["pairs", "old"]
     assert right["thin", "new"] >= 0.85
     assert right["thin", "new"] > right["thin", "old"]
+
+
+@pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.parametrize("down", range(6))
+@pytest.mark.parametrize("right", range(-5, 6))
+def test_only_groups_near_each_other_may_be_one_wherever_on_the_pad(down, right):
+    owner = np.zeros((6, 11), np.int32)
+    owner[0, 5] = 1
+    owner[down, 5 + right] = 3
+    if not (owner == 1).any():
+        return
+    between = max(down, abs(right)) - 1
+    cells = Partition(owner, (owner > 0).astype(float), np.ones(owner.shape, bool))
+    expected = (1, 3) if between <= REACH_CELLS else (0, 0)
+    for turned in (cells, Partition(*(np.ascontiguousarray(each.T) for each in cells))):
+        assert plainly(best_join)(turned, 3, LEVELS, np.inf) == expected

@@ -56,6 +56,17 @@ def test_gains_of_grams_leave_volts_alone_and_even_grams(pad: str) -> None:
     assert grams.values[0].tolist() == [30.0, 30.0, 30.0, 15.0, 30.0]
 
 
+def test_where_every_element_is_good_and_every_cell_valid_all_stay_so(pad: str) -> None:
+    table = Elements(np.full(SHAPE, 2.0), np.ones(SHAPE), np.full(SHAPE, 4.0),
+                     np.full(SHAPE, "good", dtype="U8"))  # fmt: skip
+    write_elements(Path(pad).with_name("table.csv"), table)
+    given = np.arange(20.0).reshape(SHAPE)
+    found = CorrectReadings(pad=pad)(image(given))
+    assert found.valid is None
+    assert np.array_equal(found.values, (given - 2.0) / 4.0)
+    assert (found.pitch_cm, found.quantity) == ((1.0, 1.0), "volt")
+
+
 def test_what_came_in_invalid_stays_so(pad: str) -> None:
     valid = np.ones(SHAPE, bool)
     valid[0, 0] = False

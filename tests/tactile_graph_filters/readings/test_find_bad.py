@@ -81,8 +81,9 @@ def test_another_shape_is_refused():
 
 
 def test_nan_is_refused():
-    with pytest.raises(DataError, match="row 0, column 0: must be a number, got nan"):
-        FindBad()(image_of([[math.nan]]))
+    for value in (math.nan, math.inf, -math.inf):
+        with pytest.raises(DataError, match=f"row 0, column 1: must be a number, got {value}"):
+            FindBad()(image_of([[1.0, value]]))
 
 
 def test_an_element_only_a_few_times_as_noisy_as_the_others_is_found():
@@ -92,3 +93,28 @@ def test_an_element_only_a_few_times_as_noisy_as_the_others_is_found():
     found = run(FindBad(), change=noisy)
     assert found.valid is not None
     assert np.argwhere(~found.valid).tolist() == [[2, 5]]
+
+
+@pytest.mark.parametrize("n_sigma", [0.7, 1.5, 3.0])
+@pytest.mark.parametrize("n", [2, 5, 12])
+@pytest.mark.parametrize("seed", range(4))
+def test_an_element_is_good_where_its_mean_and_its_noise_are_near_the_others(seed, n, n_sigma):
+    """By the definition, and at limits so near that many elements lie beside them."""
+    rng = np.random.default_rng([seed, n])
+    frames = rng.normal(3.0, 0.5, (4, 5)) + rng.normal(
+        0.0, rng.uniform(0.1, 1.0, (4, 5)), (n, 4, 5)
+    )
+    frames[:, 2, 3] = 3.0
+    mean, noise = frames.mean(axis=0), frames.std(axis=0, ddof=1)
+    far = np.abs(mean - np.median(mean))
+    good = far <= n_sigma * max(1.4826 * np.median(far), np.median(noise))
+    logs = np.log(noise[noise > 0.0])
+    spread = max(1.4826 * np.median(np.abs(logs - np.median(logs))), math.sqrt(0.5 / n))
+    good[noise > 0.0] &= logs <= np.median(logs) + n_sigma * spread
+    for dead in (True, False):
+        finder = FindBad(n_frames=n, n_sigma=n_sigma, dead=dead)
+        for frame in frames:
+            found = finder(image_of(frame))
+        wanted = good & (noise > 0.0) if dead else good
+        assert np.array_equal(np.ones((4, 5), bool) if found.valid is None else found.valid, wanted)
+        assert np.array_equal(found.values, np.where(wanted, frames[-1], 0.0))

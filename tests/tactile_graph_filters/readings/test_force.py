@@ -43,6 +43,14 @@ def test_a_polynomial_gives_grams_up_to_where_it_was_fitted():
     assert Force(polynomial=[-5.0, 1.0])(image_of([[1.0]])).values.tolist() == [[0.0]]
 
 
+def test_what_is_not_a_law_has_no_floor_unless_told():
+    image = image_of([[0.0, 0.1, 0.2, 1.0]])
+    for force in (Force(curve=[(1.0, 1.0)]), Force(polynomial=[0.0, 1.0])):
+        assert force(image).values.tolist() == [[0.0, 0.1, 0.2, 1.0]]
+    for told in ({"curve": [(1.0, 1.0)]}, {"polynomial": [0.0, 1.0]}):
+        assert Force(**told, floor_g=0.2)(image).values.tolist() == [[0.0, 0.0, 0.2, 1.0]]
+
+
 def test_invalid_cells_stay_invalid():
     image = image_of([[0.0, 1 / 80e3]], "siemens", valid=[[False, True]])
     assert Force()(image).valid.tolist() == [[False, True]]

@@ -7,7 +7,7 @@ import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
 from tactile_graph.errors import DataError
 from tactile_graph_filters.readings.force import Force
-from tactile_graph_filters.readings.load import LoadOf, measure
+from tactile_graph_filters.readings.load import Load, LoadOf, measure
 
 
 def test_total_area_peak_and_centre_of_pressure():
@@ -16,6 +16,10 @@ def test_total_area_peak_and_centre_of_pressure():
     assert found.contact_area_cm2 == pytest.approx(2 * PITCH[0] * PITCH[1])
     assert found.x_cm == pytest.approx(ORIGIN[0] + 1.5 * PITCH[0])
     assert found.y_cm == pytest.approx(ORIGIN[1] + 1.25 * PITCH[1])
+
+
+def test_a_load_made_by_hand_leaves_nothing_out():
+    assert Load(True, 4.0, None, 2.0, 3.0, 1.0, 1.0).n_left_out == 0
 
 
 def test_force_is_given_where_the_unit_has_one():

@@ -27,6 +27,12 @@ def test_two_groups_are_parted_at_any_scale(scale):
     assert level == values[1, 0]
 
 
+def test_readings_about_zero_are_parted_as_others_are():
+    values = np.array([[-1.0, -0.9, -0.8, 0.9, 1.0]])
+    assert threshold_otsu(image_of(values)).level == 0.9
+    assert threshold_otsu(image_of(values + 5.0)).level == 5.9
+
+
 def test_invalid_cells_have_no_say():
     values = [[0.0, 0.0, 1.0, 1.1, 900.0]]
     mask, _ = threshold_otsu(image_of(values, valid=[[True, True, True, True, False]]))

@@ -7,8 +7,8 @@ import pytest
 
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_fitters.circle.even_load import OK, Readings, even_disc
-from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad
+from tactile_graph_fitters.circle.even_load import NOT_SETTLED, OK, Readings, even_disc
+from tactile_graph_fitters.circle.fit_circle_load import FitCircleLoad, _why
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry
 
@@ -133,6 +133,11 @@ def test_where_no_disc_is_to_be_had_it_says_why():
     few[3, 4] = 70.0
     with pytest.raises(Degenerate, match="1 element bears a load"):
         FitCircleLoad()(Image(few, (PITCH, PITCH), ORIGIN, "gram"))
+    block = np.pad(np.full((2, 2), 40.0), 1)
+    alone = Image(block, (PITCH, PITCH), ORIGIN, "gram", block > 0.0)
+    with pytest.raises(Degenerate, match="4 elements bear a load, which leaves the disc open"):
+        FitCircleLoad()(alone)
+    assert _why(NOT_SETTLED, 5) == "no even disc found within 20 rounds"
 
 
 def test_wrong_images_are_refused():

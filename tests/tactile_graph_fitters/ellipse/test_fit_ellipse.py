@@ -12,6 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Points
 from tactile_graph_fitters.ellipse.fit_ellipse import equations, fit_ellipse, semi_major_std_cm
 from tactile_graph_fitters.ellipse.fit_ellipse_direct import fit_ellipse_direct
+from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances, nearest
 
 BOTH = [fit_ellipse, fit_ellipse_direct]
@@ -195,3 +196,7 @@ def test_an_outline_whose_length_its_strays_leave_open_is_none() -> None:
 def test_a_short_arc_of_an_ellipse_is_one_where_its_points_are_sharp() -> None:
     found = fit_ellipse(arc(np.random.default_rng(1), 0.6, 0.0))
     assert found.semi_major_cm == pytest.approx(5.0, rel=1e-6)
+
+
+def test_an_ellipse_made_by_hand_took_no_rounds():
+    assert FittedEllipse(1.0, 2.0, 5.0, 3.0, 0.2, 0.1, 9).iterations == 0

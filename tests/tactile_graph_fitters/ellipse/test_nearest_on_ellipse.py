@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tactile_graph_fitters.ellipse import nearest_on_ellipse
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances, feet, nearest
 
 
@@ -47,6 +48,16 @@ def test_the_twin_looks_again_where_it_went_wrong():
     t = np.linspace(0, 2 * np.pi, 2001)
     least = np.hypot(np.cos(t) - xy[0][:, None], 0.1 * np.sin(t) - xy[1][:, None]).min(axis=1)
     assert (np.hypot(got[0] - xy[0], 0.1 * got[1] - xy[1]) <= least + 1e-12).all()
+
+
+@pytest.mark.usefixtures("plain_kernels")
+def test_of_points_near_an_ellipse_none_is_looked_at_on_its_own(monkeypatch):
+    t = np.linspace(0.0, 2.0 * np.pi, 50)
+    xy = np.stack([3.0 * np.cos(t), 2.0 * np.sin(t)]) * (1.0 + 0.1 * np.cos(7.0 * t))
+    monkeypatch.setattr(nearest_on_ellipse, "nearest", None)
+    c, s = feet.loops(xy, 3.0, 2.0)
+    (x, y) = xy
+    assert (x - 3.0 * c) * 3.0 * s == pytest.approx((y - 2.0 * s) * 2.0 * c, abs=1e-13)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, -2.0])

@@ -10,7 +10,7 @@ from helpers_ellipses import drawn, oval
 from tactile_graph_fitters.ellipse import fit_ellipse
 from tactile_graph_fitters.ellipse.direct_ellipse import direct_shape, ellipse_frame
 from tactile_graph_fitters.ellipse.ellipse_equations import reduced
-from tactile_graph_fitters.ellipse.fit_ellipse import _lengthened, refined
+from tactile_graph_fitters.ellipse.fit_ellipse import _lengthened, _settled, refined
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances
 from tactile_graph_fitters.ellipse.newton_ellipse import (
     _as_axes,
@@ -213,3 +213,18 @@ def test_a_foot_turns_by_its_own_slope_and_what_the_steps_take_off():
     half = -0.5 * (rows[5] * (step @ rows[:5]) + rows[6])
     wanted = angle + 2.0 * np.arctan(half)
     np.testing.assert_allclose(cs, [np.cos(wanted), np.sin(wanted)], atol=1e-12)
+
+
+@pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_from_beside_the_minimum_the_last_steps_lead_to_it(noise):
+    t = np.linspace(0.2, 5.0, 30)
+    uv = np.stack([1.2 * np.cos(t), 0.7 * np.sin(t)])
+    uv += noise * np.random.default_rng(5).normal(size=uv.shape)
+    least = np.array([0.0, 0.0, 1.2, 0.7, 0.0])
+    refined.loops(uv, least, 1e-12)
+    beside = least + 1e-8 * np.array([1.0, -1.0, 0.5, 1.0, -0.5])
+    total = _settled.loops(uv, beside, np.inf)
+    assert beside == pytest.approx(least, abs=1e-12)
+    off = distances.loops(uv, *least)
+    assert total == pytest.approx(float(off @ off), rel=1e-12, abs=1e-24)

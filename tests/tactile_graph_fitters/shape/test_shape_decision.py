@@ -129,7 +129,8 @@ def test_points_of_no_pad_are_refused_in_words(size: float) -> None:
 def test_corners_are_paid_for_by_so_many_measurements_a_cell():
     """40 cells of outline are 24 measurements: two logarithms of 24 for a corner more."""
     floor = (FLOOR_CELLS * 1.0) ** 2
-    price = 2.0 * math.log(40.0 * EVIDENCE) / (40.0 * EVIDENCE)
+    assert 40.0 * EVIDENCE == 24.0
+    price = 2.0 * math.log(24.0) / 24.0
     for share, corners in ((1.02, 4), (0.98, 3)):
         squares = np.array([9.0, 9.0, 9.0, floor * (2.0 * math.exp(share * price) - 1.0), floor])
         assert _best_polygon(Fits(5, 40.0, squares, squares, squares), 4, 1.0) == corners

@@ -111,3 +111,13 @@ def test_the_rim_joins_its_corners_all_around() -> None:
     for k, corner in enumerate(around):
         assert set(field.on(corner)) == {around[k - 1], around[(k + 1) % 10]}, corner
     assert field.on((1, 1)) == []
+
+
+def test_corners_are_known_up_to_the_farthest_asked_for() -> None:
+    image = Image(np.zeros((4, 6)))
+    across = np.zeros((3, 6), bool)
+    across[1, :5] = True
+    field = _Field(image, LineField.of(image, across, np.zeros((4, 5), bool)), 0.0)
+    for farthest in range(5):
+        far = field._along_lines((2, 5), farthest)
+        assert far == {(2, 5 - k): k for k in range(farthest + 1)}

@@ -85,3 +85,13 @@ def test_covered_is_a_share_and_rises_with_the_reading(log_share: float, spread:
     assert 0.0 <= share <= 1.0
     assert math.isfinite(share)
     assert covered(log_share - 0.1, spread) <= share + 1e-12
+
+
+def test_where_nothing_lies_within_the_rims_own_median_is_a_full_reading() -> None:
+    values = np.zeros((5, 7))
+    values[2, 1:6] = 1.0, 2.0, 4.0, 8.0, 4.0
+    image = Image(values)
+    points = outline_points(image.mask(values > 0.0), image, unevenness=0.0, load_power=1.0).xy_cm
+    share = np.array([0.25, 0.5, 1.0, 1.0, 1.0])
+    np.testing.assert_allclose(points[:5, 1], 3.0 - share)
+    np.testing.assert_allclose(points[5:10, 1], 2.0 + share)

@@ -10,6 +10,7 @@ import pytest
 
 from helpers_modes import plainly
 from helpers_mrf import tiny
+from tactile_graph.wires import Image
 from tactile_graph_mrf.descent.chain_moves import (
     PROPOSALS,
     Chain,
@@ -17,7 +18,8 @@ from tactile_graph_mrf.descent.chain_moves import (
     held_costs,
     propose,
 )
-from tactile_graph_mrf.energy.problem import Problem
+from tactile_graph_mrf.energy.model import Model
+from tactile_graph_mrf.energy.problem import Problem, prepare
 from tactile_graph_mrf.energy.state import State
 from tactile_graph_mrf.energy.total import energy
 
@@ -107,3 +109,21 @@ def test_of_equal_ways_the_present_labels_stay() -> None:
     state = State(np.zeros((2, 3), np.int64), np.zeros((1, 3), bool), np.zeros((2, 2), bool))
     assert plainly(best_way)(problem.potentials, state, chain) == 0
     assert not chain.came.any()
+
+
+@pytest.mark.parametrize("expected", [None, 6.0])
+def test_the_mean_proposed_is_of_what_the_unary_cost_is_least_at(expected: float | None) -> None:
+    """Of data and expected load together; without either, what is read there."""
+    values = np.array([[0.0, 8.0, 2.0]])
+    wanted = None if expected is None else Image(np.full((1, 3), expected))
+    model = Model(n_levels=9, lines="none", lambda_prior=3.0, lambda_d=0.01)
+    problem = prepare(model, Image(values), None, wanted)
+    chain = chain_of(0, True, 3)
+    propose(problem.potentials, problem.observed, np.array([[4, 4, 4]]), chain)
+    _, curvature, centre, _, _ = problem.potentials.unary
+    bend = problem.pairwise.smooth[1]
+    for s, n in enumerate(chain.kinds):
+        beside = (s > 0) + (s < 2)
+        weight = beside * bend / 4.0
+        mean = (curvature[0, s] * centre[0, s] + 4.0 * weight) / (curvature[0, s] + weight)
+        assert math.floor(mean + 0.5) in chain.proposals[s, :n].tolist()

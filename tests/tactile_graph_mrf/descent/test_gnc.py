@@ -163,3 +163,14 @@ def test_beyond_both_ends_of_the_scale_the_influence_is_that_of_the_ends():
     np.testing.assert_array_equal(table[:, 0], table[:, 1])
     np.testing.assert_array_equal(table[:, -1], table[:, -2])
     assert (table[:, -1] < 1.0).all()
+
+
+def test_without_a_sweep_levels_are_the_data_and_their_mean_where_there_are_none():
+    valid = np.ones((4, 5), bool)
+    valid[2, 3] = valid[0, 0] = False
+    values = np.random.default_rng(0).integers(0, 200, (4, 5)).astype(float)
+    for known in (valid, np.ones_like(valid)):
+        problem = prepare(Model(lines="none"), Image(values, valid=known))
+        (start,) = graduated(problem, influence(problem.model, 1, 2.0), Relaxation(0, 1.5))
+        mean = problem.observed[known].mean()
+        assert start == pytest.approx(np.where(known, problem.observed, mean))

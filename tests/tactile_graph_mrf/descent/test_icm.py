@@ -87,3 +87,13 @@ def test_the_expected_load_draws_the_restoration_to_it():
     expected = Image(np.full((16, 16), 0.4))
     near = icm(image, None, expected, model=Model(lambda_prior=1e6))
     assert np.abs(near.image.values - 0.4).max() < 0.01
+
+
+@pytest.mark.usefixtures("plain_kernels")
+def test_a_cell_that_nothing_is_known_of_stays_as_it_starts():
+    values, valid = np.array([[0.0, 0.0, 5.0, 5.0], [0.0, 0.0, 5.0, 7.0]]), np.ones((2, 4), bool)
+    valid[1, 3] = False
+    lone = Mask(np.array([[True, True, False, False], [True, True, False, True]]))
+    got = icm(Image(values, valid=valid), lone, model=Model(lines="none"))
+    assert np.isfinite(got.image.values).all()
+    assert (got.image.values[:, :2] == 0.0).all()

@@ -10,6 +10,7 @@ from tactile_graph_mrf.descent.modes import settle
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.state import State
+from tactile_graph_mrf.energy.total import energy
 
 
 @pytest.mark.slow
@@ -39,3 +40,19 @@ def test_cheaper_labels_are_taken_whatever_the_start():
     state = State(np.array([[3, 3, 0]]), np.zeros((0, 3), bool), np.zeros((1, 2), bool))
     assert settle(problem, state, 5)[-1] == 0.0
     assert state.labels.tolist() == [[0, 1, 3]]
+
+
+@pytest.mark.usefixtures("plain_kernels")
+def test_no_more_sweeps_are_made_than_asked_for():
+    """A label that goes from cell to cell, one more each sweep against the way of visiting."""
+    values = np.array([[9.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    problem = prepare(Model(n_levels=10, lambda_d=3.0, lines="none"), Image(values))
+    start = np.array([[0, 9, 9, 9, 9, 9]])
+    traces = []
+    for most in (1, 2, 3, 50):
+        state = State(start.copy(), np.zeros((0, 6), bool), np.zeros((1, 5), bool))
+        traces.append(settle(problem, state, most))
+        assert len(traces[-1]) <= most
+        assert traces[-1][-1] == pytest.approx(energy(problem, *state))
+    assert len(traces[3]) > 3
+    assert traces[:3] == [traces[3][:k] for k in (1, 2, 3)]
