@@ -109,7 +109,9 @@ async def look(address: str, seconds: float, show: Sequence[str] = ()) -> Seen:
     """Look for so long, answering each picture as a page does."""
     seen = Seen()
     end = time.perf_counter() + seconds
-    async with websockets.connect(f"{address}live", max_size=None, compression=None) as page:
+    async with websockets.connect(
+        f"{address}live", max_size=None, compression=None, open_timeout=120
+    ) as page:
         await page.send(json.dumps({"type": "show", "nodes": list(show)}))
         while (left := end - time.perf_counter()) > 0:
             try:
@@ -294,7 +296,10 @@ async def remember(running: Running, minutes: float) -> None:
     end = time.perf_counter() + 60 * minutes
     viewer = deaf(running.address)
     while time.perf_counter() < end:
-        seen = await look(running.address, min(30.0, max(1.0, end - time.perf_counter())))
+        try:
+            seen = await look(running.address, min(30.0, max(1.0, end - time.perf_counter())))
+        except (websockets.ConnectionClosed, TimeoutError):  # this process was held up
+            continue
         server, bench = running.memory_mb()
         last = seen.pulses[-1]
         print(f"  {minutes - (end - time.perf_counter()) / 60:5.1f} min: server {server:.1f} MB, "

@@ -41,8 +41,8 @@ GIF_MS = 110
 GIF_COLOURS = 160
 RARE = 0.35
 """Power by which a colour's pixels count for the palette."""
-WARM_S = 65.0
-"""Until the charts show a minute without a compiler in it."""
+WARM_S = 40.0
+"""Until there is something in the charts."""
 PIPELINE = """\
 pipeline: disc
 about: A disc that is moved about, found by the corners of its hull
@@ -52,9 +52,7 @@ conditions:
 nodes:
   footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
   fine: {step: subdivide, in: footprint, with: {factor: 2}, when: touched}
-  eroded: {step: erode, in: fine, with: {element: disc5}}
-  dilated: {step: dilate, in: eroded, with: {element: disc5}, when: eroded.count > 0}
-  boundary: {step: boundary_scan, in: dilated}
+  boundary: {step: boundary_scan, in: fine}
   hull: {step: hull, in: boundary}
   circle: {step: fit_circle, in: hull}
 outputs: [circle]
@@ -106,7 +104,7 @@ def opened(browser: Any, address: str, size: tuple[int, int], scheme: str) -> An
         device_scale_factor=1 if width > 500 else 1.5,
     )  # fmt: skip
     page = context.new_page()
-    page.goto(address)
+    page.goto(address, timeout=120_000)
     page.locator("#nodes .badge[data-fate=ran]").first.wait_for(timeout=120_000)
     page.locator("#pad-canvas").hover(position={"x": 2, "y": 2})
     return page
@@ -123,7 +121,7 @@ def still(page: Any, path: Path) -> None:
     for _ in range(60):
         if page.locator("#nodes [data-name=circle] .badge[data-fate=ran]").count():
             break
-        time.sleep(0.2)
+        page.wait_for_timeout(200)
     shot(page).quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
@@ -163,7 +161,8 @@ def moving(page: Any, file: Path, path: Path) -> None:
     for _ in story(page, file):
         began = time.monotonic()
         seen.append(shot(page).resize(GIF_PX, Image.Resampling.LANCZOS))
-        time.sleep(max(0.0, GIF_MS / 1e3 - (time.monotonic() - began)))
+        # Not by sleeping: what a page receives goes through here too, and would hold it up.
+        page.wait_for_timeout(max(1.0, GIF_MS - 1e3 * (time.monotonic() - began)))
     palette = common_palette(seen)
     few = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in seen]
     few[0].save(path, save_all=True, append_images=few[1:], duration=GIF_MS, loop=0, optimize=True)
@@ -185,18 +184,18 @@ def main() -> None:
     ):
         browser = started.chromium.launch(executable_path=program, args=OPTIONS)
         page = opened(browser, address, (1440, 900), "light")
-        time.sleep(WARM_S)
+        page.wait_for_timeout(1e3 * WARM_S)
         still(page, given.output / "live-day.png")
         moving(page, Path(name) / "disc.yaml", given.output / "live.gif")
         page.context.close()
         (Path(name) / "disc.yaml").write_text(PIPELINE)
         page = opened(browser, address, (1440, 900), "dark")
         page.locator("#nodes [data-name=hull]").click()
-        time.sleep(8)
+        page.wait_for_timeout(8000)
         still(page, given.output / "live-night.png")
         page.context.close()
         page = opened(browser, address, (360, 740), "light")
-        time.sleep(4)
+        page.wait_for_timeout(4000)
         still(page, given.output / "live-phone.png")
         browser.close()
     for name in ("live-day.png", "live-night.png", "live-phone.png", "live.gif"):

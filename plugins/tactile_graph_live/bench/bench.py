@@ -76,12 +76,13 @@ class Bench:
             first=first,
         )
         self._player.hold(self._held)
+        has_deadline = (order.deadline_us or self._pipeline.deadline_us) is not None
         self._run: LiveRun[Result] = LiveRun(
             self._pipeline,
             self._frames(),
             seed=order.seed,
             deadline_us=order.deadline_us,
-            capacity=order.capacity,
+            capacity=order.capacity or (wire.MANY if has_deadline else wire.FEW),
         )
         self._run.beside = self._beside
         self._tally.begin()

@@ -9,6 +9,7 @@ import sys
 import threading
 from multiprocessing.connection import Connection
 
+from tactile_graph.compiled import warm_up
 from tactile_graph.plugins.registry import restrict
 from tactile_graph_live.bench import wire
 from tactile_graph_live.bench.bench import Bench
@@ -26,6 +27,7 @@ def main(pipe: Connection, order: wire.Order) -> None:
     if sys.stderr is not None:
         os.dup2(2, 1)  # stdout may be kept for programs
     restrict(order.selection)
+    warm_up()
     sys.setswitchinterval(SWITCH_S)
     outbox = Outbox(pipe.send)
     bench = Bench(order, outbox)

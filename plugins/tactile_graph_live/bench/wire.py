@@ -13,6 +13,8 @@ from tactile_graph import Frame
 from tactile_graph_live.server.messages import Frame as Shown
 from tactile_graph_live.server.messages import Level
 
+FEW, MANY = 16, 64
+"""Frames that wait grow old: without a deadline, which keeps them from that, few may."""
 State = Literal["starting", "running", "waiting", "ended"]
 
 
@@ -33,8 +35,9 @@ class Order:
         Whether what is played ends, instead of starting over.
     unpaced : bool
         Whether frames are taken as fast as they come.
-    capacity : int
-        How many frames may wait for the pipeline; then the oldest is shed.
+    capacity : int or None
+        How many frames may wait for the pipeline; then the oldest is shed. `FEW` if None, or
+        `MANY` where there is a deadline.
     selection : str
         The plugins that are chosen.
     beside : bytes
@@ -48,7 +51,7 @@ class Order:
     rate_hz: float | None = None
     once: bool = False
     unpaced: bool = False
-    capacity: int = 16
+    capacity: int | None = None
     selection: str = ""
     beside: bytes = b""
 

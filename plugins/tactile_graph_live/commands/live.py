@@ -73,8 +73,9 @@ def parse_deadline(ctx: click.Context, param: click.Parameter, value: str | None
 @click.option("--once", is_flag=True, help="End a recording where it ends; it starts over else.")
 @click.option("--deadline", "deadline_us", callback=parse_deadline, metavar="TIME",
               help="Answer each frame within this time (2ms, 800us) of its arrival.")  # fmt: skip
-@click.option("--waiting", type=click.IntRange(min=1), default=16, show_default=True, metavar="N",
-              help="Frames that may wait for the pipeline; of more the oldest go.")  # fmt: skip
+@click.option("--waiting", type=click.IntRange(min=1), metavar="N",
+              help="Frames that may wait for the pipeline; of more the oldest go.  "
+              "[default: 16, 64 with a deadline]")  # fmt: skip
 @click.option("--beside", metavar="VARIANT",
               help="Run this one in what time is left, and tell how far both agree.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
@@ -138,7 +139,7 @@ class _Options:
     unpaced: bool
     once: bool
     deadline_us: float | None
-    waiting: int
+    waiting: int | None
     beside: str | None
     seed: int
     folder: str

@@ -65,8 +65,8 @@ export class Connection {
   watch() {
     const silent = (performance.now() - this.heard) / 1000 > SILENCE_S;
     const socket = this.socket;
-    if (socket?.readyState !== WebSocket.OPEN || !silent || document.hidden) return;
-    this.lost(); // at once: a server that hangs does not answer the close either
+    if (!socket || !silent || document.hidden) return;
+    this.lost(); // at once: a server that hangs does not answer a close either
     socket.close();
   }
 

@@ -32,7 +32,7 @@ def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> 
     assert "tries so far" in page.locator("#lost-text").inner_text()
     with served(Double(), port) as second:
         page.locator("#link:is([data-state=connected], [data-state=running])").wait_for(
-            timeout=8000
+            timeout=20_000
         )
         assert page.locator("#lost").is_hidden()
         assert second.heard("show")["nodes"] == ["boundary", "circle", "footprint", "frame"]
@@ -55,7 +55,7 @@ def test_trying_now_needs_no_wait(window: Any) -> None:
     with served(Double(), port):
         page.get_by_role("button", name="Try now").click()
         page.locator("#link:is([data-state=connected], [data-state=running])").wait_for(
-            timeout=1500
+            timeout=4000
         )
 
 

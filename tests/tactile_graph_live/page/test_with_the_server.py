@@ -96,7 +96,7 @@ def test_two_hundred_wrong_saves_leave_the_old_graph_running(window: Any, file: 
         before = page.locator("#frames").inner_text()
         for number in range(200):
             save(file, WRONG[number % len(WRONG)] + f"# {number}\n")
-            time.sleep(0.03)
+            page.wait_for_timeout(30)  # and lets the page go on
         banner = page.locator("#trouble")
         save(file, WRONG[1])
         wait_for(lambda: "level_v" in banner.inner_text(), "the errors are told", 20)
