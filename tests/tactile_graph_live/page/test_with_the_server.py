@@ -166,10 +166,11 @@ def test_record_and_tare(window: Any, file: Path) -> None:
         page.get_by_label("Label").fill("cup")
         page.get_by_role("button", name="Record").click()
         page.locator("#record[aria-pressed=true]").wait_for()
+        told = page.locator("#recording")
+        wait_for(lambda: "frames into " in told.inner_text(), "the recording is told")
         page.wait_for_timeout(700)
         page.get_by_role("button", name="Stop").click()
         page.locator("#record[aria-pressed=false]").wait_for()
-        assert "frames in" in page.locator("#recording").inner_text()
         assert len(list(file.parent.glob("*.zarr"))) == 1
         page.keyboard.press("t")
         page.locator("#tare[aria-pressed=true]").wait_for(timeout=10_000)
