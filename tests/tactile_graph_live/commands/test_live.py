@@ -172,13 +172,13 @@ def test_what_is_played_waits_and_is_stepped_through(folder: Path) -> None:
         page.until("pulse", paused=True)
         counts = [-1] * 6
         while len(set(counts[-6:])) > 1 or counts[-1] < 1:  # it stands still
-            counts.append(page.until("pulse")["frames"])
+            counts.append(page.until("pulse")["kept_frames"])
         n = counts[-1]
         page.ask("scrub", back_s=0.0)
-        page.until("frame", index=n - 1)
+        page.until("frame", index=n - 1)  # kept are those too that were shed
         page.ask("step")
         page.until("frame", index=n)
-        while page.until("pulse")["frames"] != n + 1:
+        while page.until("pulse")["kept_frames"] != n + 1:
             pass
 
 
