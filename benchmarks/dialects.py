@@ -25,6 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from helpers_dialects import Dialect, became, dialects, mutated
+from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
@@ -89,7 +90,7 @@ def main() -> None:
     parser.add_argument("--mutations", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    files = [*dialects(), *more_dialects()]
+    files = [*dialects(), *more_dialects(), *export_dialects()]
     with tempfile.TemporaryDirectory() as name:
         wrong = table(files, Path(name))
         wrong += mutations(files, Path(name), asked.mutations, asked.seed)

@@ -1,13 +1,14 @@
 """Frames a second of `run --workers`, beside joblib and Dask's bag over the same function.
 
     python benchmarks/workers.py                           # circle-3, 20,000 frames
-    python benchmarks/workers.py --frames 1000000 --only memory
+    python benchmarks/workers.py --frames 1000000 --repeated --only memory
 
-All read the same store and write JSON lines. joblib and Dask's bag are given, as people write it, a
-function that reads a range of frames with the library and returns their lines; the lines are
-joined in order. Kernels are compiled before, and each is run once before it counts; times are of
-the whole command or call, workers' start included. Memory is the most that all processes of a run
-held together (proportional set size), sampled.
+All read the same store and write JSON lines. Two processes apart, each a plain run over half of the
+frames with nothing between them, are the most that two cores can give. joblib and Dask's bag are
+given, as people write it, a function that reads a range of frames with the library and returns
+their lines; the lines are joined in order. Kernels are compiled before, and each is run once before
+it counts; times are of the whole command or call, workers' start included. Memory is the most that
+all processes of a run held together (proportional set size), sampled.
 """
 
 from __future__ import annotations
@@ -25,9 +26,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from throughput import GRID, discs
+
 MB = 1e6
 LOOK_S = 0.25
 PORTION = 1000
+REPEATED = 5000
+"""Frames that are repeated to make many."""
 
 
 def command(*words: str) -> list[str]:
@@ -36,6 +42,18 @@ def command(*words: str) -> list[str]:
 
 def ran(*words: str) -> None:
     subprocess.run(command(*words), check=True, stderr=subprocess.DEVNULL)
+
+
+def make_store(store: str, n_frames: int, repeated: bool) -> None:
+    """Write simulated frames, or a few thousand of them again and again, without their truth."""
+    if not repeated:
+        ran("convert", store, "--source", "simulate", "--with", f"frames={n_frames}")
+        return
+    values = np.tile(discs(REPEATED), (-(-n_frames // REPEATED), 1, 1))[:n_frames]
+    recording = f"{store}.npz"
+    np.savez(recording, values=values, **GRID)  # type: ignore[arg-type]
+    ran("convert", recording, store)
+    Path(recording).unlink()
 
 
 # -- the same by others' means ------------------------------------------------------------------
@@ -71,6 +89,23 @@ def bag_run(store: str, pipeline: str, n_frames: int, n_workers: int, output: st
     bag = dask.bag.from_sequence(lows, partition_size=1).map(partial(lines_of, store, pipeline))
     with dask.config.set(scheduler="processes", num_workers=n_workers):
         Path(output).write_text("".join(bag.compute()))
+
+
+def apart(store: str, pipeline: str, n_frames: int, output: str) -> None:
+    """Run each half of the frames by a process of its own, at the same time."""
+    half = n_frames // 2
+    parts = [f"{output}.{k}.jsonl" for k in range(2)]
+    runs = [
+        subprocess.Popen(
+            command("run", pipeline, store, "--frames", span, "-o", part),
+            stderr=subprocess.DEVNULL,
+        )
+        for span, part in zip((f"0:{half}", f"{half}:{n_frames}"), parts, strict=True)
+    ]
+    codes = [run.wait() for run in runs]
+    if any(codes):
+        raise RuntimeError("a run over half of the frames failed")
+    Path(output).write_bytes(b"".join(Path(part).read_bytes() for part in parts))
 
 
 # -- measured ----------------------------------------------------------------------------------
@@ -114,16 +149,19 @@ def watched(session: int) -> Iterator[list[float]]:
 
 
 def memory_of(*words: str) -> dict[str, float]:
-    """Return how much a command held at most in each quarter of its time."""
+    """Return how long a command took, and how much it held at most up to parts of that time."""
     process = subprocess.Popen(command(*words), stderr=subprocess.DEVNULL, start_new_session=True)
     begun = time.perf_counter()
     with watched(process.pid) as samples:
         code = process.wait()
     if code:
         raise RuntimeError(f"{' '.join(words)} ended with {code}")
-    quarter = max(1, len(samples) // 4)
-    parts = {f"quarter {k + 1}": max(samples[k * quarter :][:quarter]) for k in range(4)}
-    return {"seconds": time.perf_counter() - begun, **parts}
+    spent = time.perf_counter() - begun
+    parts = {
+        f"up to {percent} %": max(samples[: max(1, len(samples) * percent // 100)])
+        for percent in (10, 50, 100)
+    }
+    return {"seconds": spent, **parts}
 
 
 def speeds(store: str, args: argparse.Namespace, folder: Path) -> dict[str, float]:
@@ -134,6 +172,7 @@ def speeds(store: str, args: argparse.Namespace, folder: Path) -> dict[str, floa
         "one process": lambda out: ran(*run, out),
         "--workers 1": lambda out: ran(*run, out, "--workers", "1"),
         "--workers 2": lambda out: ran(*run, out, "--workers", "2"),
+        "two apart": lambda out: apart(*given, out),
         "joblib, 1": lambda out: joblib_run(*given, 1, out),
         "joblib, 2": lambda out: joblib_run(*given, 2, out),
         "dask.bag, 2": lambda out: bag_run(*given, 2, out),
@@ -154,6 +193,9 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=20_000)
     parser.add_argument("--pipeline", default="circle-3")
     parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument(
+        "--repeated", action="store_true", help="the same few thousand frames again and again"
+    )
     parser.add_argument("--only", choices=("speed", "memory"))
     parser.add_argument("--json")
     args = parser.parse_args()
@@ -161,14 +203,18 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         store = str(folder / "frames.zarr")
-        ran("convert", store, "--source", "simulate", "--with", f"frames={args.frames}")
+        make_store(store, args.frames, args.repeated)
         if args.only != "memory":
             found["frames a second"] = speeds(store, args, folder)
         if args.only != "speed":
-            out = str(folder / "memory.jsonl")
-            found["megabytes"] = memory_of("run", args.pipeline, store, "--workers", "2", "-o", out)
-            told = ", ".join(f"{k} {v:.0f}" for k, v in found["megabytes"].items())
-            print(f"memory of --workers 2, MB: {told}", flush=True)
+            run = ("run", args.pipeline, store, "-o", str(folder / "memory.jsonl"))
+            found["megabytes"] = {
+                name: memory_of(*run, *more)
+                for name, more in (("one process", ()), ("--workers 2", ("--workers", "2")))
+            }
+            for name, held in found["megabytes"].items():
+                told = ", ".join(f"{k} {v:.0f}" for k, v in held.items() if k != "seconds")
+                print(f"{name}: {held['seconds']:.0f} s; MB: {told}", flush=True)
     if args.json:
         Path(args.json).write_text(json.dumps(found, indent=1) + "\n")
 

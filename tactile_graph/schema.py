@@ -138,6 +138,9 @@ class _Maker:
                     "title": "What it reads: a node, a list, or a map of ports",
                 },
                 "with": {"type": ["object", "null"], "title": "Settings"},
+                "free": {"type": ["object", "null"],
+                         "additionalProperties": {"type": "array", "minItems": 1},
+                         "description": "Settings that 'tune' may choose: lists of values."},
                 "when": {"$ref": "#/$defs/condition"},
                 "each": {"type": "boolean",
                          "description": "Run it once for each item of the list it reads."},
@@ -154,13 +157,14 @@ class _Maker:
             "oneOf": [{"required": [kind]} for kind in ("step", "use", "first_of")],
             "allOf": [
                 {"if": {"required": ["first_of"]},
-                 "then": {"properties": {"in": False, "with": False, "each": False}}},
+                 "then": {"properties": dict.fromkeys(("in", "with", "free", "each"), False)}},
                 {"if": {"not": {"required": ["step"]}},
                  "then": {"properties": {"time_limit_s": False, "isolated": False}}},
                 {"if": {"required": ["use"]},
                  "then": {"properties": {
                      "with": {"propertyNames": {"pattern": "\\."},
                               "description": "Settings of the pipeline's nodes, as node.setting."},
+                     "free": {"propertyNames": {"pattern": "\\."}},
                      "in": {"description": "The pipeline's frame, or a map of frame and of nodes "
                             "of it whose place is taken."},
                  }}},
@@ -206,6 +210,7 @@ class _Maker:
         if signature.kind is not Kind.SOURCE:
             self.defs[f"{name}.in"] = _ports(signature)
             then["properties"]["in"] = {"$ref": f"#/$defs/{name}.in"}
+            then["properties"]["free"] = self._free(name, signature)
             required += ["in"] if any(p.required for p in signature.ports) else []
         if required:
             then["required"] = required
@@ -227,6 +232,16 @@ class _Maker:
             },
         }
         return {**made, "required": required} if required else made
+
+    def _free(self, name: str, signature: Signature) -> Schema:
+        """Return what a node of a step may leave to ``tune``: values its settings take."""
+        at = f"#/$defs/{name}.with/properties/"
+        return {
+            "additionalProperties": False,
+            "properties": {
+                s.name: {"items": {"$ref": at + s.name}} for s in signature.settings
+            },
+        }  # fmt: skip
 
     def _setting(self, step: str, setting: Setting, meaning: str) -> Schema:
         prefix = f"#/$defs/{step}.{setting.name}."

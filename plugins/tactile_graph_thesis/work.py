@@ -41,6 +41,10 @@ class Work:
         self.seed, self.readings, self.quick, self.pad_name = seed, readings, quick, pad_name
         self._done: dict[Hashable, Any] = {}
 
+    def settings(self) -> tuple[int, int, bool, str]:
+        """Return what an equal one is made with."""
+        return self.seed, self.readings, self.quick, self.pad_name
+
     @property
     def group(self) -> int:
         """How many readings the thesis took of each object; fewer where there are fewer."""

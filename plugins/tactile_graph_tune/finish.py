@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.search.front import Choice, Weighed
 from tactile_graph_tune.searching import Told, Tuning
 from tactile_graph_tune.split import Interval, interval_of
-from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.table.kinds import Reals
 from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, GuardWorth, Point, Tuned, Weight
 
 MOST_ON_FRONT = 12
@@ -35,7 +36,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
     ran = rerun(pipelines, frames, tuning.judged, request.rounds, request.seed)
     told("run the last", 1, 1)
     points = {
-        k: Point(k, c, _predicted(tuning, c), _weight(tuning, *ran[k])) for k, c in last.items()
+        k: Point(k, c, _predicted(tuning, c), weight_of(tuning, ran[k])) for k, c in last.items()
     }
     (given_us, given), (tuned_us, tuned) = ran[GIVEN], ran[CHOSEN]
     return Tuned(
@@ -51,9 +52,9 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         bound=tuning.bound(),
         everything_us=tuning.everything_us(),
         worths=worths,
-        settings=tuning.variants[tuning.chosen.variant].settings,
+        settings=_settings(tuning, pipelines[CHOSEN]),
         ratio=_interval(tuning, tuned_us, given_us),
-        difference=_interval(tuning, tuned - given),
+        difference=weight_of(tuning, (tuned_us, tuned), (given_us, given)),
         pipeline=pipelines[CHOSEN],
         text=text,
     )
@@ -81,27 +82,38 @@ def _interval(tuning: Tuning, values: Reals, over: Reals | None = None) -> Inter
     return interval_of(values, groups, tuning.request.seed, over)
 
 
-def _weight(tuning: Tuning, time_us: Reals, loss: Reals) -> Weight:
-    return Weight(_interval(tuning, time_us), _interval(tuning, loss))
+Columns = tuple[Reals, Reals]
+"""Time and error of each frame that reports."""
+
+
+def weight_of(tuning: Tuning, found: Columns, less: Columns | None = None) -> Weight:
+    """Return the means of some columns, or of what they are more than others."""
+    truths = tuning.truths.taken(tuning.split.reporting)
+    time_us, loss = found
+    kinds = {name: (part.astype(float), of) for name, part, of in truths.parts(loss)}
+    if less is not None:
+        time_us = time_us - less[0]
+        others = {name: part for name, part, _ in truths.parts(less[1])}
+        kinds = {name: (part - others[name], of) for name, (part, of) in kinds.items()}
+    means = {name: _interval(tuning, part, of.astype(float)) for name, (part, of) in kinds.items()}
+    return Weight(_interval(tuning, time_us), **means)
 
 
 def _predicted(tuning: Tuning, choice: Choice) -> Weight:
-    return _weight(tuning, *_columns(tuning, choice))
+    return weight_of(tuning, _columns(tuning, choice))
 
 
 def _worth(tuning: Tuning, place: str) -> GuardWorth:
     choice = tuning.chosen
     without = replace(choice, chosen={p: c for p, c in choice.chosen.items() if p != place})
-    time_us, loss = _columns(tuning, choice)
-    more_us, other = _columns(tuning, without)
-    saved = more_us - time_us
+    found, other = _columns(tuning, choice), _columns(tuning, without)
+    saved, whole = float((other[0] - found[0]).mean()), float(other[0].mean())
     return GuardWorth(
         place=place,
         comparisons=choice.chosen[place],
         n_stopped=int(_stopped(tuning, place).sum()),
-        saved_us=_interval(tuning, saved),
-        saved_share=float(saved.mean() / more_us.mean()) if more_us.any() else 0.0,
-        cost=_interval(tuning, loss - other),
+        saved_share=saved / whole if whole else 0.0,
+        cost=weight_of(tuning, found, other),
         rivals=_rivals(tuning, place),
     )
 
@@ -116,10 +128,10 @@ def _stopped(tuning: Tuning, place: str) -> Any:
 
 def _rivals(tuning: Tuning, place: str) -> tuple[tuple[Comparison, float, float], ...]:
     """Return the best other fields at a place, chosen by the frames that choose."""
-    choice = tuning.chosen
+    choice, rows = tuning.chosen, tuning.split.choosing
     space = tuning.spaces[choice.variant]
     own = {c.field for c in choice.chosen[place]}
-    _, loss = _chosen_by(tuning, choice)
+    limits = tuning.means(choice, rows)._replace(time_us=inf)
     found = []
     for field in space.questions.fields.get(place, ()):
         batch = space.questions.batch(field)
@@ -128,24 +140,16 @@ def _rivals(tuning: Tuning, place: str) -> tuple[tuple[Comparison, float, float]
         best = None
         for comparison in batch.comparisons:
             its = replace(choice, chosen={**choice.chosen, place: (comparison,)})
-            time_us, its_loss = _chosen_by(tuning, its)
-            if its_loss <= loss * 1.001 and (best is None or time_us < best[0]):
-                best = (time_us, its)
+            means = tuning.means(its, rows)
+            if means.within(limits) and (best is None or means.time_us < best[0]):
+                best = (float(means.time_us), its)
         if best is not None:
             found.append(best)
-    found = sorted(found, key=lambda b: b[0])[:MOST_RIVALS]
-    rows = []
-    for _, its in found:
-        times, losses = _columns(tuning, its)
-        rows.append((its.chosen[place][0], float(times.mean()), float(losses.mean())))
-    return tuple(rows)
-
-
-def _chosen_by(tuning: Tuning, choice: Choice) -> tuple[float, float]:
-    """Return mean time and mean error on the frames that choose."""
-    space = tuning.spaces[choice.variant]
-    found = space.cascade.predicted(space.table, choice.order, choice.chosen)
-    return float(found.time_us.mean()), float(found.loss.mean())
+    told = []
+    for _, its in sorted(found, key=lambda b: b[0])[:MOST_RIVALS]:
+        means = tuning.means(its, tuning.split.reporting)
+        told.append((its.chosen[place][0], float(means.time_us), float(means.error)))
+    return tuple(told)
 
 
 # -- the file --------------------------------------------------------------------------------
@@ -164,6 +168,14 @@ def _text(tuning: Tuning, worths: tuple[GuardWorth, ...]) -> str:
     return its.text(tuning.chosen.order, tuning.chosen.chosen, head, notes)
 
 
+def _settings(tuning: Tuning, tuned: Pipeline) -> dict[str, Any]:
+    """Return what was chosen of the free settings, of nodes that are left."""
+    chosen = tuning.variants[tuning.chosen.variant].settings
+    nodes = {name: name.rpartition(".")[0] for name in chosen}
+    left = {n for n in nodes.values() if {n, n.replace("/", "_")} & set(tuned.nodes)}
+    return {name: value for name, value in chosen.items() if nodes[name] in left}
+
+
 def _parent(own: Pipeline) -> Mapping[str, str]:
     """Return what the tuned file says it evolved from: what it can name wherever it lies."""
     registry = own.registry or installed()
@@ -177,19 +189,19 @@ def _head(tuning: Tuning) -> str:
         f"Guards and order by 'tactile-graph tune {tuning.request.pipeline.name}': "
         f"{tuning.front.n_weighed} choices weighed on {len(tuning.split.choosing)} frames, "
         f"numbers of {len(tuning.split.reporting)} others ({tuning.split.how}); error: of the "
-        f"{judged.quantity}, no answer counting {judged.price:g} {judged.unit}".rstrip()
+        f"{judged.quantity} where something lies, a missed one counting {judged.price:g} "
+        f"{judged.unit}".rstrip()
     )
 
 
 def told_of(worth: GuardWorth, tuning: Tuning) -> str:
     """Return what a guard saves and costs, in words."""
-    unit = tuning.judged.unit
-    saved, cost = worth.saved_us, worth.cost
-    low, high = sorted((abs(saved.low), abs(saved.high)))
-    share = f", {100 * worth.saved_share:.0f} %" if saved.mean > 0.0 else ""
-    took = "saves" if saved.mean > 0.0 else "takes"
+    unit, saved = tuning.judged.unit, -worth.cost.time_us.mean
+    low, high = sorted(abs(x) for x in worth.cost.time_us[1:])
+    share = f", {100 * worth.saved_share:.0f} %" if saved > 0.0 else ""
+    took = "saves" if saved > 0.0 else "takes"
     return (
-        f"{took} {abs(saved.mean):.3g} us a frame ({low:.3g} to {high:.3g}){share}; error "
-        f"{cost.mean:+.2g} {unit} ({cost.low:+.2g} to {cost.high:+.2g}); does not hold in "
-        f"{worth.n_stopped} of {len(tuning.split.reporting)} frames"
-    ).replace("  ", " ")
+        f"{took} {abs(saved):.3g} us a frame ({low:.3g} to {high:.3g}){share}; "
+        f"{worth.cost.told(unit)}; does not hold in {worth.n_stopped} of "
+        f"{len(tuning.split.reporting)} frames"
+    )

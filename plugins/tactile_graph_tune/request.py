@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -11,6 +12,7 @@ import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError, did_you_mean
+from tactile_graph.many import Place
 from tactile_graph.pipeline.document import assignment
 from tactile_graph_compare.variants.prepare import setting_names
 
@@ -38,30 +40,40 @@ class Request:
     quantity : str, optional
         Of its error; the first there is if not given.
     price : float, optional
-        What no answer, and one where nothing lies, counts.
-    most_loss : float, optional
-        Find the cheapest whose mean error is no greater. If neither this nor ``most_us`` is given:
-        than that of the pipeline as it is, or of its best rung always run, whichever is less.
+        What no answer counts, and the most that one can: who is off by it has missed.
+    most_error : float, optional
+        Find the cheapest whose mean error, where something lies, is no greater; no greater than
+        that of the pipeline as it is if neither this nor ``most_us`` is given.
+    most_missed, most_false : float, optional
+        Shares of the frames where something lies that may be missed, and of those where nothing
+        does that may be answered; the pipeline's own if not given.
     most_us : float, optional
-        Find the best that takes no longer, mean over the frames.
+        Find the least error that takes no longer, mean over the frames.
     fields : tuple of str
         The only fields that guards may ask; all where empty.
     free : tuple of Free
+        Settings that may be chosen, besides those that the file marks; instead of its values where
+        it marks the same.
     rounds : int
         How often every frame is run: times are medians.
     seed : int
+    place : Place, optional
+        Where workers run everything on every frame; this process does where there is none.
     """
 
     pipeline: Pipeline
     answer: str = ""
     quantity: str | None = None
     price: float | None = None
-    most_loss: float | None = None
+    most_error: float | None = None
+    most_missed: float | None = None
+    most_false: float | None = None
     most_us: float | None = None
     fields: tuple[str, ...] = ()
     free: tuple[Free, ...] = ()
     rounds: int = 3
     seed: int = 0
+    place: Place | None = None
 
     def variants(self) -> list[dict[str, Any]]:
         """Return every combination of the free settings' values, the file's own first.
@@ -78,15 +90,15 @@ class Request:
                 raise UsageError(
                     f"--free {free.name}: pipeline {self.pipeline.name!r} has no such setting{hint}"
                 )
-        n = int(np.prod([len(f.values) for f in self.free]))
+        every = {**self.pipeline.free, **{f.name: f.values for f in self.free}}
+        n = math.prod(map(len, every.values()))
         if n > MOST_VARIANTS:
             raise UsageError(
-                f"--free: {n} combinations of values, at most {MOST_VARIANTS}: name fewer values "
-                "(node.setting=low:high:count)"
+                f"{', '.join(every)}: {n} combinations of values, at most {MOST_VARIANTS}: name "
+                "fewer values (--free node.setting=low:high:count), or mark fewer settings free"
             )
-        names = [f.name for f in self.free]
-        combined = product(*(f.values for f in self.free)) if self.free else ()
-        return [{}, *(dict(zip(names, values, strict=True)) for values in combined)]
+        combined = product(*every.values()) if every else ()
+        return [{}, *(dict(zip(every, values, strict=True)) for values in combined)]
 
 
 def parse_free(text: str) -> Free:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.wires.frame import Frame
-from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.table.kinds import Reals
 from tactile_graph_tune.table.losses import LossOf
 from tactile_graph_tune.table.record import WARM_FRAMES, Judged
 

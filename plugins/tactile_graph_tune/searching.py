@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,13 @@ from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
 from tactile_graph_tune.search.front import Choice, Front
-from tactile_graph_tune.search.oracle import Bound, Options, bound_of, options_of
+from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
-from tactile_graph_tune.search.search import Search, Space, orders_of, pruned
-from tactile_graph_tune.search.select import Goal, limit_of, merged, selected
+from tactile_graph_tune.search.search import Aim, Search, Space, orders_of, pruned
+from tactile_graph_tune.search.select import Goal, Rows, merged, selected
 from tactile_graph_tune.split import Split, halves_of, split_of
 from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.kinds import Means, Truths
 from tactile_graph_tune.table.losses import PRICES, quantity_of
 from tactile_graph_tune.table.record import Judged, Rounds, leaves_of, record
 
@@ -29,6 +31,10 @@ COSTLY = 0.1
 """Share of all time from which a step without a guard is offered one."""
 MOST_OFFERED = 3
 N_PRICES = 5
+MARGINS = (1.0, 0.9, 0.75)
+"""Shares of the greatest error allowed that descents aim at: a margin holds on other frames."""
+OVER = 1e4
+"""What being over a limit costs, in times of running everything."""
 Told = Callable[[str, int, int], None]
 """Is told what is done, how far, and how far it goes."""
 
@@ -64,6 +70,15 @@ class Tuning:
     always: Choice
     chosen: Choice
 
+    @property
+    def truths(self) -> Truths:
+        """In which frames something lies."""
+        return self.variants[0].table.truths
+
+    def means(self, choice: Choice, rows: Rows) -> Means:
+        """Return what a choice comes to over some frames."""
+        return _means(self.variants, choice, rows)
+
     def everything_us(self) -> float:
         """Return the mean time of the frames that report, nothing skipped."""
         nodes = self.variants[0].table.nodes.values()
@@ -74,7 +89,7 @@ class Tuning:
         rows = self.split.reporting
         options = [_options(v, v.table.taken(rows), self.judged.answer) for v in self.variants]
         times, losses = (np.concatenate(part) for part in zip(*options, strict=True))
-        return bound_of(Options(times, losses))
+        return Bound(Options(times, losses), self.truths.taken(rows))
 
 
 def searched(
@@ -82,6 +97,45 @@ def searched(
 ) -> Tuning:
     """Return what the search found; parameters and errors as of `tuner.tune`."""
     judged = _judged(request)
+    every, n_apart = _known(frames, held_out)
+    split = split_of(every, n_apart, request.seed)
+    variants = _variants(request, judged, every, lambda n, of: told("run everything", n, of))
+    _check_truths(variants, judged)
+    _check_answers(variants, judged)
+    spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
+    _check_choices(request, spaces)
+
+    def weigh(choice: Choice, rows: Rows) -> Means:
+        return _means(variants, choice, rows)
+
+    always = _always(spaces[0])
+    goal = Goal(spaces[0].given, request.most_us, request.most_error,
+                request.most_missed, request.most_false)  # fmt: skip
+    folds = halves_of(every, split, request.seed)
+    fronts = [Front() for _ in folds]
+    for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
+        half = [_space(v, v.table.taken(rows), request) for v in variants]
+        _search(half, front, goal.limits(rows, weigh))
+        told("weigh choices", k + 1, len(folds))
+    found = [p.choice for front in fronts for p in front.points]
+    chosen = selected(goal, [goal.given, always, *found], folds, weigh)
+    limits = goal.limits(split.choosing, weigh)
+    chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
+    front = merged(fronts, found, split.choosing, weigh, limits)
+    return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
+
+
+def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:
+    variant = variants[choice.variant]
+    found = variant.predicted(choice)
+    return found.taken(rows).means(variant.table.truths.taken(rows))
+
+
+# -- before the search -----------------------------------------------------------------------
+
+
+def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Frame], int]:
+    """Return the frames whose truth is known, those held out last, and how many these are."""
     known = [f for f in frames if f.truth is not None]
     apart = [f for f in held_out if f.truth is not None]
     for given, left in ((frames, known), (held_out, apart)):
@@ -90,48 +144,25 @@ def searched(
                 f"none of {len(given)} frames has a truth to choose by: give --truth FILE, or "
                 "recordings that hold it (docs/how-to/attach-truth.md)"
             )
-    every = [*known, *apart]
-    split = split_of(every, len(apart), request.seed)
-    variants = _variants(request, judged, every, lambda n, of: told("run everything", n, of))
+    return [*known, *apart], len(apart)
+
+
+def _check_truths(variants: Sequence[Variant], judged: Judged) -> None:
     scored = np.all([v.table.scored for v in variants], axis=0)
     if not scored.all():
         raise UsageError(
-            f"in {int((~scored).sum())} of {len(every)} frames the truth says nothing of "
+            f"in {int((~scored).sum())} of {len(scored)} frames the truth says nothing of "
             f"{judged.quantity!r}: choose another with --error, or leave these frames out"
         )
-    _check_answers(variants, judged)
-    spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
-    always = _always(spaces[0])
+
+
+def _check_choices(request: Request, spaces: Sequence[Space]) -> None:
     if not spaces[0].questions.fields and len(spaces) == 1 and len(spaces[0].given.order) < 2:
         raise UsageError(
             f"pipeline {request.pipeline.name!r}: nothing to choose: it has no guard, no first_of "
             "that answers, and no costly step before which a field is known; mark a setting free "
-            "(--free node.setting=low:high)"
+            "(free: {setting: [values]}, or --free node.setting=low:high)"
         )
-    folds = halves_of(every, split, request.seed)
-    fronts = [Front() for _ in folds]
-    for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
-        half = [_space(v, v.table.taken(rows), request) for v in variants]
-        _search(half, front, judged)
-        told("weigh choices", k + 1, len(folds))
-
-    def predict(choice: Choice) -> Predicted:
-        return variants[choice.variant].predicted(choice)
-
-    goal = _goal(request, (spaces[0].given, always))
-    chosen = selected(goal, fronts, folds, predict)
-    allowed = limit_of(goal, split.choosing, predict)
-    chosen = pruned(spaces[chosen.variant], chosen, allowed, goal.by_time)
-    front = merged(fronts, split.choosing, predict)
-    return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
-
-
-def _goal(request: Request, references: tuple[Choice, ...]) -> Goal:
-    by_time = request.most_us is not None
-    return Goal(request.most_us if by_time else request.most_loss, by_time, references)
-
-
-# -- before the search -----------------------------------------------------------------------
 
 
 def _judged(request: Request) -> Judged:
@@ -160,11 +191,12 @@ def _variants(
         for s in settings
     ]
     kept: set[str] = set()
+    rounds = Rounds(request.rounds, request.seed, told, request.place)
     while True:
         parted = [d.keeping(kept) for d in given]
         opened = [d.opened() for d in parted]
         also = [c.field for p in parted[0].places.values() for c in p.given]
-        tables = record(opened, also, frames, judged, Rounds(request.rounds, request.seed, told))
+        tables = record(opened, also, frames, judged, rounds)
         nodes = set().union(*(bound(p, t) for p, t in zip(opened, tables, strict=True)))
         stay = {p.name for d in parted for p in d.places.values() if nodes & set(p.nodes)}
         if not stay:
@@ -236,27 +268,35 @@ def _options(variant: Variant, table: Table, answer: str) -> Options:
 
 
 def _always(space: Space) -> Choice:
-    """Return the one rung, always run, whose error is least."""
+    """Return the one rung, always run, whose error is least where something lies."""
     rungs: list[Order] = [(r,) for r in space.given.order] or [()]
-    return min((Choice(0, order, {}) for order in rungs), key=lambda c: _loss(space, c))
+    return min((Choice(0, order, {}) for order in rungs), key=lambda c: _alone(space, c).error)
 
 
 # -- the search ------------------------------------------------------------------------------
 
 
-def _search(spaces: Sequence[Space], front: Front, judged: Judged) -> None:
+def _search(spaces: Sequence[Space], front: Front, limits: Means) -> None:
     own = spaces[0]
-    whole = own.cascade.predicted(own.table, own.given.order, {})
-    unit_us = float(whole.time_us.mean()) / judged.price
-    prices = (unit_us * np.geomspace(0.3, 3000.0, N_PRICES)).tolist()
+    whole_us = float(_alone(own, Choice(0, own.given.order, {})).time_us)
+    aims = _aims(whole_us, own.table.truths.price, limits)
+    allowed = limits._replace(time_us=inf, error=inf)
     for space in spaces:
-        alone = [
-            float(space.cascade.predicted(space.table, (r,), {}).time_us.mean())
-            for r in space.given.order
-        ]
-        Search(space, front, prices).run(orders_of(space.given.order, alone))
+        alone = [float(_alone(space, Choice(0, (r,), {})).time_us) for r in space.given.order]
+        Search(space, front, aims, allowed).run(orders_of(space.given.order, alone))
 
 
-def _loss(space: Space, choice: Choice) -> float:
+def _aims(whole_us: float, price: float, limits: Means) -> list[Aim]:
+    """Return aims at each trade of time for error, and at the limits with some margin."""
+    over_us = OVER * whole_us
+    free = limits._replace(error=inf)
+    prices = (whole_us / price * np.geomspace(0.3, 3000.0, N_PRICES)).tolist()
+    aims = [Aim(p, free, over_us) for p in prices]
+    if limits.error < inf:
+        aims += [Aim(0.0, limits._replace(error=m * limits.error), over_us) for m in MARGINS]
+    return aims
+
+
+def _alone(space: Space, choice: Choice) -> Means:
     found = space.cascade.predicted(space.table, choice.order, choice.chosen)
-    return float(found.loss.mean())
+    return found.means(space.table.truths)

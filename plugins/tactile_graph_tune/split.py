@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
 from tactile_graph.wires.frame import Frame
-from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.table.kinds import Reals
 
 LEAST_FRAMES = 8
 BLOCKS = 40
@@ -130,14 +130,18 @@ def interval_of(
     seed : int
         Draws the resamples, the same for every row of a table.
     over : ndarray of float64, shape (n,), optional
-        Return the ratio of the means of values to these instead.
+        Return the ratio of the means of values to these instead; NaN if they are all 0.
     """
     _, at = np.unique(groups, return_inverse=True)
     below = np.ones(len(values)) if over is None else over
     sums, counts = np.bincount(at, values), np.bincount(at, below)
+    if not counts.any():
+        return Interval(np.nan, np.nan, np.nan)
     rng = np.random.default_rng([seed, 9])
     drawn = rng.integers(0, len(sums), (RESAMPLES, len(sums)))
-    means = sums[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
+    weights = counts[drawn].sum(axis=1)
+    known = weights > 0.0  # where frames that count are few, a draw may hold none
+    means = sums[drawn].sum(axis=1)[known] / weights[known]
     tail = 50.0 * (1.0 - LEVEL)
     low, high = np.percentile(means, (tail, 100.0 - tail))
     return Interval(float(values.sum() / below.sum()), float(low), float(high))

@@ -16,10 +16,20 @@ GIVEN, ALWAYS, CHOSEN = "as given", "always the best", "tuned"
 
 
 class Weight(NamedTuple):
-    """Mean time and mean error, each with its interval."""
+    """The means of `Means`, each with its interval; of no frame, NaN."""
 
     time_us: Interval
-    loss: Interval
+    error: Interval
+    missed: Interval
+    false: Interval
+
+    def told(self, unit: str) -> str:
+        """Return how much more of each kind of error there is, in words."""
+        off = self.error
+        told = f"error {off.mean:+.2g} {unit}".rstrip() + f" ({off.low:+.2g} to {off.high:+.2g})"
+        shares = (("missed", self.missed), ("false on empty", self.false))
+        named = (f", {n} {100 * its.mean:+.2g} %" for n, its in shares if its.mean == its.mean)
+        return told + "".join(named)
 
 
 @dataclass(frozen=True)
@@ -42,12 +52,10 @@ class GuardWorth:
     comparisons : tuple of Comparison
     n_stopped : int
         Frames in which it kept something from running.
-    saved_us : Interval
-        Mean time a frame takes more without it.
     saved_share : float
-        The same as a share of the time without it.
-    cost : Interval
-        Mean error a frame has more with it.
+        Time a frame takes less with it, as a share of that without.
+    cost : Weight
+        What is more with it: time, error where something lies, shares missed and false.
     rivals : tuple of (Comparison, float, float)
         The best other fields at this place: the comparison, mean time and mean error with it.
     """
@@ -55,9 +63,8 @@ class GuardWorth:
     place: str
     comparisons: tuple[Comparison, ...]
     n_stopped: int
-    saved_us: Interval
     saved_share: float
-    cost: Interval
+    cost: Weight
     rivals: tuple[tuple[Comparison, float, float], ...]
 
 
@@ -85,8 +92,10 @@ class Tuned:
     worths : tuple of GuardWorth
     settings : mapping
         What was chosen of the free settings.
-    ratio, difference : Interval
-        The tuned time over the given one, and the tuned error less the given one.
+    ratio : Interval
+        The tuned time over the given one.
+    difference : Weight
+        Tuned less given.
     pipeline : Pipeline
         The tuned one.
     text : str
@@ -105,12 +114,24 @@ class Tuned:
     worths: tuple[GuardWorth, ...]
     settings: dict[str, Any]
     ratio: Interval
-    difference: Interval
+    difference: Weight
     pipeline: Pipeline
     text: str
 
-    def share_of_saving(self, label: str = CHOSEN) -> float:
-        """Return how much of what an oracle saves at equal error a point saves."""
-        whole, own = self.everything_us, self.points[label].weight
-        least = self.bound.time_at(own.loss.mean)
-        return (whole - own.time_us.mean) / (whole - least) if whole > least else float("nan")
+    def oracle_us(self, label: str = CHOSEN) -> float:
+        """Return what an oracle takes that errs and misses no more than a point does."""
+        own = self.points[label].weight
+        return self.bound.time_at(own.error.mean, own.missed.mean)
+
+    def share_of_saving(self, label: str = CHOSEN, over_us: float | None = None) -> float:
+        """Return how much of what an oracle saves at equal error a point saves.
+
+        Parameters
+        ----------
+        label : str
+        over_us : float, optional
+            The time that is saved against; that of skipping nothing if not given.
+        """
+        whole = self.everything_us if over_us is None else over_us
+        own, least = self.points[label].weight.time_us.mean, self.oracle_us(label)
+        return (whole - own) / (whole - least) if whole > least else float("nan")

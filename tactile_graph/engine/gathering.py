@@ -12,11 +12,18 @@ from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack,
 
 WORTH_BLOCKS = 2000
 """Frames from which on blocks are sooner done, kernels that are not on disk yet included."""
+LONG = 200
+"""Frames beyond which a run has machine code made before the first of them."""
 FIRST, MOMENT_S = 16, 0.1
 """Frames of the first block, and how long one may take: who waits sees that something happens."""
 SLOW_S, PATIENCE_S = 0.002, 0.02
 """A frame that took longer to come is handed on at once, with all before it; so are all after a
 while, as a source that lives may fall silent."""
+
+
+def is_long(n_frames: int | None) -> bool:
+    """Return whether machine code is worth its start for so many frames; None if nobody knows."""
+    return n_frames is None or n_frames > LONG
 
 
 def gathered(frames: Iterable[Frame | FrameStack]) -> Iterator[FrameStack]:

@@ -1,5 +1,17 @@
 """Many frames: work in portions, done by other processes, its results in order."""
 
-from tactile_graph.many.executor_kind import ExecutorKind, Opened
+from tactile_graph.many.division import one_process_only
+from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
+from tactile_graph.many.portion import Portion
+from tactile_graph.many.sharing import KILLER, Sharing, for_the_way
 
-__all__ = ["ExecutorKind", "Opened"]
+__all__ = [
+    "KILLER",
+    "ExecutorKind",
+    "Opened",
+    "Place",
+    "Portion",
+    "Sharing",
+    "for_the_way",
+    "one_process_only",
+]

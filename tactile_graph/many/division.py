@@ -71,6 +71,16 @@ def _remembered(node: Node) -> int | None:
     return n if isinstance(n, int) and n >= 0 else None
 
 
+def one_process_only(plan: Plan) -> str:
+    """Return why frames of a plan cannot be given to workers in any order; "" if they can."""
+    for item in plan.items:
+        if item.node is not None and item.node.is_sink:
+            return f"{item.name} writes something itself"
+        if item.node is not None and item.node.stateful:
+            return f"{item.name} keeps state from frame to frame"
+    return ""
+
+
 class Settling:
     """Whether state that began anew has become what it would be had it seen all frames before.
 

@@ -4,25 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.many.division import Division
-from tactile_graph.many.portion import Portion, packed
+from tactile_graph.many.portion import Portion
+from tactile_graph.many.sent import PortionSize, sent
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
-from tactile_graph.wires.frame import Frame
-
-GOAL_S = 0.5
-"""How long a worker should take over a portion: long beside the way to it, short for people."""
-FIRST, MOST = 16, 4096
-GROWTH = 4
-"""Times that a portion may be longer than the one before."""
-MOST_BYTES = 1_000_000
-"""Of the frames that are sent with a portion."""
 
 
 def ranges_of(source: Source | None) -> Ranges | None:
@@ -59,6 +51,13 @@ class Feed:
         Which frames, by their place in the source.
     division : Division
     ranges : Ranges, optional
+    in_stacks : bool
+        Whether frames that are sent go in stacks where the source has them so.
+
+    Attributes
+    ----------
+    size : PortionSize
+        Of the next portion.
     """
 
     def __init__(
@@ -69,13 +68,16 @@ class Feed:
         span: tuple[int, int | None],
         division: Division,
         ranges: Ranges | None,
+        in_stacks: bool = False,
     ) -> None:
         self._pipeline, self._seed, self._report = pipeline, seed, report
         self._division, self._ranges = division, ranges
         low, high = span
+        self._in_stacks = in_stacks and high is None
         self.start = low
         self._stop = high
-        self._size = FIRST
+        self.size = PortionSize()
+        self._begun: Iterator[Portion] | None = None
         if ranges is not None:
             n = ranges.n_frames
             self._stop = n if high is None else min(high, n)
@@ -86,22 +88,24 @@ class Feed:
         """Whether workers read the frames themselves."""
         return self._ranges is not None
 
+    def begin(self, low: int) -> None:
+        """Read the first portion where frames are sent: the source then says how many there are."""
+        if self._ranges is None:
+            portions = self._sent(low)
+            first = next(portions, None)
+            self._begun = iter(()) if first is None else chain([first], portions)
+
     def portions(self, low: int, n_workers: int) -> Iterator[Portion]:
         """Yield the portions from the frame at a place on."""
         if self._ranges is not None:
             return self._read(low, n_workers, self._ranges)
-        return self._sent(low)
+        begun, self._begun = self._begun, None
+        return self._sent(low) if begun is None else begun
 
     def send(self) -> None:
         """Send frames from now on: they cannot be read in any order."""
         self._ranges = None
         self._report.n_expected = None  # the source will say so itself
-
-    def took(self, n_frames: int, seconds: float) -> None:
-        """Learn from how long a portion took how long the next ones should be."""
-        if n_frames > 0 and seconds > 0.0:
-            wanted = int(GOAL_S * n_frames / seconds)
-            self._size = max(1, min(wanted, GROWTH * max(n_frames, FIRST), MOST))
 
     def _read(self, low: int, n_workers: int, ranges: Ranges) -> Iterator[Portion]:
         stop = ranges.n_frames if self._stop is None else self._stop
@@ -118,27 +122,14 @@ class Feed:
 
     def _whole_chunks(self, low: int, stop: int, n_workers: int, together: int) -> int:
         """Return how long a portion is: of whole chunks, and shorter towards the end."""
-        size = min(self._size, max(1, (stop - low) // (2 * n_workers)))
+        size = min(self.size.n_frames, max(1, (stop - low) // (2 * n_workers)))
         if size < together:
             return min(size, together - low % together)
         return (low + size) // together * together - low
 
     def _sent(self, low: int) -> Iterator[Portion]:
-        with closing(self._pipeline.frames(self._seed, self._report)) as frames:  # type: ignore[type-var]
-            wanted = islice(frames, low, self._stop)
-            while True:
-                taken = self._taken(wanted)
-                if not taken:
-                    return
-                yield Portion(low, low + len(taken), packed(taken))
-                low += len(taken)
-
-    def _taken(self, frames: Iterator[Frame]) -> list[Frame]:
-        taken: list[Frame] = []
-        n_bytes = 0
-        for frame in islice(frames, self._size):
-            taken.append(frame)
-            n_bytes += frame.image.values.nbytes
-            if n_bytes >= MOST_BYTES:
-                break
-        return taken
+        pipeline = self._pipeline
+        in_stacks = self._in_stacks and low == 0  # places count frames
+        source = pipeline.frames_in_stacks if in_stacks else pipeline.frames
+        with closing(source(self._seed, self._report)) as frames:  # type: ignore[type-var]
+            yield from sent(islice(frames, low, self._stop), low, self.size)

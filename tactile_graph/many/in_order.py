@@ -52,6 +52,8 @@ class InOrder(Generic[Done]):
         Told the place of each frame that is left out because workers died of it.
     without : iterable of int
         Places of frames that are known to be left out.
+    ahead : int
+        Portions under way for each worker.
     """
 
     def __init__(
@@ -61,11 +63,13 @@ class InOrder(Generic[Done]):
         given: bytes,
         left_out: Callable[[int], None],
         without: Iterable[int] = (),
+        ahead: int = AHEAD,
     ) -> None:
         self._place = place
         self._work = work
         self._given = given
         self._tell = left_out
+        self._ahead = ahead
         self._opened: Opened | None = None
         self._under: deque[_Under] = deque()
         self._without = frozenset(without)
@@ -94,7 +98,7 @@ class InOrder(Generic[Done]):
         """
         more = True
         while more or self._under:
-            while more and len(self._under) < AHEAD * self.n_workers + 1:
+            while more and len(self._under) < self._ahead * self.n_workers + 1:
                 portion = next(portions, None)
                 more = portion is not None
                 if portion is not None:

@@ -8,12 +8,16 @@ import signal
 import sys
 import threading
 from concurrent.futures import ProcessPoolExecutor
+from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 from tactile_graph.plugins.registry import restrict, selected
+
+WANTED = ("tactile_graph.cli.many.job", "numba")
+"""What workers need before long, whether this process does or not."""
 
 
 def opened(address: str, n_workers: int | None) -> Opened:
@@ -40,6 +44,14 @@ def opened(address: str, n_workers: int | None) -> Opened:
     return Opened(pool, n, end)
 
 
+def hurry() -> None:
+    """Begin to get ready what workers are forked from, while this process gets ready itself."""
+    if _context().get_start_method() == "forkserver":
+        from multiprocessing.forkserver import ensure_running
+
+        ensure_running()
+
+
 def _context() -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -54,6 +66,7 @@ def _imported() -> list[str]:
     That process runs no threads. Of other packages it imports the outermost module only.
     """
     names = [n for n in sys.modules if n.startswith("tactile_graph") and n != "tactile_graph.cli"]
+    names += [n for n in WANTED if find_spec(n) is not None]
     others = {n.partition(".")[0] for n in sys.modules} - sys.stdlib_module_names
     return names + sorted(n for n in others if n.isidentifier() and not n.startswith("_"))
 

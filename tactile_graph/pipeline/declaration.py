@@ -14,7 +14,8 @@ TOP_KEYS = (
     "pipeline", "about", "evolves", "source", "deadline_us", "conditions", "nodes", "outputs",
 )  # fmt: skip
 NODE_KEYS = (
-    "step", "use", "first_of", "in", "with", "when", "each", "time_limit_s", "isolated", "about",
+    "step", "use", "first_of", "in", "with", "free", "when", "each", "time_limit_s", "isolated",
+    "about",
 )  # fmt: skip
 OF_STEPS = ("time_limit_s", "isolated")
 """Keys of nodes that run a step themselves."""
@@ -47,6 +48,7 @@ class NodeDeclaration:
     first_of: list[str] | None = None
     inputs: Any = None
     settings: dict[str, Any] = field(default_factory=dict)
+    free: dict[str, list[Any]] = field(default_factory=dict)
     when: str | None = None
     each: bool = False
     time_limit_s: float | None = None
@@ -256,13 +258,14 @@ class _Declarer:
         self.text(body, "about", *path, what=f"{what}, 'about'")
         if "first_of" in body:
             node.first_of = self.refs(body["first_of"], (*path, "first_of"), f"{what}, 'first_of'")
-            for key in ("in", "with", "each"):
+            for key in ("in", "with", "free", "each"):
                 if key in body:
                     self.problem(
                         f"{what}: {key!r} makes no sense beside 'first_of'", *path, key, key=True
                     )
         node.inputs = self.inputs(body.get("in"), (*path, "in"), what)
         node.settings = self.mapping(body.get("with"), (*path, "with"), what)
+        node.free = self.free(body.get("free"), (*path, "free"), what)
         when = body.get("when")
         given = {"when": self.document.spelled(*path, "when")} if isinstance(when, bool) else body
         node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
@@ -275,6 +278,19 @@ class _Declarer:
                 text = f"{what}: {key!r} belongs to a node that has a 'step'"
                 self.problem(text, *path, key, key=True)
         return node
+
+    def free(self, data: Any, path: Path, what: str) -> dict[str, list[Any]]:
+        if data is None:
+            return {}
+        wanted = "a mapping of settings to lists of the values they may take"
+        if not isinstance(data, dict):
+            self.problem(f"{what}: 'free' must be {wanted}, got {kind_of(data)}", *path)
+            return {}
+        for name, values in data.items():
+            if not isinstance(values, list) or not values:
+                text = f"{what}, 'free': {name!r} needs a list of the values it may take"
+                self.problem(f"{text}, got {kind_of(values)}", *path, name)
+        return {k: v for k, v in data.items() if isinstance(v, list) and v}
 
     def refs(self, data: Any, path: Path, what: str) -> list[str]:
         if not isinstance(data, list) or not data:

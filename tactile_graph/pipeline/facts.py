@@ -247,6 +247,8 @@ def quantity_trouble(rule: FrameRule, got: str, frame: str = "") -> str:
     hint = f"; {rule.hint}" if rule.hint else ""
     if not hint and frame == got == UNSAID:
         hint = f"; if its values are {names[0]}, say so: --with quantity={names[0]}"
+    elif not hint and frame == got:
+        hint = f"; tactile-graph inspect names the pipelines that take recordings of {got}"
     return f"{who} takes {' or '.join(names)} at port {rule.port!r}, got {came}{hint}"
 
 

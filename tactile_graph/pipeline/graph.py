@@ -230,6 +230,8 @@ class Graph:
     file: str
     text: str
     frame_rules: tuple[FrameRule, ...] = ()
+    free: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+    """``node.setting`` -> the values it may take where a search chooses it."""
     overrides: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     source_override: tuple[str, dict[str, Any]] | None = None
     registry: Registry | None = None

@@ -21,6 +21,7 @@ from tactile_graph.pipeline.facts import (
     source_quantities,
     step_troubles,
 )
+from tactile_graph.pipeline.free import free_of_step
 from tactile_graph.pipeline.graph import (
     FRAME,
     FrameRule,
@@ -84,7 +85,7 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
     return Graph(
         name=d.name, about=d.about, evolves=d.evolves, source=source,
         nodes=scope.nodes, outputs=outputs, file=scope.document.file,
-        text=scope.document.text, frame_rules=tuple(scope.rules),
+        text=scope.document.text, frame_rules=tuple(scope.rules), free=scope.free,
         overrides=scope.overrides, source_override=replaced, registry=scope.registry,
         deadline_us=d.deadline_us,
     )  # fmt: skip
@@ -190,6 +191,7 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
         )
     before = len(scope.document.problems)
     settings = _settings(scope, declared, signature)
+    free_of_step(scope, declared, signature)
     inputs = bind_inputs(scope, declared, signature)
     output: Any = signature.output
     if declared.each:

@@ -43,6 +43,8 @@ class Scope:
         By the names that may be referred to: type, facts and key of each value, and its node.
     frames : tuple of str
         Quantities that the source's frames may be in.
+    free : dict
+        ``node.setting`` -> the values it may take where a search chooses it.
     """
 
     declaration: Declaration
@@ -55,6 +57,7 @@ class Scope:
     keys: dict[str, str] = field(default_factory=lambda: {FRAME: FRAME}, init=False)
     frames: tuple[str, ...] = field(default_factory=lambda: tuple(QUANTITIES), init=False)
     rules: list[FrameRule] = field(default_factory=list, init=False)
+    free: dict[str, tuple[Any, ...]] = field(default_factory=dict, init=False)
     condition_errors: list[tuple[NodeDeclaration, ConditionError]] = field(
         default_factory=list, init=False
     )

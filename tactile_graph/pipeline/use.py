@@ -17,6 +17,7 @@ from tactile_graph.pipeline.embed import (
     replaced_nodes,
 )
 from tactile_graph.pipeline.facts import embedded_rules, limited, ref_facts, where_reached
+from tactile_graph.pipeline.free import free_of_use
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
 from tactile_graph.pipeline.scope import Scope
 
@@ -33,6 +34,7 @@ def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) ->
     frame = replace(frame, facts=facts)
     at = Embedding(declared.name, scope.mark(declared), frame, guard, wired)
     _check_given(scope, declared, inner, at)
+    free_of_use(scope, declared)
     if declared.each:
         _map(scope, declared, inner, at)
     else:

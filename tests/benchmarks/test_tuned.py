@@ -32,7 +32,7 @@ def test_a_mostly_empty_pad_is_empty_four_times_in_five_and_says_so() -> None:
 @pytest.mark.parametrize("name", sorted(tuned.CASES))
 def test_every_ladder_answers_what_its_truth_can_judge(name: str) -> None:
     case = tuned.CASES[name]
-    ladder = load(tuned.LADDERS / f"{case.ladder}.yaml" if case.ladder else case.by_hand)
+    ladder = load(case.path)
     output = next(iter(ladder.outputs))
     assert set(answers_of(ladder, (output,)).quantities) & {"centre", "identity"}
     (frame, *_) = tuned.frames_of(case, tuned.UNSEEN[:1], 2, 1, own=False)

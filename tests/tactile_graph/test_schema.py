@@ -60,7 +60,8 @@ nodes:
   footprint: {step: pressed, in: {image: frame}, when: "always"}
   all: {step: merge, in: [footprint, footprint]}
   one: {first_of: [footprint, all]}
-  inner: {use: discs, in: frame, with: {footprint.level_v: 0.1}}
+  inner: {use: discs, in: frame, with: {footprint.level_v: 0.1}, free: {footprint.level_v: [1]}}
+  low: {step: pressed, in: frame, free: {level_v: [0.1, 0.2]}}
 outputs: one
 """,
 }
@@ -89,6 +90,11 @@ WRONG = {
     "a reserved name": DISCS.replace("circle: {", "frame: {"),
     "each that is no yes or no": DISCS.replace("in: footprint", "in: footprint, each: 3"),
     "an output twice": DISCS.replace("[circle]", "[circle, circle]"),
+    "a free setting that is none": DISCS.replace("disc, in", "disc, free: {level_v: [1]}, in"),
+    "a free setting without a list": DISCS.replace("with: {level_v: 0.5}", "free: {level_v: 0.5}"),
+    "a free value out of range": DISCS.replace("with: {level_v: 0.5}", "free: {level_v: [-0.5]}"),
+    "free beside first_of": DISCS.replace("step: disc, in: footprint",
+                                          "first_of: [footprint], free: {a: [1]}"),
     "an embedded setting without a node": DISCS.replace("step: disc, in: footprint",
                                                         "use: loads, with: {level_v: 1}"),
 }  # fmt: skip

@@ -47,3 +47,11 @@ def test_combinations_come_behind_what_the_file_has(hand_made):
 def test_settings_that_are_not_there_and_too_many_values_are_refused(hand_made, free, message):
     with pytest.raises(UsageError, match=message):
         Request(loads(LADDER), free=(free,)).variants()
+
+
+def test_what_the_file_marks_is_free_and_the_command_line_comes_before_it(hand_made):
+    marked = "with: {level_v: 0.5}, free: {level_v: [0.3, 0.4]}"
+    pipeline = loads(LADDER.replace("with: {level_v: 0.5}", marked))
+    name = "footprint.level_v"
+    assert Request(pipeline).variants() == [{}, {name: 0.3}, {name: 0.4}]
+    assert Request(pipeline, free=(Free(name, (0.6,)),)).variants() == [{}, {name: 0.6}]

@@ -43,3 +43,10 @@ def test_an_interval_is_wider_where_frames_of_a_group_are_alike():
     assert together.high - together.low > 2.0 * (alone.high - alone.low)
     assert alone.low < alone.mean < alone.high
     assert interval_of(values * 2.0, np.arange(200), 0, values).mean == pytest.approx(2.0)
+
+
+def test_of_no_frame_that_counts_there_is_no_mean():
+    nothing = interval_of(np.ones(9), np.arange(9), 0, np.zeros(9))
+    assert np.isnan(nothing).all()
+    once = interval_of(np.eye(9)[0], np.arange(9), 0, np.eye(9)[0])
+    assert once == (1.0, 1.0, 1.0)  # in draws without that frame, too

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_options
 from tactile_graph.cli.endings import SOME_FAILED
+from tactile_graph.cli.many.options import place_for, workers_options
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, tell_apart
@@ -17,7 +17,9 @@ from tactile_graph_classifiers.measuring.shapes import SHAPES
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
-    from tactile_graph_classifiers.measuring.measurements import Measurements
+    from tactile_graph.many import Place
+    from tactile_graph.steps.injected import Report
+    from tactile_graph_classifiers.measuring.reader import Given, Readings
 
 
 @click.command()
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
               help="What its footprint is; the recording's truth says it otherwise.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@workers_options
 def learn(
     name: str,
     recordings: tuple[str, ...],
@@ -43,6 +46,8 @@ def learn(
     pipeline: str,
     shape: str | None,
     span: Span,
+    workers: int | None,
+    on: str | None,
 ) -> None:
     """Learn the object NAME from recordings in which it alone lies on the pad.
 
@@ -50,15 +55,21 @@ def learn(
     or none. What the pipeline calls an empty pad is left out. How the objects are told apart best
     is found by leaving readings and objects out, and how well that did is said.
     """
-    from tactile_graph.compiled import answered_meanwhile
+    from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.database.rows import Lesson, Setting
     from tactile_graph_classifiers.database.store import ObjectDatabase
+    from tactile_graph_classifiers.measuring.reader import Given
 
     if not recordings and source is None:
         raise UsageError("name the recordings to learn from, or a --source")
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    with answered_meanwhile():
-        read = _Read(opened, only, seed, span)
+    asked = Given(opened, measuring_output(opened, only), seed)
+    place = place_for(workers, on, opened.runner([asked.output], seed).plan)
+    report = Report()
+    read = _read(opened, asked, span, place, report)
+    if not read.rows:
+        why = "; ".join(f"{n} frames: {what}" for what, n in read.left_out.most_common(3))
+        raise UsageError(f"nothing to learn: no frame gave a reading ({why or 'no frames'})")
     first = read.rows[0]
     readings = [m.values.tolist() for m in read.rows]
     lesson = Lesson(name, shape or read.shape, readings, read.sources)  # type: ignore[arg-type]
@@ -72,55 +83,29 @@ def learn(
     tell_apart(store)
     for what, n in read.left_out.items():
         say(f"left out: {n} frames: {what}", err=True)
-    for where, what in read.troubles:
+    for where, what in report.troubles:
         say(f"{where}: {what}", err=True)
     if read.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 
 
-class _Read:
-    """The readings a pipeline makes of its source, and what came in between."""
+def _read(
+    pipeline: Pipeline, given: Given, span: Span, place: Place | None, report: Report
+) -> Readings:
+    """Return the readings a pipeline makes of its source, here or by workers."""
+    from tactile_graph.many import KILLER, Sharing
+    from tactile_graph_classifiers.measuring.reader import Reader, Readings
 
-    def __init__(self, pipeline: Pipeline, only: tuple[str, ...], seed: int, span: Span) -> None:
-        from tactile_graph.engine.outcome import Failed, Skipped
-        from tactile_graph.steps.injected import Report
-        from tactile_graph_classifiers.measuring.shapes import true_shape
-
-        self.rows: list[Measurements] = []
-        self.sources: list[str] = []
-        self.left_out: Counter[str] = Counter()
-        self.n_failed = 0
-        output = measuring_output(pipeline, only)
-        report = Report()
-        shapes = set()
-        runner = pipeline.runner([output], seed)
-        for frame in span.of(pipeline.frames(seed, report)):
-            outcome: Any = runner(frame).outcome(output)
-            if isinstance(outcome, Failed | Skipped):
-                self.left_out[_why(outcome.reason)] += 1
-                self.n_failed += isinstance(outcome, Failed)
-                continue
-            self.rows.append(getattr(outcome, "measurements", outcome))
-            self.sources.append(_source(pipeline, frame))
-            shapes.add(true_shape(frame))
-        self.troubles = report.troubles
-        self.shape = shapes.pop() if len(shapes) == 1 else ""
-        if not self.rows:
-            why = "; ".join(f"{n} frames: {what}" for what, n in self.left_out.most_common(3))
-            raise UsageError(f"nothing to learn: no frame gave a reading ({why or 'no frames'})")
-
-
-def _why(reason: str) -> str:
-    """Return a reason without what was read in this one frame, so that like ones are counted."""
-    condition, is_false, _ = reason.partition(" is false (")
-    return condition + " is false" if is_false else reason
-
-
-def _source(pipeline: Pipeline, frame: Any) -> str:
-    source = pipeline.source
-    path = source.settings.get("path", source.name) if source is not None else ""
-    where = ", ".join(map(str, path)) if isinstance(path, list) else str(path)
-    return " ".join(t for t in (where, frame.label, f"frame {frame.index}") if t)
+    frames = span.of(pipeline.frames(given.seed, report))
+    if place is None:
+        return Reader(given).readings(frames)
+    found = Readings()
+    with Sharing(place, Reader, given) as workers:
+        for readings in workers.over_frames(frames):
+            found.join(readings)
+        for number in workers.left_out:
+            report.trouble(f"frame {span.start + number}", KILLER)
+    return found
 
 
 def measuring_output(pipeline: Pipeline, only: tuple[str, ...]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,11 +17,14 @@ from tactile_graph.cli.arguments import (
     source_options,
 )
 from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.many.options import place_for, side_by_side, workers_options
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
+    from tactile_graph.many import Place
+    from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.output.tables import Table
     from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
@@ -40,6 +44,7 @@ shown.
               help="Take this share of the frames, drawn at random; all where a step keeps "
               "state.")  # fmt: skip
 @click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+@workers_options
 def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Tell what each guard of PIPELINE saves in time, and what error it brings in.
 
@@ -58,7 +63,8 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     auditor = Auditor(opened, tuple(asked.only), asked.sample, asked.seed)
     if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
-    interrupted = _frames(auditor, span, asked.seed)
+    place = place_for(asked.workers, asked.on, auditor.session.plan)
+    interrupted = _frames(auditor, span, asked.seed, place)
     found = auditor.summarise(interrupted is not None)
     if not found.n_frames:
         raise UsageError(
@@ -67,6 +73,8 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
         )
     out = console()
     _show(found, out)
+    if place is not None:
+        out.print(side_by_side(place), style="dim", soft_wrap=True)
     if asked.json_path is not None:
         _write(found, asked.json_path)
         out.print(f"wrote {asked.json_path}", style="dim", soft_wrap=True)
@@ -86,9 +94,13 @@ class _Options:
     only: tuple[str, ...]
     sample: float
     json_path: str | None
+    workers: int | None
+    on: str | None
 
 
-def _frames(auditor: Auditor, span: Span, seed: int) -> KeyboardInterrupt | None:
+def _frames(
+    auditor: Auditor, span: Span, seed: int, place: Place | None
+) -> KeyboardInterrupt | None:
     """Take the frames; return what ended them before their end, if anything did."""
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
@@ -99,15 +111,41 @@ def _frames(auditor: Auditor, span: Span, seed: int) -> KeyboardInterrupt | None
     bar = Bar(console(stderr=True), "audit")
     with Interrupts() as interrupts:
         try:
-            for frame in span.of(auditor.pipeline.frames(seed, report)):
-                with interrupts.held:
-                    auditor.add(frame)
+            frames = span.of(auditor.pipeline.frames(seed, report))
+            for _ in _taken(auditor, frames, place, interrupts.held):
                 bar.at(auditor.n_seen, span.expected(report.n_expected))
         except KeyboardInterrupt as error:
             return error
         finally:
             bar.stop()
     return None
+
+
+def _taken(
+    auditor: Auditor, frames: Iterator[Frame], place: Place | None, held: Any
+) -> Iterator[None]:
+    """Take the frames, here or by workers; yield whenever some are done."""
+    if place is None:
+        for frame in frames:
+            with held:
+                auditor.add(frame)
+            yield
+        return
+    from tactile_graph.cli.say import say
+    from tactile_graph.many import KILLER, Sharing
+    from tactile_graph_compare.run.audit import AuditWorker
+    from tactile_graph_compare.run.shared import N_BEFORE
+
+    sample = (frame for frame in frames if auditor.drawn())
+    with Sharing(place, AuditWorker, auditor.for_workers()) as workers:
+        for part in workers.over_frames(sample, N_BEFORE):
+            with held:
+                auditor.join(part)
+            yield
+            if part.error is not None:
+                raise part.error
+        for number in workers.left_out:
+            say(f"frame {number} of the sample: {KILLER}", err=True)
 
 
 def _show(found: Audit, out: Any) -> None:

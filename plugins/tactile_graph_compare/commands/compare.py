@@ -12,6 +12,7 @@ import click
 
 from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
 from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.many.options import place_for, side_by_side, workers_options
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -72,6 +73,7 @@ Exit codes:
 @click.option("--json", "json_path", metavar="FILE",
               help="Write all figures and how they were made; - for stdout.")  # fmt: skip
 @click.option("--report", metavar="FILE.html", help="Write a report to look at in a browser.")
+@workers_options
 def compare(variants: tuple[str, ...], span: Span, **options: Any) -> None:
     """Compare VARIANTs, two or more, on the same frames: errors, times, lineage.
 
@@ -105,6 +107,8 @@ class _Options:
     markdown: str | None
     json_path: str | None
     report: str | None
+    workers: int | None
+    on: str | None
 
     @property
     def files(self) -> dict[str, str]:
@@ -206,6 +210,9 @@ class _Run:
         self.report: Report = Report()
         reference = options.reference and referred(prepared, options.reference)
         self.session: Session = Session(prepared, options.seed, reference=reference)
+        self.place = place_for(options.workers, options.on, self.session.plan)
+        if self.place is not None:
+            self.notes = [*notes, side_by_side(self.place)]
         # What is written to stdout for programs owns it; people are then told on stderr.
         self.people = console(stderr="-" in options.files.values())
         self.stderr = console(stderr=True)
@@ -233,9 +240,7 @@ class _Run:
         frames: Iterator[Frame] = self.span.of(source)
         try:
             bar.now(self.span.expected(None))
-            for frame in self.session.warmed(frames):
-                with held:
-                    self.session.add(frame)
+            for _ in self._noted(frames, held):
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))
         except KeyboardInterrupt as error:
             return error, None
@@ -244,6 +249,29 @@ class _Run:
         finally:
             bar.stop()
         return None, None
+
+    def _noted(self, frames: Iterator[Frame], held: Any) -> Iterator[None]:
+        """Note the frames, here or by workers; yield whenever some are done."""
+        session = self.session
+        if self.place is None:
+            for frame in session.warmed(frames):
+                with held:
+                    session.add(frame)
+                yield
+            return
+        from tactile_graph.many import KILLER, Sharing
+        from tactile_graph_compare.run.shared import N_BEFORE, Given, SessionWorker
+
+        given = Given(session.prepared, session.seed, session.reference)
+        with Sharing(self.place, SessionWorker, given) as workers:
+            for part, error in workers.over_frames(frames, N_BEFORE):
+                with held:
+                    session.join(part)
+                yield
+                if error is not None:
+                    raise error
+            for number in workers.left_out:
+                self.report.trouble(f"frame {self.span.start + number}", KILLER)
 
     # -- the end -----------------------------------------------------------------------------
 

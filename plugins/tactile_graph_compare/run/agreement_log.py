@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.scores import Agreement
 from tactile_graph_compare.run.logs import VariantLog
-from tactile_graph_compare.score.agreement import Agreeing, found_in
+from tactile_graph_compare.score.agreement import Agreeing, Differences, found_in
 from tactile_graph_compare.score.quantities import in_order
 
 MOST_CROSSED = 4
@@ -51,6 +51,16 @@ class AgreementLog:
             )
             for pair in self._pairs
         }
+
+    def noted(self) -> list[dict[str, Differences]]:
+        """Return for each pair what was noted so far, as it travels between processes."""
+        return [pair.differences for pair in self._pairs]
+
+    def join(self, later: Sequence[Mapping[str, Differences]], start: int) -> None:
+        """Note what was noted elsewhere of later frames, positions counted from ``start``."""
+        for pair, its in zip(self._pairs, later, strict=True):
+            for quantity, differences in its.items():
+                pair.differences[quantity].join(differences, start)
 
     def agreements(self) -> tuple[Agreement, ...]:
         """Return what was found out, a record for each pair and quantity."""

@@ -9,18 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.inspect import NO_VALUE, as_data
+from tactile_graph.many import Portion
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.logs import VariantLog
-from tactile_graph_compare.run.session import WARM_FRAMES, Session
+from tactile_graph_compare.run.session import WARM_FRAMES, Part, Session
+from tactile_graph_compare.run.shared import noted
 from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.ablations import Ablation, ablations_of
 from tactile_graph_compare.variants.prepare import PreparedVariant
@@ -125,6 +127,50 @@ def audit(
     return auditor.summarise()
 
 
+class _Given(NamedTuple):
+    """What a worker audits."""
+
+    pipeline: Pipeline
+    asked: tuple[str, ...]
+    seed: int
+
+
+class _Noted(NamedTuple):
+    """What was noted of a guard."""
+
+    saved_us: list[float]
+    stopped: list[bool]
+    counts: tuple[int, int, int]
+
+
+class AuditPart(NamedTuple):
+    """What a worker noted of its frames, and the error that ended them if one did."""
+
+    session: Part
+    guards: list[_Noted]
+    error: Exception | None
+
+
+class AuditWorker:
+    """Audits portions of frames in a worker.
+
+    Parameters
+    ----------
+    given : record
+        As of `Auditor.for_workers`.
+    """
+
+    def __init__(self, given: _Given) -> None:
+        self._auditor = Auditor(given.pipeline, given.asked, seed=given.seed)
+        self._warm = False
+
+    def __call__(self, portion: Portion) -> AuditPart:
+        """Return what was noted of a portion's frames."""
+        part = self._auditor.part(portion, self._warm)
+        self._warm = True
+        return part
+
+
 class Auditor:
     """Takes frames, or a sample of them, through a pipeline and its ablations.
 
@@ -150,16 +196,14 @@ class Auditor:
         prepared = [PreparedVariant(label, p, asked, pipeline.name) for label, p in rows]
         self.session = Session(prepared, seed, FrameChooser(n_regular=0, most=0))
         self.whole = self.session.stateful
-        self.sample = sample
+        self.asked, self.sample, self.seed = asked, sample, seed
         self.n_seen = 0
         self._rng = np.random.default_rng(seed)
         self._waiting: list[Frame] | None = []
 
     def add(self, frame: Frame) -> bool:
         """Look at a frame; return whether it is in the sample."""
-        self.n_seen += 1
-        taken = bool(self._rng.random() < self.sample) or self.whole
-        if not taken:
+        if not self.drawn():
             return False
         if self._waiting is None:
             self._take(frame)
@@ -169,12 +213,37 @@ class Auditor:
                 self._start()
         return True
 
+    def drawn(self) -> bool:
+        """Return whether the next frame is in the sample."""
+        self.n_seen += 1
+        return bool(self._rng.random() < self.sample) or self.whole
+
     def _start(self) -> None:
         """Warm up with the first frames of the sample, and then take them."""
         waiting, self._waiting = self._waiting or [], None
         self.session.warm_up(waiting)
         for frame in waiting:
             self._take(frame)
+
+    # -- by workers ------------------------------------------------------------------------------
+
+    def for_workers(self) -> _Given:
+        """Return what `AuditWorker` is made of; frames of the sample alone go there."""
+        return _Given(self.pipeline, self.asked, self.seed)
+
+    def join(self, part: AuditPart) -> None:
+        """Take in what a worker noted of the frames that come next."""
+        self._waiting = None  # who ran none needs no warming up
+        self.session.join(part.session)
+        for guard, its in zip(self.guards, part.guards, strict=True):
+            guard.join(its)
+
+    def part(self, portion: Portion, warm: bool) -> AuditPart:
+        """Return what is noted of a portion's frames, of which all are of the sample."""
+        for guard in self.guards:
+            guard.begin()
+        error = noted(self.session, portion, self._take, warm)
+        return AuditPart(self.session.part(), [g.noted() for g in self.guards], error)
 
     def _take(self, frame: Frame) -> None:
         self.session.add(frame)
@@ -208,6 +277,24 @@ class _GuardLog:
     n_false_prevented: int = 0
     n_failed_prevented: int = 0
     n_changed: int = 0
+
+    def begin(self) -> None:
+        """Note anew."""
+        self.saved_us, self.stopped = [], []
+        self.n_false_prevented = self.n_failed_prevented = self.n_changed = 0
+
+    def noted(self) -> _Noted:
+        """Return what was noted so far, as it travels between processes."""
+        counts = (self.n_false_prevented, self.n_failed_prevented, self.n_changed)
+        return _Noted(self.saved_us, self.stopped, counts)
+
+    def join(self, later: _Noted) -> None:
+        """Note what was noted elsewhere of the frames that come next."""
+        self.saved_us += later.saved_us
+        self.stopped += later.stopped
+        self.n_false_prevented += later.counts[0]
+        self.n_failed_prevented += later.counts[1]
+        self.n_changed += later.counts[2]
 
     def add(self, frame: Frame, whole: VariantLog, ablated: VariantLog) -> None:
         """Note the last frame of the pipeline and of its ablation."""

@@ -15,16 +15,13 @@ from tactile_graph_compare.run.session import Session
 def chosen_frames(session: Session) -> tuple[ChosenFrame, ...]:
     """Return the frames a session's chooser has chosen, in order."""
     errors = {log.prepared.label: _errors(log) for log in session.logs}
-    return tuple(
-        ChosenFrame(
-            position,
-            result.frame,
-            choices,
-            {log.prepared.label: stories(result, log) for log in session.logs},
-            {label: of.get(position, {}) for label, of in errors.items()},
-        )
-        for position, result, choices in session.chooser.chosen()
-    )
+    found = []
+    for position, held, choices in session.chooser.chosen():
+        result = session.whole(held)
+        told = {log.prepared.label: stories(result, log) for log in session.logs}
+        here = {label: of.get(position, {}) for label, of in errors.items()}
+        found.append(ChosenFrame(position, result.frame, choices, told, here))
+    return tuple(found)
 
 
 def stories(result: Result, log: VariantLog) -> dict[str, NodeStory]:

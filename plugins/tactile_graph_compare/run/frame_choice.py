@@ -4,17 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from tactile_graph import Result
+from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.frames import Choice
+
+
+class Seen(NamedTuple):
+    """What is kept of a frame that was run elsewhere."""
+
+    frame: Frame
+    reused: bool
+
+
+Held = Result | Seen
+"""What is kept of a frame."""
 
 
 @dataclass
 class _Worst:
     position: int
-    result: Result
+    result: Held
     error: float
 
 
@@ -33,7 +46,7 @@ class FrameChooser:
 
     n_regular: int = 4
     most: int = 40
-    _regular: dict[int, Result] = field(default_factory=dict, init=False)
+    _regular: dict[int, Held] = field(default_factory=dict, init=False)
     _stride: int = field(default=1, init=False)
     _worst: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
     _silent: dict[tuple[str, str], _Worst] = field(default_factory=dict, init=False)
@@ -60,9 +73,7 @@ class FrameChooser:
         """
         if self.n_regular and position % self._stride == 0:
             self._regular[position] = result
-            if len(self._regular) > 2 * self.n_regular:
-                self._stride *= 2
-                self._regular = {p: r for p, r in self._regular.items() if p % self._stride == 0}
+            self._thin()
         for variant, errors in worst.items():
             for quantity, error in errors.items():
                 self._look(position, result, (variant, quantity), error)
@@ -71,6 +82,55 @@ class FrameChooser:
                 known = self._apart.get((pair, quantity))
                 if off and (known is None or off > known.error):
                     self._apart[pair, quantity] = _Worst(position, result, off)
+
+    def _thin(self) -> None:
+        while len(self._regular) > 2 * self.n_regular:
+            self._stride *= 2
+            self._regular = {p: r for p, r in self._regular.items() if p % self._stride == 0}
+
+    def anew(self) -> FrameChooser:
+        """Return one that keeps as many frames, and has none yet."""
+        return FrameChooser(self.n_regular, self.most)
+
+    def as_sent(self) -> FrameChooser:
+        """Return one that can be pickled: of results it holds what they are made of again."""
+
+        def seen(held: Held) -> Held:
+            return held if isinstance(held, Seen) else Seen(held.frame, held.reused)
+
+        def all_seen(of: dict[Any, _Worst]) -> dict[Any, _Worst]:
+            return {key: replace(at, result=seen(at.result)) for key, at in of.items()}
+
+        sent = self.anew()
+        sent._stride = self._stride
+        sent._regular = {p: seen(r) for p, r in self._regular.items()}
+        sent._worst, sent._silent = all_seen(self._worst), all_seen(self._silent)
+        sent._apart = all_seen(self._apart)
+        return sent
+
+    def join(self, later: FrameChooser, shift: int = 0) -> None:
+        """Keep what was chosen elsewhere, among later frames.
+
+        Parameters
+        ----------
+        later : FrameChooser
+        shift : int
+            Added to its positions: what frames before it were left out since.
+        """
+        self._stride = max(self._stride, later._stride)
+        both = {**self._regular, **{p + shift: r for p, r in later._regular.items()}}
+        self._regular = {p: r for p, r in both.items() if p % self._stride == 0}
+        self._thin()
+        pairs: list[tuple[dict[Any, _Worst], dict[Any, _Worst]]] = [
+            (self._worst, later._worst),
+            (self._silent, later._silent),
+            (self._apart, later._apart),
+        ]
+        for mine, its in pairs:
+            for key, at in its.items():
+                known = mine.get(key)
+                if known is None or abs(at.error) > abs(known.error):
+                    mine[key] = replace(at, position=at.position + shift)
 
     def _look(self, position: int, result: Result, key: tuple[str, str], error: float) -> None:
         if math.isnan(error):
@@ -81,12 +141,12 @@ class FrameChooser:
         if error and (known is None or abs(error) > abs(known.error)):
             self._worst[key] = _Worst(position, result, error)
 
-    def chosen(self) -> list[tuple[int, Result, tuple[Choice, ...]]]:
+    def chosen(self) -> list[tuple[int, Held, tuple[Choice, ...]]]:
         """Return the frames kept, in order, each with why."""
         choices: dict[int, list[Choice]] = {}
-        results: dict[int, Result] = {}
+        results: dict[int, Held] = {}
 
-        def choose(position: int, result: Result, choice: Choice) -> None:
+        def choose(position: int, result: Held, choice: Choice) -> None:
             if position in choices or len(choices) < self.most:
                 choices.setdefault(position, []).append(choice)
                 results[position] = result

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,20 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import FrameTable
 from tactile_graph_compare.records.graph import state_of
 from tactile_graph_compare.score.answers import answers_of
-from tactile_graph_compare.score.scoring import Scorer
+from tactile_graph_compare.score.scoring import QuantityErrors, Scorer
 from tactile_graph_compare.score.statistics import frozen
 from tactile_graph_compare.variants.merge import Member
 from tactile_graph_compare.variants.prepare import PreparedVariant
+
+
+class Noted(NamedTuple):
+    """What was noted of a variant, as it travels between processes."""
+
+    states: list[bytes]
+    times_us: list[float]
+    n_by_state: tuple[int, int, int]
+    reasons: dict[tuple[str, str, str], list[Any]]
+    errors: dict[str, QuantityErrors]
 
 
 class VariantLog:
@@ -55,6 +65,22 @@ class VariantLog:
         self.times_us.append(math.nan if result.reused else spent)
         self._count(alone)
         return self.scorer.add(position, result.frame, alone.outcome_at)
+
+    def noted(self) -> Noted:
+        """Return what was noted so far."""
+        n = (self.n_ok, self.n_skipped, self.n_failed)
+        return Noted(self.states, self.times_us, n, self.reasons, dict(self.scorer.errors))
+
+    def join(self, later: Noted) -> None:
+        """Note what was noted elsewhere of the frames that come next."""
+        self.scorer.join(later.errors, len(self.states))
+        self.states += later.states
+        self.times_us += later.times_us
+        self.n_ok += later.n_by_state[0]
+        self.n_skipped += later.n_by_state[1]
+        self.n_failed += later.n_by_state[2]
+        for key, (text, n) in later.reasons.items():
+            self.reasons.setdefault(key, [text, 0])[1] += n
 
     def _count(self, alone: Result) -> None:
         refs = self.member.asked
@@ -110,6 +136,15 @@ class MergedLog:
         time_s = math.nan if frame.time_s is None else frame.time_s
         n_true = -1 if frame.truth is None else len(frame.truth)
         self._frames.append((frame.index, time_s, frame.label, n_true, result.reused))
+
+    def noted(self) -> tuple[list[Any], ...]:
+        """Return what was noted so far, as it travels between processes."""
+        return self.fixed_us, self._times_us, self._states, self._frames
+
+    def join(self, later: tuple[list[Any], ...]) -> None:
+        """Note what was noted elsewhere of the frames that come next."""
+        for mine, its in zip(self.noted(), later, strict=True):
+            mine += its
 
     def times_us(self) -> NDArray[np.float64]:
         """Return the time of each node in each frame, shape (n_frames, n_nodes)."""

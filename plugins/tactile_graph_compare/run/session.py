@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,8 +14,9 @@ from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.plugins.registry import selected
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.run.agreement_log import AgreementLog
-from tactile_graph_compare.run.frame_choice import FrameChooser
-from tactile_graph_compare.run.logs import MergedLog, VariantLog
+from tactile_graph_compare.run.frame_choice import FrameChooser, Held, Seen
+from tactile_graph_compare.run.logs import MergedLog, Noted, VariantLog
+from tactile_graph_compare.score.agreement import Differences
 from tactile_graph_compare.variants.merge import merge
 from tactile_graph_compare.variants.prepare import PreparedVariant
 
@@ -22,6 +24,17 @@ WARM_FRAMES = 8
 WARM_S = 1.0
 MOST_ORDERS = 8
 """Orders in which the variants run, at most."""
+
+
+class Part(NamedTuple):
+    """What a session noted of some frames, as it travels between processes."""
+
+    first: int
+    n: int
+    logs: list[Noted]
+    agreement: list[dict[str, Differences]]
+    chooser: FrameChooser
+    merged: tuple[list[Any], ...]
 
 
 class Session:
@@ -55,15 +68,21 @@ class Session:
         self._runner: Runner[Result] | None = None
         self.promises = self.merged.pipeline.promises
         self._order_rng = np.random.default_rng(seed)
+        self.reference = reference
+        self.chooser = chooser or FrameChooser()
+        self.begin()
+        self.started = time.perf_counter()
+        self.last = self.started
+
+    def begin(self, first: int = 0) -> None:
+        """Note anew, from the frame on that is so many behind the first of all."""
+        self.first = first
         self.logs = [
             VariantLog(p, m) for p, m in zip(self.prepared, self.merged.members, strict=True)
         ]
-        self.reference = reference
-        self.agreement = AgreementLog(self.logs, reference)
-        self.chooser = chooser or FrameChooser()
-        self.merged_log = MergedLog(first.plan)
-        self.started = time.perf_counter()
-        self.last = self.started
+        self.agreement = AgreementLog(self.logs, self.reference)
+        self.chooser = self.chooser.anew()
+        self.merged_log = MergedLog(self.plan)
 
     def _runners(self, first: Runner[Result]) -> list[Runner[Result]]:
         """Return runners that take the variants in different orders.
@@ -132,10 +151,48 @@ class Session:
             self.promises.check(result)
         position = self.n
         worst = {log.prepared.label: log.add(position, result) for log in self.logs}
-        self.chooser.add(position, result, worst, self.agreement.add(position, frame))
+        self.chooser.add(self.first + position, result, worst, self.agreement.add(position, frame))
         self.merged_log.add(frame, result, whole_us)
         self.last = time.perf_counter()
         return result
+
+    def pass_over(self, frame: Frame) -> None:
+        """Run a frame and note nothing of it: the next may be equal to it."""
+        self._runner_for(frame)(frame)
+
+    # -- parts of it, noted by several processes -------------------------------------------------
+
+    def part(self) -> Part:
+        """Return what was noted since `begin`, as it travels between processes."""
+        return Part(
+            self.first,
+            self.n,
+            [log.noted() for log in self.logs],
+            self.agreement.noted(),
+            self.chooser.as_sent(),
+            self.merged_log.noted(),
+        )
+
+    def join(self, part: Part) -> None:
+        """Note what was noted elsewhere of the frames that come next."""
+        start = self.n
+        for log, noted in zip(self.logs, part.logs, strict=True):
+            log.join(noted)
+        self.agreement.join(part.agreement, start)
+        self.chooser.join(part.chooser, start - part.first)
+        self.merged_log.join(part.merged)
+        self.last = time.perf_counter()
+
+    def whole(self, held: Held) -> Result:
+        """Return the result of a frame that is kept, run again if it was run elsewhere."""
+        if not isinstance(held, Seen):
+            return held
+        runner = self.runners[0]
+        runner.forget()
+        result = runner(held.frame)
+        return result.again(held.frame) if held.reused else result
+
+    # -- which order ---------------------------------------------------------------------------
 
     def _runner_for(self, frame: Frame) -> Runner[Result]:
         """Return the one that ran last if it need not run again, else one drawn at random.

@@ -53,7 +53,9 @@ def found_in(answers: Answers, outcomes: Outcomes) -> Found:
 
 
 @dataclass
-class _Differences:
+class Differences:
+    """How far two variants lie apart in one quantity so far, and who had no answer."""
+
     positions: list[int] = field(default_factory=list)
     values: list[float] = field(default_factory=list)
     offsets: list[tuple[float, float]] = field(default_factory=list)
@@ -62,8 +64,18 @@ class _Differences:
     n_neither: int = 0
 
     def add(self, position: int, value: float) -> None:
+        """Enter one."""
         self.positions.append(position)
         self.values.append(value)
+
+    def join(self, later: Differences, start: int) -> None:
+        """Enter those of later frames, whose positions are counted from ``start``."""
+        self.positions += [start + p for p in later.positions]
+        self.values += later.values
+        self.offsets += later.offsets
+        self.n_only_variant += later.n_only_variant
+        self.n_only_reference += later.n_only_reference
+        self.n_neither += later.n_neither
 
 
 class Agreeing:
@@ -77,6 +89,11 @@ class Agreeing:
         The quantities that both can answer, in the order of tables, with their units.
     gate_cm : float
         Where either looks for several things: farther apart is no pair.
+
+    Attributes
+    ----------
+    differences : dict of str to Differences
+        By quantity.
     """
 
     def __init__(
@@ -86,34 +103,34 @@ class Agreeing:
         self.reference = reference
         self.gate_cm = gate_cm
         self.units = units
-        self._of = {q: _Differences() for q in units}
+        self.differences = {q: Differences() for q in units}
 
     def add(self, position: int, one: Found, other: Found) -> dict[str, float]:
         """Enter a frame; return the largest absolute difference of each quantity in it."""
-        before = {q: len(d.values) for q, d in self._of.items()}
-        if "centre" in self._of:
+        before = {q: len(d.values) for q, d in self.differences.items()}
+        if "centre" in self.differences:
             self._things(position, one, other)
-        if "count" in self._of:
+        if "count" in self.differences:
             off = None
             if one.n_counted is not None and other.n_counted is not None:
                 off = float(one.n_counted - other.n_counted)
             self._whole(
                 "count", position, off, one.n_counted is not None, other.n_counted is not None
             )
-        if "identity" in self._of:
+        if "identity" in self.differences:
             off = float(one.name != other.name) if one.name and other.name else None
             self._whole("identity", position, off, bool(one.name), bool(other.name))
-        new = {q: d.values[before[q] :] for q, d in self._of.items()}
+        new = {q: d.values[before[q] :] for q, d in self.differences.items()}
         return {q: max(map(abs, values)) for q, values in new.items() if values}
 
     def _things(self, position: int, one: Found, other: Found) -> None:
-        centres = self._of["centre"]
+        centres = self.differences["centre"]
         pairs = self._pairs(one, other)
         for i, j in pairs:
             mine, theirs = one.things[i], other.things[j]
             for quantity, off in errors_against(mine, theirs).items():
-                if quantity in self._of:
-                    self._of[quantity].add(position, off)
+                if quantity in self.differences:
+                    self.differences[quantity].add(position, off)
             centres.offsets.append((mine.x_cm - theirs.x_cm, mine.y_cm - theirs.y_cm))
         centres.n_only_variant += len(one.things) - len(pairs)
         centres.n_only_reference += len(other.things) - len(pairs)
@@ -129,7 +146,7 @@ class Agreeing:
         self, quantity: str, position: int, off: float | None, mine: bool, theirs: bool
     ) -> None:
         """Enter a difference of a whole frame, or who of the two has no answer."""
-        of = self._of[quantity]
+        of = self.differences[quantity]
         if off is not None:
             of.add(position, off)
         of.n_only_variant += mine and not theirs
@@ -139,12 +156,12 @@ class Agreeing:
     def agreements(self) -> list[Agreement]:
         """Return what was collected, a record a quantity that either ever answered."""
         found = []
-        for quantity, of in self._of.items():
+        for quantity, of in self.differences.items():
             if of.values or of.n_only_variant or of.n_only_reference:
                 found.append(self._agreement(quantity, of))
         return found
 
-    def _agreement(self, quantity: str, of: _Differences) -> Agreement:
+    def _agreement(self, quantity: str, of: Differences) -> Agreement:
         values = np.asarray(of.values, dtype=np.float64)
         off, some = np.abs(values), values.size > 0
         bias = float(values.mean()) if some else None

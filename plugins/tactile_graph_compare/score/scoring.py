@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -39,6 +40,14 @@ class QuantityErrors:
         self.positions.append(position)
         self.objects.append(number)
         self.errors.append(error)
+
+    def join(self, later: QuantityErrors, start: int) -> None:
+        """Enter the targets of later frames, whose positions are counted from ``start``."""
+        self.positions += [start + p for p in later.positions]
+        self.objects += later.objects
+        self.errors += later.errors
+        self.offsets += later.offsets
+        self.n_extra += later.n_extra
 
 
 class Scorer:
@@ -78,6 +87,11 @@ class Scorer:
             for name, t in self.errors.items()
             if (new := t.errors[before.get(name, 0) :])
         }
+
+    def join(self, later: Mapping[str, QuantityErrors], start: int) -> None:
+        """Enter what came of later frames, whose positions are counted from ``start``."""
+        for name, targets in later.items():
+            self.errors[name].join(targets, start)
 
     # -- where things are ----------------------------------------------------------------------
 

@@ -49,6 +49,7 @@ class Held(NamedTuple):
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
     """Yield the matrices of a stack; times that are not as many as the frames are left out."""
+    _refuse_lone_matrix(reading, held)
     frames = stack_of(reading, held.values, held.what)
     times, factor = held.times, 1.0
     if times is not None and len(times) != len(frames):
@@ -61,6 +62,20 @@ def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
     yield from reading.frames(
         frames, times_s, factor=said.factor, pitch_cm=said.pitch_cm, quantity=said.quantity
     )
+
+
+def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
+    """Refuse a matrix that has a time for each of its rows, so that these may be frames."""
+    told = reading.told.rows is not None and reading.told.columns is not None
+    if told or held.times is None or held.values.ndim != 2:
+        return
+    n, n_cells = held.values.shape
+    if 1 < n == len(held.times):
+        raise DataError(
+            str(reading.path),
+            f"{held.what} has shape {held.values.shape} and {held.times_name!r} {n} times: {n} "
+            f"frames of {n_cells} cells; give rows and columns",
+        )
 
 
 def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -> str:

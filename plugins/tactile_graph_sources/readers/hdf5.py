@@ -20,6 +20,8 @@ from tactile_graph_sources.readers.tables.preamble import described
 
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
+_ITEMS = "#refs#/"
+"""Where it keeps what its cell arrays hold."""
 LARGE, MOST_TIMES = 64_000_000, 200
 """Bytes that may be unpacked however few are written, and how many times these."""
 MOST_ITEMS, DEEPEST = 2_000, 40
@@ -82,6 +84,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
         with h5py.File(reading.path, "r") as file:
             sets = _datasets(where, h5py, file)
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
+            _refuse_cells(where, numbers, [n for n, d in sets.items() if d.dtype.kind == "O"])
             shapes = {n: d.shape for n, d in numbers.items()}
             frames = [] if reading.told.sensor else numbered(shapes)
             name = frames[0] if frames else chosen(reading, shapes, "dataset")
@@ -99,6 +102,15 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
     said = described(lines)
     what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
     return Held(values, what, said, times, time)
+
+
+def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> None:
+    """Refuse a file that holds nothing but the items of one of MATLAB's cell arrays."""
+    named = [n for n in others if not n.startswith(_ITEMS)]
+    if named and numbers and all(n.startswith(_ITEMS) for n in numbers):
+        name = named[0]
+        told = f"{name!r} is a cell array; in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"
+        raise DataError(where, told)
 
 
 def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,6 +18,8 @@ SAMPLE = 1 << 20
 MOST_LINES = 100_000
 """Lines by which a table is recognised; a sample has more where they are under ten bytes long."""
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_ZEROS_IN = 200
+_PLAIN = re.compile(rb"[\t\r\n -~]+")
 
 
 @dataclass
@@ -40,13 +43,20 @@ class Head:
 
     @property
     def encoding(self) -> str:
-        """Encoding by the byte-order mark; UTF-8 where there is none."""
-        return "utf-16" if self.raw[:2] in _UTF16 else "utf-8-sig"
+        """Encoding by the byte-order mark, or by where its zeros lie; else UTF-8."""
+        if self.raw[:2] in _UTF16:
+            return "utf-16"
+        start = self.raw[:_ZEROS_IN]
+        if len(start) > 8 and not any(start[1::2]) and _PLAIN.fullmatch(start[::2]):
+            return "utf-16-le"
+        if len(start) > 8 and not any(start[::2]) and _PLAIN.fullmatch(start[1::2]):
+            return "utf-16-be"
+        return "utf-8-sig"
 
     @cached_property
     def lines(self) -> list[str]:
         """The first lines of a text; empty for a binary file."""
-        if self.encoding != "utf-16" and b"\0" in self.raw[:4096]:
+        if not self.encoding.startswith("utf-16") and b"\0" in self.raw[:4096]:
             return []
         text = self.raw.decode(self.encoding, "backslashreplace")
         lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

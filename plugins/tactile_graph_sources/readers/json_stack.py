@@ -24,8 +24,11 @@ from tactile_graph_sources.readers.tables.names import ROLES, named
 from tactile_graph_sources.readers.tables.preamble import Described, described
 
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
+LINES_LOOKED_AT = 20
 MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 _SHAPES = ("shape", "size", "dims", "dimensions", "grid")
+_ROS_PARTS = {"secs": "nsecs", "sec": "nanosec"}
+"""How messages of ROS 1 and 2 spell the seconds of a stamp, and what comes on top."""
 _NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
@@ -46,11 +49,17 @@ def recognises(head: Head) -> bool:
     if text.startswith(b"{"):
         return b'"' in text[:200]
     if not text.startswith(b"["):
-        return False
+        return _holds_objects(head.first(LINES_LOOKED_AT))
     first = next((x.strip() for x in head.lines if x.strip()), "")
     if not head.whole:
         return first.startswith(("[[", "[{")) or not first.endswith("]")
     return _parsed("\n".join(head.lines)) is not None or _is_nested(first)
+
+
+def _holds_objects(lines: list[str]) -> bool:
+    """Return whether most lines are an object each, as where a program's words stand between."""
+    n = sum(1 for x in lines if x.startswith('{"') and x.rstrip().endswith("}"))
+    return 2 * n > len(lines) and isinstance(_parsed(next(x for x in lines if x[0] == "{")), dict)
 
 
 def _is_nested(line: str) -> bool:
@@ -182,7 +191,7 @@ def entries_of(where: str, content: Any) -> Entries:
         raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
     objects = [_plain(e) if isinstance(e, dict) else {} for e in content]
     first = objects[0]
-    lists = [k for k, v in first.items() if isinstance(v, list)]
+    lists = [k for k, v in first.items() if isinstance(v, list) and not _is_of_objects(v)]
     if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
         raise DataError(
             where,
@@ -198,7 +207,26 @@ def entries_of(where: str, content: Any) -> Entries:
 
 def _plain(entry: dict[str, Any]) -> dict[str, Any]:
     """Return an object with its cells in one list, and its shape, if it has one, as numbers."""
-    return _with_cells(_with_shape(_with_rows(_flattened(entry))))
+    return _with_cells(_with_shape(_with_rows(_of_ros(_flattened(_flattened(entry))))))
+
+
+def _is_of_objects(entry: list[Any]) -> bool:
+    return bool(entry) and isinstance(entry[0], dict)
+
+
+def _of_ros(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return a message of ROS with its stamp in seconds, and its array's dimensions as a shape."""
+    found = dict(entry)
+    for key, value in entry.items():
+        stem, _, name = key.rpartition(".")
+        if name in _ROS_PARTS and isinstance(value, int):
+            part = entry.get(f"{stem}.{_ROS_PARTS[name]}", 0)
+            if isinstance(part, int) and stem:
+                del found[key]
+                found[f"{stem}.time_s"] = value + 1e-9 * part
+        if name == "dim" and isinstance(value, list) and len(value) == 2 and _is_of_objects(value):
+            found["shape"] = [d.get("size") for d in value if isinstance(d, dict)]
+    return found
 
 
 def _with_shape(entry: dict[str, Any]) -> dict[str, Any]:
@@ -321,16 +349,26 @@ def _time_factor(reading: Reading, entries: Entries) -> float:
     factor = named((entries.time_name.rpartition(".")[2], "")).time_factor
     if factor is not None:
         return factor
-    times = [t for t in entries.times if isinstance(t, int | float) and abs(t) < 1e300]
+    numbers = [_number(t) if isinstance(t, str) else t for t in entries.times]
+    times = [t for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
     factor, unit = unit_of(np.array(times, dtype=np.float64))
     reading.assume(f"times assumed to be in {unit}")
     return factor
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def _time(entries: Entries, k: int, factor: float) -> float | None:
     if not entries.times:
         return None if entries.said.frame_s is None else k * entries.said.frame_s
     time = entries.times[k]
+    if isinstance(time, str) and (number := _number(time)) is not None:
+        time = number
     if isinstance(time, str):
         first = next((c for t in entries.times if (c := clock_s(str(t))) is not None), None)
         at = clock_s(time)

@@ -87,6 +87,7 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
         place = _place(where, node, about)
         if not (values.ndim == 3 and values.shape[0] == len(outcomes) == len(times)):
             raise DataError(where, f"node {node!r}: as many images, outcomes and times it has not")
+        reading.is_own = True
         reading.told.agree(where, *values.shape[1:])
         reading.recognised(f"it says so; node {node!r}, {about['kind']}s")
         reading.report.expect(int(np.count_nonzero(outcomes == 0)))

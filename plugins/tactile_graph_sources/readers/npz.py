@@ -207,6 +207,11 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    if objects := [n for n, (_, t) in outlines.items() if t.kind == "O"]:
+        hint = (
+            f"; {objects[0]!r} holds Python objects, which are not opened, as they may run any "
+            f"program; save them as numbers: numpy.savez('out.npz', frames=numpy.stack(frames))"
+        )
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
 
 
@@ -222,6 +227,7 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
 
 def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
     """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
+    reading.is_own = True
     arrays.check_sizes([name for name in OURS if name in arrays.names])
     values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
     n = len(values)

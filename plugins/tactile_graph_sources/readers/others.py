@@ -46,7 +46,10 @@ _HEXADECIMAL = re.compile(
     r"[0-9a-f]{2}",
     re.IGNORECASE,
 )
-_WITH_UNITS = re.compile(r"(?:[-+]?\d+(?:\.\d+)?\s?[a-zA-Z%]+\s*[,;\t]\s*){2,}.*")
+_WITH_UNITS = re.compile(
+    r"(?:[-+\d.,]+\s*[;\t,]\s*)?(?:[-+]?\d+(?:\.\d+)?\s?[a-zA-Z%]+\s*[,;\t]\s*){2,}.*"
+)
+_FORTRAN = re.compile(r"\d\.?\d*[dD][-+]\d\d")
 _AS_TABLE = (
     "write the numbers of a frame on a line of its own, separated by commas, and no words among "
     "them, or read it by a plugin: tactile-graph new my-reader --kind reader"
@@ -64,6 +67,10 @@ def remedy_for(head: Head) -> str:
             return f"it is {what}: {remedy or _PICKLE}".replace("FILE", head.path.name)
     if _is_matlab_4(head.raw):
         return "it is a MATLAB file of version 4: save it anew, save('out.mat', '-v7')"
+    if head.raw[257:262] == b"ustar":
+        return f"it is a tar archive: unpack it first: tar -xf {head.path.name}"
+    if any(_FORTRAN.search(line) for line in head.first(3)):
+        return "its exponents are Fortran's (1.2D+03): write them as 1.2E+03"
     if any("\u2212" in line for line in head.first(5)):
         return "its minus signs are U+2212: write them as '-'"
     if any(_WITH_UNITS.fullmatch(line.strip()) for line in head.first(5)):

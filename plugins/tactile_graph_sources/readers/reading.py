@@ -14,6 +14,7 @@ from tactile_graph.steps import Report
 from tactile_graph.wires import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, Image, TrueObject
 from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack
 from tactile_graph.wires.stacks import ImageStack
+from tactile_graph_sources.readers.filled import filling
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.told import Told
 
@@ -49,6 +50,8 @@ class Reading:
         self._gaps: set[str] = set()
         self._seen: dict[str, set[float]] = {}
         self._fresh: set[str] = set()
+        self.is_own = False
+        """Whether the project wrote the file, which says itself what cells are missing."""
         self.in_stacks = False
         """Whether frames are taken as stacks, where the file holds them so."""
 
@@ -149,9 +152,14 @@ class Reading:
         """Return the next frame; cells without a reading or not ``valid`` become invalid."""
         with np.errstate(over="ignore"):
             values = np.array(values, dtype=np.float64)  # the one copy: frames own their values
+            filled = None if self.is_own else filling(values)
+            good = np.abs(values) <= LARGEST
+            if filled is not None:
+                good &= values != filled
+                self.assume(f"cells of {filled:g} taken for missing")
             if factor != 1.0:
                 values *= factor
-        good = np.abs(values) <= LARGEST
+                good &= np.abs(values) <= LARGEST
         if valid is not None:
             good &= valid
         if good.all():
@@ -219,6 +227,8 @@ class Reading:
             return None
         with np.errstate(over="ignore"):
             values = np.array(values, dtype=np.float64)
+            if not self.is_own and filling(values) is not None:
+                return None
             if factor != 1.0:
                 values *= factor
         if not (np.abs(values) <= LARGEST).all():

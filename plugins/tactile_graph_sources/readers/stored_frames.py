@@ -26,6 +26,7 @@ def as_told(reading: Reading, frames: Iterable[Frame]) -> Iterator[Frame]:
     DataError
         If shape, pitch, origin or quantity cannot be true, or are not what the settings say.
     """
+    reading.is_own = True
     for stored in frames:
         image = stored.image
         if not reading.wants(stored.label):

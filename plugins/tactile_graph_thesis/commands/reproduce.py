@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.many.options import place_asked, workers_options
 from tactile_graph_thesis.commands.targets import BOOK, STDOUT, Targets
 
 if TYPE_CHECKING:
-    from tactile_graph_thesis.item import Item
+    from tactile_graph_thesis.commands.makers import Makers
     from tactile_graph_thesis.making import Outcome
     from tactile_graph_thesis.work import Work
 
@@ -44,6 +45,7 @@ FOLDER = "thesis-book"
     help="Of each object, for the tables of errors.  [default: 500]",
 )
 @click.option("--quick", is_flag=True, help="Fewer readings, pads and levels: a first look.")
+@workers_options
 @click.option("--strict", is_flag=True, help="Exit with 1 also if a conclusion does not come out.")
 def reproduce(names: tuple[str, ...], **given: Any) -> None:
     """Make tables, figures and studies of the thesis again; without an ID, list them.
@@ -57,6 +59,7 @@ def reproduce(names: tuple[str, ...], **given: Any) -> None:
     """
     from tactile_graph.compiled import warm_up
     from tactile_graph_thesis.catalogue import chosen
+    from tactile_graph_thesis.commands.makers import Makers
     from tactile_graph_thesis.commands.showing import list_items
 
     if not names:
@@ -65,7 +68,9 @@ def reproduce(names: tuple[str, ...], **given: Any) -> None:
     items, work, targets = chosen(names), _work(given), _targets(given)
     targets.check(items)
     warm_up()
-    found = _made(items, work, targets, book="all" in names)
+    place = place_asked(given["workers"], given["on"])
+    makers = Makers(items, work, targets, place if len(items) > 1 else None)
+    found = _made(makers, book="all" in names)
     failed = any(o.made is None for o in found)
     missed = any(not f.holds for o in found if o.made for f in o.made.findings)
     if failed or (missed and given["strict"]):
@@ -94,34 +99,24 @@ def _targets(given: dict[str, Any]) -> Targets:
     return Targets(folder, csv, plot)
 
 
-def _made(items: list[Item], work: Work, targets: Targets, book: bool) -> list[Outcome]:
+def _made(makers: Makers, book: bool) -> list[Outcome]:
     """Make, show and write items, and the book where all were asked for."""
     from tactile_graph_thesis.commands.showing import Showing
-    from tactile_graph_thesis.making import outcomes
 
     start = time.perf_counter()
     found: list[Outcome] = []
     pictures: dict[str, bytes] = {}
+    items, work, targets = makers.items, makers.work, makers.targets
     with Showing(items, work, tables=not book, aside=targets.csv == STDOUT) as showing:
-        for outcome in outcomes(items, work):
-            svg = targets.write(outcome)
-            if svg is not None:
-                pictures[outcome.item.id] = svg
-            showing.done(outcome)
-            found.append(_without_figure(outcome))
+        for written in makers.written():
+            if written.svg is not None:
+                pictures[written.outcome.item.id] = written.svg
+            showing.done(written.outcome)
+            found.append(written.outcome)
     if book and targets.folder is not None:
         _write_book(found, pictures, targets.folder, work)
     showing.end(found, targets.written(book), time.perf_counter() - start, book)
     return found
-
-
-def _without_figure(outcome: Outcome) -> Outcome:
-    """Return the outcome without its figure, which is written and takes much memory."""
-    from dataclasses import replace
-
-    if outcome.made is None:
-        return outcome
-    return replace(outcome, made=replace(outcome.made, figure=None))
 
 
 def _write_book(found: list[Outcome], pictures: dict[str, bytes], folder: Path, work: Work) -> None:

@@ -20,7 +20,11 @@ _COMPARED = {
 
 
 class Comparison(NamedTuple):
-    """A field held against a number: ``mask.count > 12``."""
+    """A field held against a number: ``mask.count > 12``.
+
+    Several of one node's that are joined by ``or`` are a field as well, true or false:
+    ``(mask.count > 12 or mask.area_cm2 > 9)``. It is asked as it stands, or not at all.
+    """
 
     field: str
     sign: str
@@ -29,7 +33,7 @@ class Comparison(NamedTuple):
     @property
     def node(self) -> str:
         """The node whose field it is."""
-        return self.field.partition(".")[0]
+        return node_of(self.field)
 
     @property
     def text(self) -> str:
@@ -51,6 +55,21 @@ class Taken(NamedTuple):
     named: tuple[str, ...]
     fixed: tuple[str, ...]
     """Parts that are no comparison of a node's field with a number."""
+
+
+def node_of(field: str) -> str:
+    """Return the node whose field it is."""
+    return field.lstrip("(").partition(".")[0]
+
+
+def alternatives(field: str) -> tuple[Comparison, ...]:
+    """Return the comparisons that a field joins by ``or``; none of a field of the node itself."""
+    if not field.startswith("("):
+        return ()
+    tree = ast.parse(field, mode="eval").body
+    assert isinstance(tree, ast.BoolOp)
+    found = (_comparison(part, {node_of(field)}) for part in tree.values)
+    return tuple(c for c in found if c is not None)
 
 
 def taken_apart(text: str, nodes: Collection[str], conditions: Mapping[str, str]) -> Taken:
@@ -88,6 +107,12 @@ def _parts(text: str) -> list[ast.expr]:
 
 
 def _comparison(part: ast.expr, nodes: Collection[str]) -> Comparison | None:
+    if isinstance(part, ast.BoolOp):
+        joined = [_comparison(its, nodes) for its in part.values]
+        of = {c.node if c is not None else "" for c in joined}
+        plain = all(not isinstance(its, ast.BoolOp) for its in part.values)
+        one = plain and len(of) == 1 and "" not in of and isinstance(part.op, ast.Or)
+        return Comparison(f"({ast.unparse(part)})", HOLDS, 0.0) if one else None
     if isinstance(part, ast.UnaryOp) and isinstance(part.op, ast.Not):
         field = _field(part.operand, nodes)
         return Comparison(field, HOLDS_NOT, 0.0) if field else None

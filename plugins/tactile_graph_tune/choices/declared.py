@@ -12,9 +12,12 @@ from tactile_graph import Pipeline, loads
 from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NodeKind
 from tactile_graph.pipeline.document import read_document
+from tactile_graph.plugins.registry import installed
 from tactile_graph_tune.choices.comparisons import Comparison, is_free, taken_apart
+from tactile_graph_tune.choices.expanded import expanded
 from tactile_graph_tune.choices.text import Notes, text_of
 
+ORDER = ("pipeline", "about", "evolves", "source", "conditions", "nodes", "outputs")
 Chosen = Mapping[str, tuple[Comparison, ...]]
 """Place -> the comparisons that must all hold there; a place that is not named has none."""
 
@@ -169,6 +172,7 @@ def declared(pipeline: Pipeline, answer: str) -> Declared:
         If a setting was changed that this file does not hold.
     """
     data = _with_overrides(read_document(pipeline.text, pipeline.file).data, pipeline)
+    data = expanded(data, pipeline.file, pipeline.registry or installed())
     target = pipeline.outputs[answer]
     node = pipeline.nodes.get(target.node)
     ladder = ""
@@ -182,14 +186,18 @@ def declared(pipeline: Pipeline, answer: str) -> Declared:
 
 
 def _with_overrides(data: dict[str, Any], pipeline: Pipeline) -> dict[str, Any]:
+    """Return a file's data with the settings that were given from outside."""
     data = copy.deepcopy(data)
-    for node, settings in pipeline.overrides.items():
-        if "step" not in data["nodes"].get(node, {}):
+    for name, settings in pipeline.overrides.items():
+        node, _, inner = name.partition("/")
+        its = data["nodes"].get(node, {})
+        if ("use" if inner else "step") not in its or "/" in inner:
             raise UsageError(
-                f"--set {node}.{next(iter(settings))}: is no setting of a step in this file, so "
+                f"--set {name}.{next(iter(settings))}: is no setting of a step in this file, so "
                 "the tuned file could not hold it; set it in the file that does"
             )
-        data["nodes"][node].setdefault("with", {}).update(settings)
+        given = {f"{inner}.{k}": v for k, v in settings.items()} if inner else settings
+        its["with"] = {**(its.get("with") or {}), **given}
     return data
 
 
@@ -240,8 +248,7 @@ def _places(data: Mapping[str, Any]) -> tuple[dict[str, Place], dict[str, tuple[
 
 def _in_order(keys: Iterable[str]) -> list[str]:
     """Return the entries of a file as files have them: what it is first."""
-    first = [k for k in ("pipeline", "about", "evolves") if k in keys]
-    return [*first, *(k for k in keys if k not in first)]
+    return sorted(keys, key=ORDER.index)
 
 
 def _drop_unused(data: dict[str, Any], kept: Collection[str]) -> None:

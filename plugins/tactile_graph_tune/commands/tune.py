@@ -15,6 +15,7 @@ from tactile_graph.cli.arguments import (
     parse_span,
     pipeline_argument,
 )
+from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -26,8 +27,9 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".svg", ".pdf")
 EPILOG = """\b
-Without a goal it finds what is cheapest and errs no more than the pipeline as it is, or than its
-best rung always run, whichever errs less. Half of the frames choose, the others report.
+Without a goal it finds what is cheapest and, against the pipeline as it is, errs no more where
+something lies, misses no more, and answers no more empty frames. Half of the frames choose, the
+others report.
 
 \b
   tactile-graph tune adaptive --frames 400 -o faster.yaml --plot front.png
@@ -61,12 +63,19 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               help="What of it counts: centre, radius, angle, identity, …; the first there is "
               "otherwise.")  # fmt: skip
 @click.option("--price", type=click.FloatRange(min=0.0, min_open=True), metavar="ERROR",
-              help="What no answer counts, and one where nothing lies; no error counts more.  "
+              help="What a missed object counts; an answer off by it has missed.  "
               "[default: 2 cm, 45°, 1 for a wrong name]")  # fmt: skip
-@click.option("--error-at-most", "most_loss", type=click.FloatRange(min=0.0), metavar="ERROR",
-              help="Find the cheapest whose mean error is no greater.")  # fmt: skip
+@click.option("--error-at-most", "most_error", type=click.FloatRange(min=0.0), metavar="ERROR",
+              help="Find the cheapest whose mean error, where something lies, is no greater.  "
+              "[default: as it is]")  # fmt: skip
+@click.option("--missed-at-most", "most_missed", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+              help="Miss no more of the frames where something lies.  [default: as it is]",
+              )  # fmt: skip
+@click.option("--false-at-most", "most_false", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+              help="Answer no more of the frames where nothing lies.  [default: as it is]",
+              )  # fmt: skip
 @click.option("--time-at-most", "most_us", type=click.FloatRange(min=0.0), metavar="µS",
-              help="Find the best that takes no longer, mean over the frames.")  # fmt: skip
+              help="Find the least error that takes no longer, mean over the frames.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
 @click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True,
@@ -77,12 +86,13 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               help="Write the tuned pipeline; a file that is there stays.")  # fmt: skip
 @click.option("--plot", metavar="FILE", help="Draw error against time (.png, .svg, .pdf).")
 @click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+@workers_options
 def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Find the guards, the order of rungs and the settings of PIPELINE that are cheapest.
 
     Every node is run on every frame once; from what each took and how far off it was thousands of
     choices are weighed: comparisons with any node's field, the order of the first_of that answers,
-    settings marked --free. Only the last few are run again.
+    settings that the file marks free, or --free. Only the last few are run again.
     """
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
@@ -97,8 +107,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
     request = Request(
-        opened, asked.answer, asked.quantity, asked.price, asked.most_loss, asked.most_us,
-        asked.fields, free, asked.rounds, asked.seed,
+        opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
+        asked.most_false, asked.most_us, asked.fields, free, asked.rounds, asked.seed,
+        place_asked(asked.workers, asked.on),
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
     try:
@@ -109,6 +120,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     finally:
         bar.stop()
     _show(found)
+    if request.place is not None:
+        told = f"of the table {side_by_side(request.place)}"
+        console().print(told, style="dim", soft_wrap=True)
     for name in _written(found, asked):
         console().print(f"wrote {name}", style="dim", soft_wrap=True)
 
@@ -127,18 +141,22 @@ class _Options:
     answer: str
     quantity: str | None
     price: float | None
-    most_loss: float | None
+    most_error: float | None
+    most_missed: float | None
+    most_false: float | None
     most_us: float | None
     rounds: int
     seed: int
     written: str | None
     plot: str | None
     json_path: str | None
+    workers: int | None
+    on: str | None
 
 
 def _check_files(asked: _Options) -> None:
     """Refuse what could not be written in the end, before the work."""
-    if asked.most_loss is not None and asked.most_us is not None:
+    if asked.most_error is not None and asked.most_us is not None:
         raise UsageError("--error-at-most and --time-at-most: one of them is the goal, not both")
     if asked.written is not None:
         if not asked.written.endswith((".yaml", ".yml")):

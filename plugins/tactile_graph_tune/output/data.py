@@ -18,12 +18,12 @@ def as_json(tuned: Tuned) -> str:
         "weighed": tuned.n_weighed,
         "points": {label: _point(p) for label, p in tuned.points.items()},
         "front": [_point(p) for p in tuned.front],
-        "oracle": {"time_us": tuned.bound.time_us.tolist(), "error": tuned.bound.loss.tolist()},
+        "oracle_us": {label: tuned.oracle_us(label) for label in tuned.points},
         "everything_us": tuned.everything_us,
         "guards": [as_data(w) for w in tuned.worths],
         "settings": as_data(tuned.settings),
         "time_ratio": as_data(tuned.ratio),
-        "error_difference": as_data(tuned.difference),
+        "difference": as_data(tuned.difference),
         "share_of_saving": tuned.share_of_saving(CHOSEN),
     }
     return json.dumps(without_nan(data), indent=1, ensure_ascii=False) + "\n"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from tactile_graph.files import whole_file
-from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, Tuned
+from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, Tuned, Weight
 
 INK, HAND, OWN, BEST = "#3b4a54", "#b3541e", "#0a6ebd", "#6b7d3a"
 
@@ -17,30 +19,49 @@ def write_figure(tuned: Tuned, name: str) -> None:
     figure = Figure(figsize=(7.2, 4.6), layout="constrained")
     axes = figure.subplots()
     judged = tuned.judged
-    bound = tuned.bound
-    axes.plot(bound.time_us, bound.loss, color=INK, lw=1.2, ls=":",
-              label="oracle: knows each frame's errors")  # fmt: skip
     front = tuned.front
-    axes.plot([p.weight.time_us.mean for p in front], [p.weight.loss.mean for p in front],
+    errors, oracle_us = oracle_line(tuned)
+    axes.plot(oracle_us, errors, color=INK, lw=1.2, ls=":",
+              label="oracle: knows each frame's errors")  # fmt: skip
+    axes.plot([p.weight.time_us.mean for p in front], [p.weight.error.mean for p in front],
               "o", ms=4, color=OWN, alpha=0.5, label="front, on unseen frames")  # fmt: skip
     marks = {GIVEN: ("s", HAND), ALWAYS: ("D", BEST), CHOSEN: ("*", OWN)}
     for label, (mark, colour) in marks.items():
         weight = tuned.points[label].weight
-        (time_us, low_us, high_us), (loss, low, high) = weight
-        axes.errorbar(time_us, loss, xerr=[[time_us - low_us], [high_us - time_us]],
-                      yerr=[[loss - low], [high - loss]], fmt=mark, color=colour, capsize=2,
-                      ms=13 if label == CHOSEN else 8, lw=1.0, label=label)  # fmt: skip
+        (time_us, low_us, high_us), (error, low, high) = weight.time_us, weight.error
+        axes.errorbar(time_us, error, xerr=[[time_us - low_us], [high_us - time_us]],
+                      yerr=[[error - low], [high - error]], fmt=mark, color=colour, capsize=2,
+                      ms=13 if label == CHOSEN else 8, lw=1.0, label=_told(label, weight),
+                      )  # fmt: skip
     axes.set_xscale("log")
-    if all(p.weight.loss.mean > 0.0 for p in (*front, *tuned.points.values())):
+    if all(p.weight.error.mean > 0.0 for p in (*front, *tuned.points.values())):
         axes.set_yscale("log")
-    least = min([p.weight.time_us.mean for p in front] + [tuned.points[CHOSEN].weight.time_us.mean])
-    axes.set_xlim(left=max(0.1, 0.1 * least))
+    fastest = min(
+        [p.weight.time_us.mean for p in front] + [tuned.points[CHOSEN].weight.time_us.mean]
+    )
+    axes.set_xlim(left=max(0.1, 0.1 * fastest))
     axes.set_xlabel("time a frame, µs (sum of its steps)")
     unit = f", {judged.unit}" if judged.unit else ""
-    axes.set_ylabel(f"mean error of the {judged.quantity}{unit} (at most {judged.price:g})")
+    axes.set_ylabel(
+        f"error of the {judged.quantity} where something lies{unit} (missed: {judged.price:g})"
+    )
     axes.set_title(f"{tuned.n_weighed} choices, shown on {tuned.n_reporting} frames they had not "
                    "seen; bars: 95 %", fontsize=9)  # fmt: skip
     axes.grid(alpha=0.25, which="both", lw=0.5)
     axes.legend(fontsize=8, frameon=False)
     with whole_file(name) as file:
         figure.savefig(file, format=Path(name).suffix.lstrip(".").lower(), dpi=150)
+
+
+def oracle_line(tuned: Tuned, n: int = 25) -> tuple[list[float], list[float]]:
+    """Return errors, and the least time an oracle takes for each, missing no more than tuned."""
+    missed = tuned.points[CHOSEN].weight.missed.mean
+    most = max(p.weight.error.mean for p in (*tuned.front, *tuned.points.values()))
+    errors = np.linspace(tuned.bound.least_error, most, n).tolist()
+    return errors, [tuned.bound.time_at(e, missed) for e in errors]
+
+
+def _told(label: str, weight: Weight) -> str:
+    shares = (("missed", weight.missed.mean), ("false on empty", weight.false.mean))
+    told = ", ".join(f"{name} {100 * x:.0f} %" for name, x in shares if x == x)
+    return f"{label}: {told}" if told else label

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tactile_graph_compare.output.tables import Table
 from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.split import Interval
-from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, Tuned, Weight
+from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, Tuned
 
 
 def heading(tuned: Tuned) -> str:
@@ -20,43 +20,40 @@ def heading(tuned: Tuned) -> str:
 
 def verdict(tuned: Tuned) -> str:
     """Return what came of it, in a sentence."""
-    ratio, off, unit = tuned.ratio, tuned.difference, tuned.judged.unit
-    share = tuned.share_of_saving()
+    ratio, share = tuned.ratio, tuned.share_of_saving()
     told = f"{100 * share:.0f} % of what an oracle saves" if share == share else "no oracle to tell"
     return (
         f"tuned takes {ratio.mean:.2f} of the time as given ({ratio.low:.2f} to {ratio.high:.2f}), "
-        f"error {off.mean:+.3g} {unit}".rstrip()
-        + f" ({off.low:+.3g} to {off.high:+.3g}); it saves {told} at its error"
+        f"{tuned.difference.told(tuned.judged.unit)}; it saves {told} at its error"
     )
 
 
 def points_table(tuned: Tuned) -> Table:
-    """Return time and error of the points that were run, and of the oracle."""
+    """Return time and each kind of error of the points that were run, and of the oracle."""
     judged = tuned.judged
-    error = f"{judged.quantity}, {judged.unit}" if judged.unit else judged.quantity
-    columns = ("variant", "µs a frame", "95 %", "predicted", error, "95 %  ", "of the saving")
+    columns = ("variant", "µs a frame", "95 %", "predicted", _error(tuned), "95 %  ", "missed",
+               "false", "of the saving")  # fmt: skip
     rows = []
     for label in (GIVEN, ALWAYS, CHOSEN):
         point = tuned.points[label]
         assert point.rerun is not None
-        time_us, loss = point.rerun
-        share = tuned.share_of_saving(label)
-        told = f"{100 * share:.0f} %" if share == share else ""
+        time_us, error, missed, false = point.rerun
         predicted = f"{point.weight.time_us.mean:.3g}"
         rows.append((label, f"{time_us.mean:.3g}", _bounds(time_us), predicted,
-                     f"{loss.mean:.3g}", _bounds(loss), told))  # fmt: skip
-    at = tuned.points[CHOSEN].weight.loss.mean
-    rows.append(("everything", "", "", f"{tuned.everything_us:.3g}", "", "", "0 %"))
-    rows.append(("oracle, error as tuned", "", "", f"{tuned.bound.time_at(at):.3g}", f"{at:.3g}",
-                 "", "100 %"))  # fmt: skip
+                     f"{error.mean:.3g}", _bounds(error), _share(missed.mean), _share(false.mean),
+                     _share(tuned.share_of_saving(label))))  # fmt: skip
+    own = tuned.points[CHOSEN].weight
+    rows.append(("everything", "", "", f"{tuned.everything_us:.3g}", "", "", "", "", "0 %"))
+    rows.append(("oracle, error as tuned", "", "", f"{tuned.oracle_us():.3g}",
+                 f"{own.error.mean:.3g}", "", _share(own.missed.mean), "", "100 %"))  # fmt: skip
+    price = f"{judged.price:g} {judged.unit}".rstrip()
     note = (
         "µs a frame: run and timed as a whole, median of rounds; predicted: from the table of what "
-        "every step took; always the best: the rung of least error in every frame, nothing "
-        f"guarded; an error counts {judged.price:g} {judged.unit}".rstrip()
-        + " at most, and as "
-        "much where nothing answers, or something does where nothing lies; of the saving: of what "
-        "an oracle that knows each frame's errors saves at the same error, against skipping "
-        "nothing"
+        f"every step took; {_error(tuned)}: of frames where something lies; missed: share of these "
+        f"without an answer within {price}, each counted as {price}; false: share of the frames "
+        "where nothing lies that are answered; always the best: the rung of least error in every "
+        "frame, nothing guarded; of the saving: of what an oracle that knows each frame's errors "
+        "saves at the same error and misses, against skipping nothing"
     )
     return Table("Time and error", columns, tuple(rows), note, ("95 %  ", "95 %", "predicted"))
 
@@ -65,32 +62,38 @@ def front_table(tuned: Tuned) -> Table:
     """Return the Pareto front, from the cheapest to the best."""
     rows = []
     for point in tuned.front:
-        weight: Weight = point.weight
-        told = (f"{weight.time_us.mean:.3g}", f"{weight.loss.mean:.3g}", words_of(point.choice))
-        rows.append(told)
-    error = f"{tuned.judged.quantity}, {tuned.judged.unit}".rstrip(", ")
-    columns = ("µs predicted", error, "guard")
-    note = "what no other choice beat on the frames that choose"
-    return Table("Pareto front", columns, tuple(rows), note)
+        time_us, error = (f"{i.mean:.3g}" for i in point.weight[:2])
+        shares = (_share(point.weight.missed.mean), _share(point.weight.false.mean))
+        rows.append((time_us, error, *shares, words_of(point.choice)))
+    columns = ("µs predicted", _error(tuned), "missed", "false", "guard")
+    note = (
+        "what no other choice beat on the frames that choose, of those that missed no more there, "
+        "and answered no more empty frames, than is allowed"
+    )
+    return Table("Pareto front", columns, tuple(rows), note, ("false", "missed"))
 
 
 def guards_table(tuned: Tuned) -> Table:
     """Return what each guard saves and costs, and which other fields would have done."""
-    columns = ("guard", "stops", "saved, µs", "share", "costs", "95 % from", "to")
+    costs = ("costs", "from", "to", "missed", "false")
+    columns = ("guard", "stops", "saved, µs", "share", *costs)
     rows = []
     for worth in tuned.worths:
         told = " and ".join(c.text for c in worth.comparisons)
-        cost = [f"{x:+.3g}" for x in worth.cost]
-        saved = (f"{worth.saved_us.mean:.3g}", f"{100 * worth.saved_share:.0f} %")
-        rows.append((f"{worth.place}: {told}", str(worth.n_stopped), *saved, *cost))
-        for comparison, time_us, loss in worth.rivals:
-            told = f"  or {comparison.text}: {time_us:.3g} µs, error {loss:.3g}"
-            rows.append((told, "", "", "", "", "", ""))
+        more = worth.cost
+        cost = [f"{x:+.3g}" for x in more.error]
+        shares = (_share(more.missed.mean, "+"), _share(more.false.mean, "+"))
+        saved = (f"{-more.time_us.mean:.3g}", _share(worth.saved_share))
+        rows.append((f"{worth.place}: {told}", str(worth.n_stopped), *saved, *cost, *shares))
+        for comparison, time_us, error in worth.rivals:
+            told = f"  or {comparison.text}: {time_us:.3g} µs, error {error:.3g}"
+            rows.append((told, "", "", "", "", "", "", "", ""))
     note = (
-        "stops: frames in which it does not hold; saved and costs: against the same without it, "
-        "predicted; or: the best other fields there, and what all would come to with them"
+        "stops: frames in which it does not hold; saved, costs (in error where something lies, 95 "
+        "% from, to), missed and false: against the same without it, predicted; or: the best other "
+        "fields there, and what all would come to with them"
     )
-    return Table("Guards", columns, tuple(rows), note, ("95 % from", "to"))
+    return Table("Guards", columns, tuple(rows), note, ("from", "to", "share"))
 
 
 def words_of(choice: Choice) -> str:
@@ -105,6 +108,15 @@ def _words(choice: Choice) -> Iterator[str]:
         yield f"{choice.order[0]} alone"
     for place, comparisons in choice.chosen.items():
         yield f"{place}: " + " and ".join(c.text for c in comparisons)
+
+
+def _error(tuned: Tuned) -> str:
+    judged = tuned.judged
+    return f"{judged.quantity}, {judged.unit}" if judged.unit else judged.quantity
+
+
+def _share(share: float, sign: str = "") -> str:
+    return f"{100 * share:{sign}.0f} %" if share == share else ""
 
 
 def _bounds(interval: Interval) -> str:

@@ -12,12 +12,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph import Pipeline
 from tactile_graph.inspect import FRAME, Node, NodeKind, Ref
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import Chosen, Declared
-from tactile_graph_tune.table.columns import Flags, Reals, Table
+from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.kinds import Flags, Means, Reals, Truths
 
 YES = np.True_
 
@@ -52,6 +54,21 @@ class Predicted(NamedTuple):
     time_us: Reals
     loss: Reals
     answered: Flags
+    failed: Flags
+
+    def spread(self, shape: tuple[int, ...]) -> Predicted:
+        """Return it with every column in one shape."""
+        columns: list[Any] = [np.broadcast_to(column, shape) for column in self]
+        return Predicted(*columns)
+
+    def means(self, truths: Truths) -> Means:
+        """Return the means of each choice over the frames."""
+        return truths.means(self.time_us, self.loss, self.failed)
+
+    def taken(self, frames: NDArray[np.int64]) -> Predicted:
+        """Return some frames of one choice."""
+        columns: list[Any] = [column[frames] for column in self]
+        return Predicted(*columns)
 
 
 Order = tuple[str, ...]
@@ -83,10 +100,7 @@ class Cascade:
             place: [Asked.of(c, table) for c in comparisons]
             for place, comparisons in chosen.items()
         }
-        time_us, loss, answered = self(table, order, asked)
-        n = (table.n,)
-        whole_us, whole = np.broadcast_to(time_us, n), np.broadcast_to(loss, n)
-        return Predicted(whole_us, whole, np.broadcast_to(answered, n))
+        return self(table, order, asked).spread((table.n,))
 
     def __call__(self, table: Table, order: Order, asked: Questions) -> Predicted:
         """Return what choices come to, many at a time where a comparison is many."""
@@ -100,12 +114,14 @@ class _Weighing:
         self.settled: dict[str, tuple[Any, Any]] = {}
         """Node -> where it has a value, and where it failed; each after what it reads."""
         self.passed: dict[str, Any] = {FRAME: YES}
+        self.none = table.truths.none
 
     def predicted(self) -> Predicted:
         for ref in self.cascade.outputs:
             self._state(ref.node)
         ok, _ = self._state(self.cascade.answer.node)
-        return Predicted(self._time_us(), self._loss(self.cascade.answer), ok)
+        time_us, failed = self._run()
+        return Predicted(time_us, self._loss(self.cascade.answer), ok, failed)
 
     # -- what has a value ----------------------------------------------------------------------
 
@@ -150,9 +166,10 @@ class _Weighing:
             return [Ref(name) for name in self.order]
         return list(node.choices)
 
-    # -- what it takes -------------------------------------------------------------------------
+    # -- what runs -----------------------------------------------------------------------------
 
-    def _time_us(self) -> Reals:
+    def _run(self) -> tuple[Reals, Flags]:
+        """Return what runs takes, and where a step of it fails."""
         needed: dict[str, Any] = {}
 
         def need(name: str, where: Any) -> None:
@@ -162,6 +179,7 @@ class _Weighing:
         for ref in self.cascade.outputs:
             need(ref.node, YES)
         total: Any = np.zeros(self.table.n)
+        failing: Any = np.zeros(self.table.n, np.bool_)
         for name in reversed(self.settled):
             where = needed.get(name)
             if where is None:
@@ -184,16 +202,19 @@ class _Weighing:
                 ok, bad = self._state(ref.node)
                 ran = ran & ok
                 where = where & (ok | bad) if required else where
-            total = total + ran * self.table.nodes[name].time_us
-        return total  # type: ignore[no-any-return]
+            column = self.table.nodes[name]
+            total = total + ran * column.time_us
+            if column.failed.any():
+                failing = failing | (ran & column.failed)
+        return total, failing
 
     def _loss(self, ref: Ref) -> Any:
         """Return the error of what answers at a reference."""
         node = self.nodes.get(ref.node)
         if node is None or node.kind is not NodeKind.FIRST_OF or not ref.whole:
             ok, _ = self._state(ref.node)
-            return np.where(ok, self.table.losses[str(ref)], self.table.none)
-        found: Any = self.table.none
+            return np.where(ok, self.table.losses[str(ref)], self.none)
+        found: Any = self.none
         passed = self.passed[ref.node]
         for choice in reversed(self._choices(node)):
             ok, _ = self._state(choice.node)

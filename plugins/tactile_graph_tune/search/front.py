@@ -1,4 +1,4 @@
-"""The choices that none beats in both time and error."""
+"""The choices that none beats in both time and error, of those that are allowed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import bisect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from tactile_graph_tune.choices.declared import Chosen
 from tactile_graph_tune.search.cascade import Order
-from tactile_graph_tune.table.columns import Reals
+from tactile_graph_tune.table.kinds import Flags, Reals
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Weighed:
     """A choice with its mean time and mean error on the frames it was chosen by."""
 
     time_us: float
-    loss: float
+    error: float
     choice: Choice
 
 
@@ -45,19 +47,30 @@ class Front:
     points: list[Weighed] = field(default_factory=list)
     n_weighed: int = 0
 
-    def enter(self, times_us: Reals, losses: Reals, choice: Callable[[int], Choice]) -> None:
-        """Enter choices by their means; ``choice`` makes one by its number, if it is needed."""
-        self.n_weighed += len(times_us)
-        for k in sorted(range(len(times_us)), key=lambda k: (times_us[k], losses[k])):
-            self._enter(float(times_us[k]), float(losses[k]), choice, k)
+    def enter(
+        self, times_us: Reals, errors: Reals, allowed: Flags, choice: Callable[[int], Choice]
+    ) -> None:
+        """Enter choices by their means, shapes (n_choices,).
 
-    def _enter(self, time_us: float, loss: float, choice: Callable[[int], Choice], k: int) -> None:
+        Parameters
+        ----------
+        times_us, errors : ndarray of float64
+        allowed : ndarray of bool
+            Those not allowed are counted and no more.
+        choice : callable
+            Makes one by its number, if it is needed.
+        """
+        self.n_weighed += len(times_us)
+        for k in sorted(np.flatnonzero(allowed), key=lambda k: (times_us[k], errors[k])):
+            self._enter(float(times_us[k]), float(errors[k]), choice, int(k))
+
+    def _enter(self, time_us: float, error: float, choice: Callable[[int], Choice], k: int) -> None:
         at = bisect.bisect_right(self.points, time_us, key=lambda p: p.time_us)
-        if at and self.points[at - 1].loss <= loss:
+        if at and self.points[at - 1].error <= error:
             return
         end = at
-        while end < len(self.points) and self.points[end].loss >= loss:
+        while end < len(self.points) and self.points[end].error >= error:
             end += 1
         if at and self.points[at - 1].time_us == time_us:
             at -= 1
-        self.points[at:end] = [Weighed(time_us, loss, choice(k))]
+        self.points[at:end] = [Weighed(time_us, error, choice(k))]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy import sparse
+from scipy.optimize import linprog
 
 from tactile_graph import Pipeline
 from tactile_graph.inspect import FRAME, NodeKind
-from tactile_graph_tune.table.columns import Reals, Table
-
-N_PRICES = 60
+from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.kinds import SLACK, Reals, Truths
 
 
 class Options(NamedTuple):
@@ -37,12 +38,12 @@ def options_of(pipeline: Pipeline, table: Table, leaves: Mapping[str, str]) -> O
     An option takes what it reads and nothing else: whoever knows the errors needs no field of any
     other node.
     """
-    times, losses = [np.zeros(table.n)], [table.none]
+    times, losses = [np.zeros(table.n)], [table.truths.none]
     for leaf, node in leaves.items():
         column = table.nodes[node]
         spent = sum((table.nodes[n].time_us for n in _behind(pipeline, node)), np.zeros(table.n))
         times.append(np.where(column.ok, spent, 0.0))
-        losses.append(np.where(column.ok, table.losses[leaf], table.none))
+        losses.append(np.where(column.ok, table.losses[leaf], table.truths.none))
     return Options(np.stack(times), np.stack(losses))
 
 
@@ -59,40 +60,42 @@ def _behind(pipeline: Pipeline, name: str) -> set[str]:
     return found
 
 
-class Bound(NamedTuple):
-    """The oracle's mean time and mean error, from the cheapest to the best."""
+class Bound:
+    """The oracle's least mean time for a mean error and a share of missed frames.
 
-    time_us: Reals
-    loss: Reals
-
-    def time_at(self, loss: float) -> float:
-        """Return the least mean time at a mean error; NaN where even the oracle errs more."""
-        fine = self.loss <= loss
-        if not fine.any():
-            return float("nan")
-        k = int(np.argmax(fine))  # times rise, errors fall
-        if k == 0:
-            return float(self.time_us[0])
-        (a, b), (x, y) = self.loss[k - 1 : k + 1], self.time_us[k - 1 : k + 1]
-        return float(y if a == b else x + (y - x) * (a - loss) / (a - b))
-
-
-def bound_of(options: Options) -> Bound:
-    """Return the least mean time for each mean error.
+    Parameters
+    ----------
+    options : Options
+    truths : Truths
 
     Notes
     -----
-    For each price of error every frame takes its own best option; the points between two prices
-    are mixtures of both. No choice of guards, which sees fields only, can lie below this line.
+    Mixtures of options frame by frame, as a linear programme: no choice of guards, which sees
+    fields only, can lie below its least time. Nothing is answered where nothing lies: that costs
+    neither time nor a false answer.
     """
-    times, losses = options
-    spread_us = float(times.max()) or 1.0
-    spread = float(losses.max()) or 1.0
-    prices = [0.0, *np.geomspace(1e-4, 1e6, N_PRICES) * spread_us / spread]
-    points = []
-    every = np.arange(times.shape[1])
-    for price in prices:
-        k = (times + price * losses + 1e-12 * losses).argmin(axis=0)
-        points.append((float(times[k, every].mean()), float(losses[k, every].mean())))
-    points = sorted(set(points))
-    return Bound(np.array([p[0] for p in points]), np.array([p[1] for p in points]))
+
+    def __init__(self, options: Options, truths: Truths) -> None:
+        full = truths.full
+        times, losses = options.time_us[:, full], options.loss[:, full]
+        missed = losses >= truths.price
+        self._share, self._n = float(full.mean()), int(full.sum())
+        self._time_us, n_options = times.ravel(), len(times)
+        limited: Reals = np.stack([losses.ravel(), missed.ravel()]).astype(np.float64)
+        self._limited = limited / max(1, self._n)
+        # Of each frame's options, side by side in the columns, the shares sum to 1. (SciPy's types
+        # know nothing of sparse constraints, which linprog takes.)
+        self._shares: Any = sparse.hstack([sparse.identity(self._n, format="csr")] * n_options)
+        self.least_error = float(losses.min(axis=0).mean()) if self._n else 0.0
+
+    def time_at(self, error: float, missed: float) -> float:
+        """Return the least mean time within both; NaN where even the oracle errs or misses more."""
+        if not self._n:
+            return 0.0
+        found = linprog(
+            self._time_us, self._limited, np.array([error, missed]) + SLACK,
+            self._shares, np.ones(self._n),
+        )  # fmt: skip
+        if found.fun is None:
+            return float("nan")
+        return self._share * float(found.fun) / self._n

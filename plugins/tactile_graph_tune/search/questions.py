@@ -8,11 +8,18 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph import Pipeline
-from tactile_graph_tune.choices.comparisons import HOLDS, HOLDS_NOT, Comparison
+from tactile_graph_tune.choices.comparisons import (
+    HOLDS,
+    HOLDS_NOT,
+    Comparison,
+    alternatives,
+    node_of,
+)
 from tactile_graph_tune.choices.declared import Declared, Place
 from tactile_graph_tune.search.cascade import Asked
-from tactile_graph_tune.table.columns import Reals, Table
+from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.fields import is_flag
+from tactile_graph_tune.table.kinds import Reals
 
 SHARES = (0.01, 0.03, 0.06, *np.linspace(0.1, 0.9, 13), 0.94, 0.97, 0.99)
 """Shares of the frames on either side of the levels that are tried first."""
@@ -51,7 +58,7 @@ def fields_by_place(
     found = {}
     for place in declared.places.values():
         first = min(before[n] for n in place.nodes)
-        names = [f for f in usable if before[f.partition(".")[0]] < first]
+        names = [f for f in usable if before[node_of(f)] < first]
         names += [c.field for c in place.given if c.field not in names and c.field in table.fields]
         found[place.name] = _distinct(names, place, table)
     return found
@@ -100,7 +107,8 @@ class Questions:
         known = column.values[~np.isnan(column.values)]
         if not known.size:
             return None
-        if is_flag(self._pipeline.type_of(self._pipeline.ref(field))):
+        joined = bool(alternatives(field))
+        if joined or is_flag(self._pipeline.type_of(self._pipeline.ref(field))):
             made = tuple(Comparison(field, sign, 0.0) for sign in (HOLDS, HOLDS_NOT))
         else:
             levels = levels_between(known, FINER if finer else 0)

@@ -2,8 +2,9 @@
 
 Time and error are weighed as time + price * error, as budgeted prediction does (Xu, Weinberger and
 Chapelle 2012, "The greedy miser"); comparisons that stop early are Viola and Jones' attentional
-cascade (2001, 10.1109/CVPR.2001.990517). For each price and each order every place in turn takes
-the comparison that is best while the others stay, from the best that any other price found.
+cascade (2001, 10.1109/CVPR.2001.990517). What goes beyond the limits on misses and false answers
+costs more than anything that could be gained by it. For each aim and each order every place in turn
+takes the comparison that is best while the others stay, from the best that any other aim found.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from tactile_graph_tune.choices.declared import Chosen
 from tactile_graph_tune.search.cascade import Asked, Cascade, Order
 from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.questions import Batch, Questions
-from tactile_graph_tune.table.columns import Reals, Table
+from tactile_graph_tune.table.columns import Table
+from tactile_graph_tune.table.kinds import Means, Reals
 
 MOST_ASKED = 2
 """Comparisons at one place."""
@@ -42,6 +44,33 @@ class Space:
     given: Choice
 
 
+@dataclass(frozen=True)
+class Aim:
+    """What one descent makes least: time + price * error, far more for what is over its limits.
+
+    Parameters
+    ----------
+    price : float
+        Of error: µs per unit.
+    limits : Means
+    over_us : float
+        Of a whole unit over a limit.
+    """
+
+    price: float
+    limits: Means
+    over_us: float
+
+    def of(self, means: Means) -> Reals:
+        """Return what is to be least, shape (n_choices,)."""
+        over = sum(
+            np.maximum(0.0, mine - most)
+            for mine, most in zip(means[1:], self.limits[1:], strict=True)
+        )
+        found: Reals = means.time_us + self.price * means.error + self.over_us * over
+        return found
+
+
 class Search:
     """Fills a front.
 
@@ -49,13 +78,14 @@ class Search:
     ----------
     space : Space
     front : Front
-    prices : sequence of float
-        Of error: µs per unit.
+    aims : sequence of Aim
+    limits : Means
+        What a choice on the front may not exceed.
     """
 
-    def __init__(self, space: Space, front: Front, prices: Sequence[float]) -> None:
-        self.space, self.front, self.prices = space, front, prices
-        self._best: dict[tuple[Order, float], tuple[float, Chosen]] = {}
+    def __init__(self, space: Space, front: Front, aims: Sequence[Aim], limits: Means) -> None:
+        self.space, self.front, self.aims, self.limits = space, front, aims, limits
+        self._best: dict[tuple[Order, Aim], tuple[float, Chosen]] = {}
 
     def run(self, orders: Sequence[Order]) -> None:
         """Search with each of the orders of rungs."""
@@ -64,17 +94,17 @@ class Search:
         for order in orders:
             for start in starts:
                 self._weigh(order, start, {}, [()])
-            for price in self.prices:
-                self._descend(order, price)
+            for aim in self.aims:
+                self._descend(order, aim)
 
-    def _descend(self, order: Order, price: float) -> None:
-        """Improve the best choice for a price, place by place, until none gets better."""
+    def _descend(self, order: Order, aim: Aim) -> None:
+        """Improve the best choice for an aim, place by place, until none gets better."""
         for _ in range(MOST_SWEEPS):
-            before, _ = self._best[order, price]
+            before, _ = self._best[order, aim]
             for place in self.space.questions.fields:
                 if self._live(place, order):
-                    self._improve(order, price, place)
-            if self._best[order, price][0] > before * (1.0 - GAIN):
+                    self._improve(order, aim, place)
+            if self._best[order, aim][0] > before * (1.0 - GAIN):
                 return
 
     def _live(self, place: str, order: Order) -> bool:
@@ -82,8 +112,8 @@ class Search:
         rungs = self.space.given.order
         return place not in rungs or place in order[:-1]
 
-    def _improve(self, order: Order, price: float, place: str) -> None:
-        _, chosen = self._best[order, price]
+    def _improve(self, order: Order, aim: Aim, place: str) -> None:
+        _, chosen = self._best[order, aim]
         now = chosen.get(place, ())
         bases = dict.fromkeys([(), *((c,) for c in now)])
         self._weigh(order, {**chosen, place: ()}, {}, [()])
@@ -113,9 +143,7 @@ class Search:
         for place, questions in more.items():
             asked[place] = [*asked.get(place, ()), *questions]
         found = self.space.cascade(table, order, asked)
-        shape = (len(added), table.n)
-        times = np.broadcast_to(found.time_us, shape).mean(axis=1)
-        losses = np.broadcast_to(found.loss, shape).mean(axis=1)
+        means = found.spread((len(added), table.n)).means(table.truths)
         made: dict[int, Chosen] = {}
 
         def chosen_at(k: int) -> Chosen:
@@ -124,23 +152,21 @@ class Search:
             return made[k]
 
         variant = self.space.variant
-        self.front.enter(times, losses, lambda k: Choice(variant, order, chosen_at(k)))
-        self._note(order, times, losses, chosen_at, sum(map(len, chosen.values())) + len(more))
+        self.front.enter(
+            means.time_us, means.error, means.within(self.limits),
+            lambda k: Choice(variant, order, chosen_at(k)),
+        )  # fmt: skip
+        self._note(order, means, chosen_at, sum(map(len, chosen.values())) + len(more))
 
     def _note(
-        self,
-        order: Order,
-        times: Reals,
-        losses: Reals,
-        chosen_at: Callable[[int], Chosen],
-        n_asked: int,
+        self, order: Order, means: Means, chosen_at: Callable[[int], Chosen], n_asked: int
     ) -> None:
-        for price in self.prices:
-            objective = (times + price * losses) * (1.0 + GAIN * n_asked)
+        for aim in self.aims:
+            objective = aim.of(means) * (1.0 + GAIN * n_asked)
             k = int(objective.argmin())
-            known = self._best.get((order, price), (math.inf, {}))
+            known = self._best.get((order, aim), (math.inf, {}))
             if objective[k] < known[0]:
-                self._best[order, price] = (float(objective[k]), chosen_at(k))
+                self._best[order, aim] = (float(objective[k]), chosen_at(k))
 
 
 def _with(chosen: Chosen, place: str = "", comparison: Comparison | None = None) -> Chosen:
@@ -173,31 +199,30 @@ def orders_of(rungs: Order, mean_us: Sequence[float]) -> list[Order]:
     return list(dict.fromkeys([rungs, *(tuple(rungs[k] for k in o) for o in found)]))
 
 
-def pruned(space: Space, choice: Choice, allowed: float, by_time: bool = False) -> Choice:
+def pruned(space: Space, choice: Choice, limits: Means, by_time: bool = False) -> Choice:
     """Return a choice without the comparisons that bring next to nothing.
 
     Parameters
     ----------
     space : Space
     choice : Choice
-    allowed : float
-        The greatest mean error, or with ``by_time`` the greatest mean time.
+    limits : Means
+        Over the frames of the space.
     by_time : bool
         Whether the error is to be least, not the time.
     """
-    best = _means(space, choice, by_time)
+    best = _means(space, choice)
     for place, comparisons in choice.chosen.items():
         for comparison in comparisons:
             left = tuple(c for c in choice.chosen[place] if c != comparison)
             simpler = replace(choice, chosen={**choice.chosen, place: left})
-            limited, sought = _means(space, simpler, by_time)
-            if limited <= allowed and sought <= best[1] * (1.0 + 2.0 * GAIN):
-                choice, best = simpler, (limited, sought)
+            found = _means(space, simpler)
+            sought, most = (m.error if by_time else m.time_us for m in (found, best))
+            if found.within(limits) and sought <= most * (1.0 + 2.0 * GAIN):
+                choice, best = simpler, found
     return replace(choice, chosen={p: cs for p, cs in choice.chosen.items() if cs})
 
 
-def _means(space: Space, choice: Choice, by_time: bool) -> tuple[float, float]:
-    """Return the mean of what is limited, and of what is to be least."""
+def _means(space: Space, choice: Choice) -> Means:
     found = space.cascade.predicted(space.table, choice.order, choice.chosen)
-    time_us, loss = float(found.time_us.mean()), float(found.loss.mean())
-    return (time_us, loss) if by_time else (loss, time_us)
+    return found.means(space.table.truths)

@@ -8,108 +8,128 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from math import inf
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
-from tactile_graph_tune.search.cascade import Predicted
 from tactile_graph_tune.search.front import Choice, Front
+from tactile_graph_tune.table.kinds import Means
 
-Predict = Callable[[Choice], Predicted]
-Rows = Any
+Rows = NDArray[np.int64]
+Weigh = Callable[[Choice, Rows], Means]
+"""Gives the means of a choice over some frames."""
+
+OPTIONS = {
+    "time_us": ("--time-at-most", "the cheapest choice takes {:.3g} µs a frame"),
+    "error": ("--error-at-most", "the best choice has a mean error of {:.3g}"),
+    "missed": ("--missed-at-most", "the choice that misses least misses {:.3g}"),
+    "false": ("--false-at-most", "the choice that answers least on empty pads answers {:.3g}"),
+}
 
 
 @dataclass(frozen=True)
 class Goal:
-    """What is sought: the cheapest within an error, or with ``by_time`` the best within a time.
+    """What is sought: the cheapest within limits on error, or the best within one on time.
 
-    ``allowed`` is None for an error no greater than that of the ``references``.
+    Each is None where it was not said: then an error, a share of misses, or one of false answers
+    may be no greater than ``given``'s, and a time may be anything. Steps never fail in more frames.
     """
 
-    allowed: float | None
-    by_time: bool
-    references: tuple[Choice, ...]
+    given: Choice
+    time_us: float | None = None
+    error: float | None = None
+    missed: float | None = None
+    false: float | None = None
 
-    def limited(self, means: Means) -> float:
-        """Return what is limited."""
-        return means.time_us if self.by_time else means.loss
+    @property
+    def by_time(self) -> bool:
+        """Whether time is limited, and the least error sought."""
+        return self.time_us is not None
+
+    def limits(self, rows: Rows, weigh: Weigh) -> Means:
+        """Return what may not be exceeded on some frames."""
+        own = weigh(self.given, rows)
+        return Means(
+            inf if self.time_us is None else self.time_us,
+            inf if self.by_time else _said(self.error, own.error),
+            _said(self.missed, own.missed),
+            _said(self.false, own.false),
+            float(own.failed),
+        )
 
     def sought(self, means: Means) -> float:
         """Return what is to be least."""
-        return means.loss if self.by_time else means.time_us
+        return float(means.error if self.by_time else means.time_us)
 
 
-class Means(NamedTuple):
-    """Mean time and mean error over some frames."""
-
-    time_us: float
-    loss: float
+def _said(limit: float | None, own: Any) -> float:
+    return float(own) if limit is None else limit
 
 
 def selected(
-    goal: Goal, fronts: Sequence[Front], folds: Sequence[Rows], predict: Predict
+    goal: Goal, candidates: Sequence[Choice], folds: Sequence[Rows], weigh: Weigh
 ) -> Choice:
-    """Return the choice that comes nearest to the goal within what is allowed on either half.
+    """Return the choice that comes nearest to the goal, of those within its limits on either half.
 
     Parameters
     ----------
     goal : Goal
-    fronts : sequence of Front
-        What each half found.
+    candidates : sequence of Choice
+        What the halves found, and what was there before.
     folds : sequence of ndarray of int64
         The rows of each half.
-    predict : callable
-        Gives what a choice comes to in every frame.
+    weigh : callable
 
     Raises
     ------
     UsageError
-        If none is within what is allowed.
+        If none is within the limits.
     """
-    limits = [limit_of(goal, rows, predict) for rows in folds]
-    candidates = [*goal.references, *(p.choice for front in fronts for p in front.points)]
+    limits = [goal.limits(rows, weigh) for rows in folds]
     both = np.concatenate(list(folds))
     best: tuple[float, Choice] | None = None
-    nearest = np.inf
+    found = []
     for choice in candidates:
-        found = predict(choice)
-        limited = [goal.limited(_means(found, rows)) for rows in folds]
-        nearest = min(nearest, max(limited))
-        if all(x <= limit for x, limit in zip(limited, limits, strict=True)):
-            sought = goal.sought(_means(found, both))
+        means = [weigh(choice, rows) for rows in folds]
+        found.append(Means(*np.max(means, axis=0)))
+        if all(m.within(most) for m, most in zip(means, limits, strict=True)):
+            sought = goal.sought(weigh(choice, both))
             if best is None or sought < best[0]:
                 best = (sought, choice)
     if best is None:
-        raise UsageError(_out_of_reach(goal, nearest))
+        raise UsageError(_out_of_reach(goal, found))
     return best[1]
 
 
-def limit_of(goal: Goal, rows: Rows, predict: Predict) -> float:
-    """Return what is allowed on some frames."""
-    if goal.allowed is not None:
-        return goal.allowed
-    return min(goal.limited(_means(predict(c), rows)) for c in goal.references)
+def merged(
+    fronts: Sequence[Front], choices: Sequence[Choice], rows: Rows, weigh: Weigh, limits: Means
+) -> Front:
+    """Return the front of all that was found, by all the frames that choose.
 
-
-def merged(fronts: Sequence[Front], rows: Rows, predict: Predict) -> Front:
-    """Return the front of all that was found, by all the frames that choose."""
+    Only misses and false answers are limited on it.
+    """
     whole = Front()
-    choices = [p.choice for front in fronts for p in front.points]
-    means = [_means(predict(c), rows) for c in choices]
-    times, losses = np.array(means).reshape(-1, 2).T
-    whole.enter(times, losses, lambda k: choices[k])
+    means = Means(*np.array([weigh(c, rows) for c in choices]).T)
+    allowed = means.within(limits._replace(time_us=inf, error=inf))
+    whole.enter(means.time_us, means.error, allowed, lambda k: choices[k])
     whole.n_weighed = sum(front.n_weighed for front in fronts)
     return whole
 
 
-def _means(found: Predicted, rows: Rows) -> Means:
-    return Means(float(found.time_us[rows].mean()), float(found.loss[rows].mean()))
-
-
-def _out_of_reach(goal: Goal, nearest: float) -> str:
-    if goal.by_time:
-        return (
-            f"--time-at-most {goal.allowed:g}: the cheapest choice takes {nearest:.3g} µs a frame"
-        )
-    return f"--error-at-most {goal.allowed:g}: the best choice has a mean error of {nearest:.3g}"
+def _out_of_reach(goal: Goal, found: Sequence[Means]) -> str:
+    """Return which limit is out of reach by itself, or else that all are together."""
+    said = {name: getattr(goal, name) for name in OPTIONS if getattr(goal, name) is not None}
+    for name, most in said.items():
+        nearest = min(float(getattr(m, name)) for m in found)
+        if nearest > most:
+            option, words = OPTIONS[name]
+            return f"{option} {most:g}: {words.format(nearest)}"
+    told = " ".join(f"{OPTIONS[name][0]} {most:g}" for name, most in said.items())
+    return (
+        f"{told}: no choice keeps it and errs, misses and answers on empty pads no more than the "
+        "pipeline as it is on both halves of the frames; --error-at-most, --missed-at-most and "
+        "--false-at-most allow more"
+    )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-Reals = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from tactile_graph_tune.table.kinds import Flags, Reals, Truths
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +56,7 @@ class Table:
         Every number and every yes or no that a guard could read, by ``node.field``.
     losses : mapping of str to ndarray, shape (n_frames,)
         For each node that may answer, the error if it does where it has a value.
-    none : ndarray of float64, shape (n_frames,)
-        The error if nothing answers.
+    truths : Truths
     scored : ndarray of bool, shape (n_frames,)
         Frames whose truth is known.
     """
@@ -66,13 +64,13 @@ class Table:
     nodes: Mapping[str, NodeColumn]
     fields: Mapping[str, FieldColumn]
     losses: Mapping[str, Reals]
-    none: Reals
+    truths: Truths
     scored: Flags
 
     @property
     def n(self) -> int:
         """Frames."""
-        return len(self.none)
+        return len(self.scored)
 
     def taken(self, frames: NDArray[np.int64]) -> Table:
         """Return the table of some frames."""
@@ -80,6 +78,28 @@ class Table:
             {k: c.taken(frames) for k, c in self.nodes.items()},
             {k: replace(c, values=c.values[frames]) for k, c in self.fields.items()},
             {k: v[frames] for k, v in self.losses.items()},
-            self.none[frames],
+            self.truths.taken(frames),
             self.scored[frames],
         )
+
+
+def joined(tables: Sequence[Table]) -> Table:
+    """Return the table of all frames of several, which have the same columns."""
+    first = tables[0]
+    return Table(
+        {k: _nodes([t.nodes[k] for t in tables]) for k in first.nodes},
+        {k: _fields([t.fields[k] for t in tables]) for k in first.fields},
+        {k: np.concatenate([t.losses[k] for t in tables]) for k in first.losses},
+        Truths(np.concatenate([t.truths.full for t in tables]), first.truths.price),
+        np.concatenate([t.scored for t in tables]),
+    )
+
+
+def _nodes(parts: Sequence[NodeColumn]) -> NodeColumn:
+    return NodeColumn(*map(np.concatenate, zip(*(vars(p).values() for p in parts), strict=True)))
+
+
+def _fields(parts: Sequence[FieldColumn]) -> FieldColumn:
+    n_read = [max(1, int((~np.isnan(p.values)).sum())) for p in parts]
+    time_us = float(np.average([p.time_us for p in parts], weights=n_read))
+    return FieldColumn(np.concatenate([p.values for p in parts]), time_us)

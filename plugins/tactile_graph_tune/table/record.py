@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from tactile_graph import Pipeline, Result
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Skipped
+from tactile_graph.many import Place, Portion, Sharing
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.variants.merge import Member, merge
-from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Reals, Table
+from tactile_graph_tune.choices.comparisons import alternatives, node_of
+from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Table, joined
 from tactile_graph_tune.table.fields import guard_fields, value_at
+from tactile_graph_tune.table.kinds import Reals, Truths
 from tactile_graph_tune.table.losses import LossOf
 
 WARM_FRAMES = 8
@@ -34,11 +37,15 @@ class Judged(NamedTuple):
 
 
 class Rounds(NamedTuple):
-    """How often everything runs, times being medians; the seed; and who is told how far it is."""
+    """How often everything runs, times being medians; the seed; who is told how far it is; where.
+
+    Without a place everything runs in this process.
+    """
 
     n: int
     seed: int
     told: Told
+    place: Place | None = None
 
 
 def record(
@@ -67,20 +74,60 @@ def record(
     """
     for pipeline in pipelines:
         _check(pipeline)
-    warm_up()  # what answers as plain code meanwhile would be timed as such
-    merged = merge(pipelines, [tuple(p.nodes) for p in pipelines])
-    runner = merged.pipeline.runner(seed=rounds.seed)
-    for frame in frames[:WARM_FRAMES]:
-        runner(frame)
-    rows = [_Rows(p, m, also, judged) for p, m in zip(pipelines, merged.members, strict=True)]
-    for k in range(rounds.n):
-        for i, frame in enumerate(frames):
-            runner.forget()
-            result = runner(frame)
-            for its in rows:
-                its.add(result, first=k == 0)
-            rounds.told(k * len(frames) + i + 1, rounds.n * len(frames))
-    return [its.table(len(frames)) for its in rows]
+    given = _Given(pipelines, also, judged, rounds.n, rounds.seed)
+    if rounds.place is None:
+        return _Recorder(given).tables(frames, rounds.told)
+    parts: list[list[Table]] = []
+    with Sharing(rounds.place, _Recorder, given) as workers:
+        for tables in workers.over_frames(iter(frames)):
+            parts.append(tables)
+            rounds.told(rounds.n * sum(t[0].n for t in parts), rounds.n * len(frames))
+        if workers.left_out:
+            raise UsageError(f"frame {workers.left_out[0]}: workers died of it each time")
+    return [joined(of_one) for of_one in zip(*parts, strict=True)]
+
+
+class _Given(NamedTuple):
+    """What is recorded of frames."""
+
+    pipelines: Sequence[Pipeline]
+    also: Sequence[str]
+    judged: Judged
+    n_rounds: int
+    seed: int
+
+
+class _Recorder:
+    """Runs everything on frames, in this process or in a worker."""
+
+    def __init__(self, given: _Given) -> None:
+        warm_up()  # what answers as plain code meanwhile would be timed as such
+        self._given = given
+        asked = [tuple(p.nodes) for p in given.pipelines]
+        self._merged = merge(given.pipelines, asked)
+        self._runner = self._merged.pipeline.runner(seed=given.seed)
+        self._warm = False
+
+    def __call__(self, portion: Portion) -> list[Table]:
+        """Return the tables of a portion: what a worker does."""
+        return self.tables(portion.frames()[1], lambda n, of: None)
+
+    def tables(self, frames: Sequence[Frame], told: Told) -> list[Table]:
+        """Return the table of each pipeline."""
+        given, runner = self._given, self._runner
+        for frame in [] if self._warm else frames[:WARM_FRAMES]:
+            runner(frame)
+        self._warm = True
+        members = zip(given.pipelines, self._merged.members, strict=True)
+        rows = [_Rows(p, m, given.also, given.judged) for p, m in members]
+        for k in range(given.n_rounds):
+            for i, frame in enumerate(frames):
+                runner.forget()
+                result = runner(frame)
+                for its in rows:
+                    its.add(result, first=k == 0)
+                told(k * len(frames) + i + 1, given.n_rounds * len(frames))
+        return [its.table(len(frames)) for its in rows]
 
 
 def _check(pipeline: Pipeline) -> None:
@@ -98,11 +145,35 @@ def _check(pipeline: Pipeline) -> None:
 
 @dataclass
 class _Field:
+    """A field of a node, or several that are joined by ``or``, and its values so far."""
+
     name: str
-    node: str
-    path: tuple[str, ...]
     values: list[float]
     spent_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.node = node_of(self.name)
+        self._joined = [(c, _path(c.field)) for c in alternatives(self.name)]
+        self._path = _path(self.name)
+
+    def add(self, value: Any) -> None:
+        """Enter what a node came to in a frame."""
+        start = time.perf_counter()
+        number = np.nan if value.__class__ in NO_VALUE else self._of(value)
+        self.spent_s += time.perf_counter() - start
+        self.values.append(number)
+
+    def _of(self, value: Any) -> float:
+        if not self._joined:
+            return value_at(value, self._path)
+        numbers = [(c, value_at(value, path)) for c, path in self._joined]
+        if any(np.isnan(number) for _, number in numbers):
+            return np.nan
+        return float(any(c.of(np.array(number)) for c, number in numbers))
+
+
+def _path(field: str) -> tuple[str, ...]:
+    return tuple(field.split(".")[1:])
 
 
 class _Rows:
@@ -114,8 +185,8 @@ class _Rows:
         self._pipeline, self._member, self._judged = pipeline, member, judged
         self._states: dict[str, list[tuple[bool, bool, bool]]] = {n: [] for n in pipeline.nodes}
         self._times: list[list[float]] = []
-        parted = [(f, *f.split(".")) for f in dict.fromkeys([*guard_fields(pipeline), *also])]
-        self._fields = [_Field(f, node, tuple(path), []) for f, node, *path in parted]
+        names = dict.fromkeys([*guard_fields(pipeline), *also])
+        self._fields = [_Field(name, []) for name in names]
         leaves = leaves_of(pipeline, pipeline.outputs[judged.answer])
         self._losses = {
             str(leaf): LossOf(pipeline, str(leaf), judged.quantity, judged.price) for leaf in leaves
@@ -136,11 +207,7 @@ class _Rows:
             ok = value.__class__ not in NO_VALUE
             self._states[name].append((ok, value.__class__ is Failed, not closed))
         for field in self._fields:
-            value = values[field.node]
-            start = time.perf_counter()
-            number = np.nan if value.__class__ in NO_VALUE else value_at(value, field.path)
-            field.spent_s += time.perf_counter() - start
-            field.values.append(number)
+            field.add(values[field.node])
         for name, loss in self._losses.items():
             lost = loss(result.frame, lambda ref: result.outcome_at(self._member.ref(ref)))
             self._lost[name].append(lost)
@@ -161,7 +228,7 @@ class _Rows:
             },
             {f.name: _column(f) for f in self._fields},
             {k: np.where(np.isnan(v), price, v) for k, v in lost.items()},
-            np.where(truths > 0, price, 0.0),
+            Truths(truths > 0, price),
             (truths >= 0) & known,
         )
 

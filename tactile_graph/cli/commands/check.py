@@ -10,7 +10,7 @@ import click
 
 from tactile_graph.cli.endings import NOT_DONE
 from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, kind_of
-from tactile_graph.errors import PipelineError, TactileGraphError, UsageError
+from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
@@ -153,6 +153,9 @@ def _right_pipeline(pipeline: Pipeline) -> Text:
     text.append(f"  {n} node{'s' if n != 1 else ''} → {', '.join(pipeline.outputs)}; {source}")
     if pipeline.evolves:
         text.append(f"; evolves {pipeline.evolves}")
+    if pipeline.free:
+        free = (f"{name}: {', '.join(map(shown, v))}" for name, v in pipeline.free.items())
+        text.append(f"\n  free for tune: {'; '.join(free)}", style="dim")
     if pipeline.unused:
         text.append(f"\n  no output needs: {', '.join(pipeline.unused)}", style="yellow")
     return text

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from tactile_graph.exporter import Writer
     from tactile_graph.wires.frame import Frame
 
-LONG_RUN = 200
 STALLED_S = 1.0
 
 
@@ -141,6 +140,10 @@ def run(
     divided = workers is not None or on is not None or resume
     if divided:
         _check_divided(lines, plot, decisions)
+        if on is None:
+            from tactile_graph.many.processes import hurry
+
+            hurry()
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
     if divided:
@@ -246,7 +249,7 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat
+        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat, is_long
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
         if in_blocks and self.span.is_all:
@@ -257,7 +260,7 @@ class _Run:
         if first is None:
             return
         expected = self.span.expected(self.report.n_expected)
-        if expected is None or expected > LONG_RUN:
+        if is_long(expected):
             self._warm_up(expected)
         given = chain([first], frames)
         if in_blocks and (expected or 0) >= WORTH_BLOCKS:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pickle
 import tempfile
-import threading
 import time
-from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,10 +17,10 @@ from tactile_graph.compiled import warm_up
 from tactile_graph.engine.block import Block
 from tactile_graph.engine.columns import columns_of
 from tactile_graph.engine.gathering import WORTH_BLOCKS
-from tactile_graph.errors import DataError, TactileGraphError
 from tactile_graph.exporter import Writer, write_block
 from tactile_graph.many.division import Division, Settling
-from tactile_graph.many.portion import Portion, unpacked
+from tactile_graph.many.portion import Portion
+from tactile_graph.many.sharing import for_the_way, ready
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.ranges import Irregular, Ranges
 from tactile_graph.wires.frame import Frame
@@ -31,8 +29,6 @@ if TYPE_CHECKING:
     from tactile_graph.api.result import Result
     from tactile_graph.engine.runner import Runner
 
-MOST_KEPT = 2
-"""Jobs that a worker keeps ready."""
 FARTHER = 4
 """Times that is gone back when state was not settled by as many frames as it remembers."""
 
@@ -55,6 +51,8 @@ class Job(NamedTuple):
     division : Division
     start : int
         Place in the source of the run's first frame.
+    is_long : bool
+        Whether machine code answers from the first frame on, as it does in long runs.
     """
 
     pipeline: Pipeline
@@ -67,6 +65,7 @@ class Job(NamedTuple):
     source: tuple[str, dict[str, Any]] | None
     division: Division
     start: int
+    is_long: bool
 
 
 class Done(NamedTuple):
@@ -98,27 +97,24 @@ class Done(NamedTuple):
     irregular: bool = False
 
 
-_ready = threading.local()
-"""Jobs made ready, of each thread: a runner serves one."""
-
-
 def done(given: bytes, portion: Portion) -> Done:
-    """Return what a portion comes to; called in the workers, with a pickled `Job`."""
-    kept: OrderedDict[bytes, _Bench] = _ready.__dict__.setdefault("benches", OrderedDict())
-    if given not in kept:
-        kept[given] = _Bench(pickle.loads(given))
-        while len(kept) > MOST_KEPT:
-            kept.popitem(last=False)
+    """Return what a portion comes to; called in the workers, with what `for_workers` gave."""
+    bench: _Bench = ready(given)
     begun = time.perf_counter()
-    came = kept[given].done(portion)
-    return came._replace(seconds=time.perf_counter() - begun)
+    return bench.done(portion)._replace(seconds=time.perf_counter() - begun)
+
+
+def for_workers(job: Job) -> bytes:
+    """Return a job as workers are given it."""
+    return pickle.dumps((_Bench, job))
 
 
 class _Bench:
     """A job made ready."""
 
     def __init__(self, job: Job) -> None:
-        warm_up()
+        if job.is_long:
+            warm_up()
         self.job = job
         self.columns = columns_of(job.pipeline, job.asked)
         self.runner = self._new_runner()
@@ -151,7 +147,7 @@ class _Bench:
                 except Irregular:
                     raise
                 except Exception as error:  # what was done before is kept
-                    ended.append(_for_the_way(error))
+                    ended.append(for_the_way(error))
         except Irregular:
             return Done(irregular=True)
         tally.outputs = []  # columns hold functions, and who asked knows them
@@ -162,7 +158,8 @@ class _Bench:
             self.runner = self._settled(portion)
         frames, pipeline = self._frames(portion), self.job.pipeline
         if portion.high - self.job.start >= WORTH_BLOCKS:
-            return pipeline.blocks(frames, self.runner)
+            given = frames if portion.sent is None else iter(portion.given())
+            return pipeline.blocks(given, self.runner)
         return pipeline.results(frames, self.runner)
 
     def _settled(self, portion: Portion) -> Runner[Result]:
@@ -181,10 +178,10 @@ class _Bench:
 
     def _frames(self, portion: Portion) -> Iterator[Frame]:
         if portion.sent is not None:
-            frames: Iterator[Frame] = iter(unpacked(portion.sent)[: portion.n_frames])
-        else:
-            assert self.ranges is not None  # or they would have been sent
-            frames = self.ranges.read(portion.low, portion.high)
+            yield from portion.frames()[1]
+            return
+        assert self.ranges is not None  # or they would have been sent
+        frames = self.ranges.read(portion.low, portion.high)
         for place, frame in enumerate(frames, portion.low):
             if place not in portion.without:
                 yield frame
@@ -204,14 +201,3 @@ class _Bench:
             finally:
                 writer.close()
             part.append(path.read_bytes())
-
-
-def _for_the_way(error: Exception) -> Exception:
-    """Return an error as it can be sent to another process."""
-    try:
-        pickle.loads(pickle.dumps(error))
-    except Exception:
-        if isinstance(error, TactileGraphError):
-            return TactileGraphError(str(error))
-        return DataError("a worker", f"{type(error).__name__}: {error}")
-    return error

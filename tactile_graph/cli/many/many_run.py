@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.arguments import Span
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
-from tactile_graph.cli.many.job import Done, Job, done
+from tactile_graph.cli.many.job import Done, Job, done, for_workers
 from tactile_graph.cli.many.made_of import changed, device, made_of
 from tactile_graph.cli.many.unfinished import Unfinished
 from tactile_graph.cli.output.outputs import Output
@@ -21,6 +20,7 @@ from tactile_graph.cli.output.progress import Bar
 from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.terminal import console
 from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.gathering import is_long
 from tactile_graph.engine.table import make_table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.files import uninterrupted, whole_file
@@ -29,11 +29,10 @@ from tactile_graph.many.executor_kind import Place
 from tactile_graph.many.feed import Feed, absolute, ranges_of
 from tactile_graph.many.in_order import InOrder
 from tactile_graph.many.portion import Portion, packed
+from tactile_graph.many.sharing import KILLER
 from tactile_graph.provenance import provenance, sidecar, write_provenance
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
-
-KILLER = "workers died of it each time: left out"
 
 
 @dataclass(frozen=True)
@@ -82,7 +81,10 @@ class ManyRun:
         asked = self.asked
         self.report = Report()
         span = (asked.span.start, asked.span.stop)
-        self.feed = Feed(asked.pipeline, asked.seed, self.report, span, self.division, self.ranges)
+        in_stacks = asked.pipeline.runner(asked.only, asked.seed).in_blocks
+        self.feed = Feed(
+            asked.pipeline, asked.seed, self.report, span, self.division, self.ranges, in_stacks
+        )
         self.columns = columns_of(asked.pipeline, asked.outputs)
         self.tally = Tally(self.columns)
         self.people, self.stderr = console(stderr=True), console(stderr=True)
@@ -101,7 +103,7 @@ class ManyRun:
                 self._run(interrupts.held)
             finally:
                 if self.unfinished is not None:
-                    self.unfinished.close()
+                    self.unfinished.end(kept=self.low > asked.span.start)
         return self._close()
 
     # -- what was done before ------------------------------------------------------------------
@@ -185,7 +187,14 @@ class ManyRun:
     def _parts(self, held: Any) -> Iterator[bytes]:
         """Yield what each portion came to, when it is kept."""
         asked = self.asked
-        given = pickle.dumps(self._job())
+        try:
+            self.feed.begin(self.low)
+        except UsageError:
+            raise
+        except Exception as error:  # a source may raise anything
+            self.error = error
+            return
+        given = for_workers(self._job())
         with InOrder(asked.place, done, given, self._leave_out, self.left_out) as workers:
             again = True
             while again:
@@ -233,13 +242,14 @@ class ManyRun:
         return Job(
             asked.pipeline, asked.outputs, asked.seed, asked.verify, asked.output.ending,
             asked.output.full, asked.output.long, reading, self.division, asked.span.start,
+            is_long(asked.span.expected(self.report.n_expected)),
         )  # fmt: skip
 
     def _take(self, portion: Portion, came: Done) -> None:
         assert came.tally is not None  # it is no irregular one
         self.tally.join(came.tally)
         self.quantity = came.quantity or self.quantity
-        self.feed.took(came.n_frames, came.seconds)
+        self.feed.size.took(came.n_frames, came.seconds)
         self.low = portion.high if came.error is None else portion.low + came.n_frames
         if self.unfinished is not None:
             so_far = {

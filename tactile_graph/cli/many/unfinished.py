@@ -126,6 +126,13 @@ class Unfinished:
         self._files = []
         self._lock.release()
 
+    def end(self, kept: bool) -> None:
+        """Leave it for another to go on with if anything is kept in it; else take it away."""
+        if kept or not self._files:
+            self.close()
+        else:
+            self.remove()
+
     def remove(self) -> None:
         """Take it away: the output stands under its name."""
         self._parts.unlink(missing_ok=True)

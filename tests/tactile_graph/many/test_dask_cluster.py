@@ -117,3 +117,12 @@ def test_a_frame_of_which_the_clusters_workers_die_is_left_out(folder: Path, add
 def test_nobody_at_an_address_is_told() -> None:
     with pytest.raises(UsageError, match="no scheduler answers there"):
         place_of("tcp://127.0.0.1:9", None).opened()
+
+
+def test_a_comparison_on_a_cluster_is_that_of_one_process(folder: Path, address: str) -> None:
+    for name, more in (("one.csv", ()), ("cluster.csv", ("--on", address))):
+        got = ran(folder, "compare", "circle-1", "circle-3", "a.zarr", "--frames", "120",
+                  "--csv", name, *more)  # fmt: skip
+        assert got.returncode == 0, got.stderr
+    assert (folder / "one.csv").read_bytes() == (folder / "cluster.csv").read_bytes()
+    assert "several workers side by side" in " ".join((got.stdout + got.stderr).split())

@@ -20,6 +20,7 @@ from helpers_dialects import (
     mutated,
     picture,
 )
+from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
@@ -30,7 +31,8 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.told import Told
 
 FILES = dialects()
-MORE = more_dialects(hdf5=find_spec("h5py") is not None)
+HDF5 = find_spec("h5py") is not None
+MORE = [*more_dialects(HDF5), *export_dialects(HDF5)]
 
 
 @pytest.mark.parametrize("dialect", [*FILES, *MORE], ids=lambda d: d.name)

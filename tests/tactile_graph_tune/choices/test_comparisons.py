@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactile_graph_tune.choices.comparisons import Comparison, is_free, taken_apart
+from tactile_graph_tune.choices.comparisons import Comparison, alternatives, is_free, taken_apart
 
 NODES = ("mask", "fit")
 
@@ -33,6 +33,16 @@ def test_whatever_is_no_comparison_of_a_nodes_field_with_a_number_stays(text):
     taken = taken_apart(text, NODES, {})
     assert (taken.comparisons, taken.fixed) == ((), (text.replace('"', "'"),))
     assert not is_free(text, NODES)
+
+
+def test_alternatives_of_one_node_are_a_field_that_holds_or_not():
+    (found,) = taken_apart("mask.count > 3 or mask.rise > 1.5", NODES, {}).comparisons
+    assert found.text == "(mask.count > 3 or mask.rise > 1.5)"
+    assert found.node == "mask"
+    assert [c.text for c in alternatives(found.field)] == ["mask.count > 3", "mask.rise > 1.5"]
+    assert taken_apart(f"fit.fits and {found.text}", NODES, {}).comparisons[1] == found
+    nested = "mask.count > 3 or (mask.count > 1 or mask.rise > 1.5)"
+    assert taken_apart(nested, NODES, {}).comparisons == ()
 
 
 def test_parts_joined_by_and_are_told_apart_and_conditions_by_their_names():

@@ -28,7 +28,7 @@ def test_a_ladder_comes_out_with_its_numbers_its_file_its_plot_and_all_figures(h
     assert "<svg" in drawn
     data = json.loads(Path("out.json").read_text())
     assert data["weighed"] > 100
-    assert data["points"]["tuned"]["run"]["loss"]["mean"] <= 2.0
+    assert data["points"]["tuned"]["run"]["error"]["mean"] <= 2.0
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 
 from helpers_tune import LADDER, frames
 from tactile_graph import loads
-from tactile_graph.inspect import NO_VALUE
+from tactile_graph.inspect import NO_VALUE, Failed
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import declared
 from tactile_graph_tune.search.cascade import Asked, Cascade, bound
@@ -20,8 +20,10 @@ pytestmark = pytest.mark.usefixtures("hand_made")
 
 JUDGED = Judged("circle", "centre", "cm", 2.0)
 ONCE = Rounds(1, 0, lambda n, of: None)
+EITHER = Comparison("(load.total > 5.5 or load.x_cm > 2)", "is true", 0.0)
 CHOICES = [
     {},
+    {"touched": (Comparison("footprint.count", ">", 0.0),), "good": (EITHER,)},
     {"touched": (Comparison("footprint.count", ">", 0.0),)},
     {"touched": (Comparison("footprint.count", ">", 4.5),),
      "good": (Comparison("first.radius_cm", "<", 1.2),)},
@@ -34,7 +36,7 @@ CHOICES = [
 def recorded():
     its = declared(loads(LADDER), "circle")
     opened = its.opened()
-    (table,) = record([opened], ["load.x_cm"], frames(), JUDGED, ONCE)
+    (table,) = record([opened], ["load.x_cm", EITHER.field], frames(), JUDGED, ONCE)
     fields = {k: replace(c, time_us=0.0) for k, c in table.fields.items()}
     return its, Cascade(opened, its, opened.outputs["circle"]), replace(table, fields=fields)
 
@@ -53,6 +55,8 @@ def test_time_and_error_of_every_frame_are_those_of_the_engine(chosen, order):
         spent = sum(table.nodes[n].time_us[i] for n in ran)
         assert found.time_us[i] == pytest.approx(spent), (i, ran)
         assert found.answered[i] == (result.outcome("circle").__class__ not in NO_VALUE)
+        fails = [n for n in ran if type(result.outcome(n)) is Failed]
+        assert found.failed[i] == bool(fails), (i, fails)
         assert found.loss[i] == pytest.approx(loss(frame, result.outcome_at)), i
 
 

@@ -1,57 +1,81 @@
-"""What one half found is taken only if it holds on the other."""
+"""What one half found is taken only if it holds on the other, in each kind of error."""
 
 from __future__ import annotations
+
+from math import inf
 
 import numpy as np
 import pytest
 
 from tactile_graph.errors import UsageError
-from tactile_graph_tune.search.cascade import Predicted
 from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.select import Goal, merged, selected
+from tactile_graph_tune.table.kinds import Means, Truths
 
 FOLDS = [np.array([0, 1]), np.array([2, 3])]
-COLUMNS = {  # variant -> time and error of four frames
-    0: ([9.0] * 4, [0.2] * 4),  # as given
-    1: ([1.0] * 4, [0.1, 0.1, 0.5, 0.5]),  # cheapest, and lucky on the first half
-    2: ([3.0] * 4, [0.2, 0.1, 0.2, 0.1]),
+TRUTHS = Truths(np.array([True, False, True, False]), 2.0)
+COLUMNS = {  # variant -> time and error of four frames, every other one empty
+    0: ([9.0] * 4, [0.2, 2.0, 0.2, 2.0]),  # as given: false on empty
+    1: ([1.0] * 4, [0.1, 0.0, 0.5, 0.0]),  # cheapest, and lucky on the first half
+    2: ([3.0] * 4, [0.2, 2.0, 0.1, 2.0]),
+    3: ([2.0] * 4, [2.0, 0.0, 0.2, 0.0]),  # misses, and wins where nothing lies
+    4: ([0.5] * 4, [0.0] * 4),  # would be best, were it not that a step fails
 }
+FOUND = [Choice(v, (), {}) for v in COLUMNS]
 
 
-def predict(choice: Choice) -> Predicted:
+def weigh(choice: Choice, rows: np.ndarray) -> Means:
     times, losses = map(np.array, COLUMNS[choice.variant])
-    return Predicted(times, losses, np.ones(4, bool))
+    failed = np.full(len(rows), choice.variant == 4)
+    return TRUTHS.taken(rows).means(times[rows], losses[rows], failed)
 
 
-def fronts() -> list[Front]:
-    found = [Front(), Front()]
-    for front, variant in zip(found, (1, 2), strict=True):
-        times, losses = map(np.array, COLUMNS[variant])
-        front.enter(times[:1], losses[:1], lambda k, v=variant: Choice(v, (), {}))
-    return found
+def goal(**limits: float) -> Goal:
+    return Goal(FOUND[0], **limits)
 
 
-def goal(allowed: float | None = None, by_time: bool = False) -> Goal:
-    return Goal(allowed, by_time, (Choice(0, (), {}),))
+def chosen(**limits: float) -> int:
+    return selected(goal(**limits), FOUND, FOLDS, weigh).variant
 
 
 def test_luck_on_one_half_is_not_taken():
-    assert selected(goal(), fronts(), FOLDS, predict).variant == 2
-    assert selected(goal(0.5), fronts(), FOLDS, predict).variant == 1
+    assert chosen() == 2
+    assert chosen(error=0.5) == 1
+
+
+def test_what_wins_on_empty_frames_only_is_not_taken():
+    COLUMNS_3 = goal().limits(np.arange(4), weigh)
+    assert not weigh(FOUND[3], np.arange(4)).within(COLUMNS_3)
+    assert chosen(error=2.0) == 1  # it misses more than what was given
+    assert selected(goal(error=2.0, missed=1.0), FOUND[2:4], FOLDS, weigh).variant == 3
 
 
 def test_within_a_time_the_best_is_taken():
-    assert selected(goal(5.0, by_time=True), fronts(), FOLDS, predict).variant == 2
+    assert chosen(time_us=5.0) == 2
+    assert chosen(time_us=1.5) == 1
 
 
-def test_what_is_out_of_reach_is_told_with_what_is_not():
-    with pytest.raises(UsageError, match=r"error-at-most 0.05: the best .* 0.15"):
-        selected(goal(0.05), fronts(), FOLDS, predict)
-    with pytest.raises(UsageError, match=r"time-at-most 0.5: the cheapest .* takes 1 "):
-        selected(goal(0.5, by_time=True), fronts(), FOLDS, predict)
+@pytest.mark.parametrize(
+    ("limits", "message"),
+    [
+        ({"error": 0.05}, r"error-at-most 0.05: no choice keeps it"),
+        ({"time_us": 0.4}, r"time-at-most 0.4: the cheapest .* takes 0.5 "),
+        ({"time_us": 1.5, "error": None, "missed": 0.0, "false": 0.0}, None),
+        ({"error": 0.2, "false": 0.0}, r"error-at-most 0.2 --false-at-most 0: no choice keeps it"),
+    ],
+)
+def test_what_is_out_of_reach_is_told_with_what_is_not(limits, message):
+    if message is None:
+        assert chosen(**limits) == 1
+        return
+    with pytest.raises(UsageError, match=message):
+        chosen(**limits)
 
 
-def test_the_front_of_both_is_weighed_anew():
-    whole = merged(fronts(), np.arange(4), predict)
-    assert [(p.time_us, round(p.loss, 3)) for p in whole.points] == [(1.0, 0.3), (3.0, 0.15)]
-    assert whole.n_weighed == 2
+def test_the_front_of_both_is_weighed_anew_and_holds_what_is_allowed():
+    fronts = [Front(n_weighed=3), Front(n_weighed=4)]
+    limits = Means(inf, inf, 0.0, 1.0, 0.0)
+    whole = merged(fronts, FOUND, np.arange(4), weigh, limits)
+    told = [(p.time_us, round(p.error, 3)) for p in whole.points]
+    assert told == [(1.0, 0.3), (3.0, 0.15)]
+    assert whole.n_weighed == 7

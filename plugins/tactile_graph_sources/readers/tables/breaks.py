@@ -22,7 +22,8 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _ONE_NUMBER = re.compile(r"\W*([-+]?\d+(?:\.\d+)?)\s*([^\W\d_]*)\W*")
 _TIME_WORDS = "|".join(sorted((w for w, r in ROLES.items() if r == "time"), key=len, reverse=True))
 _TIMED = re.compile(
-    rf"(?<![^\W_])({_TIME_WORDS})(?:[\s_]+([^\W\d_]+)|\s*[\[(]([^\W\d_]+)[\])])?\s*[:=,;]+\s*"
+    rf"(?<![^\W_])({_TIME_WORDS})(?:[\s_]+([^\W\d_]+)|\s*[\[(]([^\W\d_]+)[\])])?"
+    r"(?:\s*[:=,;]+\s*|\s+(?=[-+\d]))"
     r"\"?([-+\dT:./ ]*\d)\s*([^\W\d_]*)",
     re.IGNORECASE,
 )
@@ -86,6 +87,9 @@ def stamp_of(line: str) -> Stamp:
     """Return the number and the time that a line between matrices says."""
     label = FRAME_LINE.fullmatch(line)
     frame = int(label[1]) if label else None
+    at = clock_s(line.strip(" \t#,;|"))
+    if at is not None:
+        return Stamp(frame, at, 1.0, is_clock=True)
     alone = _ONE_NUMBER.fullmatch(line)
     if alone and (not alone[2] or alone[2].lower() in SECONDS):
         return Stamp(frame, float(alone[1]), SECONDS.get(alone[2].lower()))

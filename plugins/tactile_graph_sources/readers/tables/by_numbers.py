@@ -86,7 +86,7 @@ def _decide(table: Table, base: Layout, told: Told, lead: bool) -> tuple[str, in
             return "stacked", usual, said
         if width % told.rows == 0 or len(groups) < 2:
             return "flat", 0, said
-    if len(groups) > 1 and usual > 1:
+    if len(groups) > 1 and usual > 1 and not (lead and table.is_torn):
         framed = bool(table.breaks) and width >= LEAST_FRAMED and row_lengths(cells)
         if framed:
             rows, columns = framed[0]

@@ -22,8 +22,9 @@ from dataclasses import replace
 import numpy as np
 
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
+from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
-from tactile_graph_sources.readers.tables.layout import Layout, timed
+from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
 from tactile_graph_sources.readers.tables.names import ColumnsTold, named
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
@@ -69,7 +70,8 @@ def layout_of(
     base = replace(base, sensor=sensor)
     roles = _roles(table, told.of_columns)
     trouble = (
-        _unnamed_value(table, roles)
+        doubt_about(lines, table.dialect)
+        or _unnamed_value(table, roles)
         or _strange_column(table, roles)
         or _cells_by_line(table, roles)
         or _frames_by_column(table)
@@ -110,6 +112,9 @@ def _roles(table: Table, told: ColumnsTold) -> dict[str, int]:
         # A finger is called index too: what numbers frames never goes down.
         if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or (steps < 0).any():
             del roles["frame"]
+    if "time" not in roles and not table.clocks:
+        days = [k for k in table.named.others if are_days(table.rows[:, k])]
+        roles.update([("time", k) for k in days[:1]])
     if "time" in roles and told.time_format:
         roles[_CLOCK] = roles.pop("time")
     elif table.clocks:

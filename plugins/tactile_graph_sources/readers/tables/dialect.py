@@ -20,7 +20,8 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _ARROW = "->"
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
-    r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?"
+    r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?(?:\s?([AP])\.?M\.?)?",
+    re.IGNORECASE,
 )
 _DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
@@ -70,15 +71,18 @@ def clock_s(text: str) -> float | None:
     found = _CLOCK.fullmatch(text.strip().strip('"'))
     if found is None:
         return None
-    year, month, day, day2, month2, year2, hour, minute, second, part = found.groups()
+    year, month, day, day2, month2, year2, hour, minute, second, part, half = found.groups()
     days = 0
     if year or year2:
+        if half or (month2 and int(month2) > 12):  # as Americans write dates
+            day2, month2 = month2, day2
         try:
             date = datetime.date(int(year or year2), int(month or month2), int(day or day2))
         except ValueError:
             return None
         days = date.toordinal() - _DAY_0
-    whole = days * 86400 + int(hour) * 3600 + int(minute) * 60 + int(second)
+    hours = int(hour) % 12 + 12 * (half.lower() == "p") if half else int(hour)
+    whole = days * 86400 + hours * 3600 + int(minute) * 60 + int(second)
     return whole + (float(f"0.{part}") if part else 0.0)
 
 

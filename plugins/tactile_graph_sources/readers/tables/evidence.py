@@ -17,19 +17,25 @@ FAR_APART = 0.7
 NEARLY, HALF_WAY = 1.1, 0.6
 """How unlike lines may be that are alike again: times the next line, and the most unlike before."""
 
+SURE_STEPS = 8
+"""Steps upwards that no readings of a cell make."""
+
 
 def rises(column: Numbers) -> bool:
     """Return whether a column climbs in steps much alike, as times and frame numbers do.
 
     Two lines are enough only because nothing can be said against it; the steps of eight or more
-    may be of any size.
+    may be of any size. A long column may begin anew, as where a device started again.
     """
     if len(column) < 2 or not (np.abs(column) < 1e30).all():
         return False
     steps = np.diff(column)
-    if steps.min() <= 0.0:
-        return False
-    return len(steps) >= 8 or bool(steps.max() <= EVEN * steps.min())
+    if steps.min() > 0.0:
+        return len(steps) >= SURE_STEPS or bool(steps.max() <= EVEN * steps.min())
+    anew = np.flatnonzero(steps <= 0.0) + 1
+    parts = np.split(column, anew)
+    from_start = (column[anew] <= column[0] + np.abs(column[1] - column[0])).all()
+    return bool(from_start) and all(len(part) > SURE_STEPS for part in parts)
 
 
 def counts_up(column: Numbers) -> bool:

@@ -29,7 +29,7 @@ def without_extra(base: Layout, table: Table, told: Told) -> Layout:
         return base
     else:
         extra = 0 if _is_square(width) else 1 if _is_square(width - 1) and width > 9 else 0
-    if len(table.groups[0]) > 1:
+    if len(table.groups[0]) > 1 and not table.is_torn:
         return _row_numbers(base, table)
     values = table.rows
     first, last = values[:, cells[0]], values[:, cells[-1]]

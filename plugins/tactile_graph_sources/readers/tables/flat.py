@@ -16,6 +16,7 @@ from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.tables import labview
 from tactile_graph_sources.readers.tables.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.stamps import Stamps
@@ -58,11 +59,15 @@ def read(reading: Reading) -> Iterator[Frame]:
     if layout.trouble:
         raise DataError(str(reading.path), layout.trouble)
     own = _own_word(reading.head, len(layout.cells))
+    reading.is_own = own.rows is not None
     shape = _shape(reading, layout, own)
     lines = _Lines(layout, shape, _picker(layout.cells), Stamps(reading, layout), own)
     reading.recognised(layout.why, layout.assumed)
     reading.report.expect(reading.count_bytes(b"\n"))
-    for number, line in reading.text():
+    text = reading.text()
+    if labview.is_labview(reading.head.lines):
+        text = labview.without_headers(text)
+    for number, line in text:
         if is_blank(line) or is_comment(line):
             continue
         if number < layout.first_line:

@@ -11,6 +11,10 @@ from tactile_graph_sources.readers.tables.evidence import Numbers
 from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.tables.table import Table
 
+_DAY_S = 86400.0
+_DAYS, _LONGEST_STEP = (20_000.0, 80_000.0), 2e-4
+"""From 1954 to 2119, and 17 seconds."""
+
 
 @dataclass(frozen=True)
 class Layout:
@@ -104,10 +108,27 @@ def timed(base: Layout, table: Table) -> Layout:
     )
 
 
+def are_days(times: Numbers) -> bool:
+    """Return whether times are days since 1900, as spreadsheets keep dates.
+
+    As seconds they would be of a recording of more than 5000 frames a second.
+    """
+    steps = np.diff(times)
+    low, high = _DAYS
+    return bool(
+        len(times) > 1
+        and low < times[0] <= times[-1] < high
+        and (steps >= 0).all()
+        and 0.0 < np.median(steps) < _LONGEST_STEP
+    )
+
+
 def unit_of(times: Numbers) -> tuple[float, str]:
     """Return the factor and the name of the unit that times are most likely in."""
     steps = np.diff(times)
     steps = steps[steps > 0]
+    if are_days(times):
+        return _DAY_S, "days since 1900, as spreadsheets count them"
     if len(times) and times[-1] > 1e17:
         return 1e-9, "nanoseconds"
     if len(times) and times[-1] > 1e14:

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from tactile_graph_sources.readers.tables import labview
 from tactile_graph_sources.readers.tables.breaks import (
     FRAME_LINE,
     breaks_of,
@@ -36,7 +37,6 @@ from tactile_graph_sources.readers.tables.preamble import Described, described
 from tactile_graph_sources.readers.units import value_unit
 
 _BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
-_HEADER_ENDS = "***End_of_Header***"
 _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
@@ -181,6 +181,12 @@ class Table:
                 return groups, run
         return [sum(groups)], ENDLESS
 
+    @cached_property
+    def is_torn(self) -> bool:
+        """Whether no two groups of rows are of one size, as where words stand here and there."""
+        sizes = self.groups[0]
+        return len(sizes) > 1 and len(set(sizes)) == len(sizes)
+
 
 def table_of(
     lines: Sequence[str], told: ColumnsTold, whole: bool, names: Sequence[str] = ()
@@ -202,7 +208,7 @@ def table_of(
     ValueError
         If a setting names a column that is not there.
     """
-    begin = _after_header(lines[:_LOOKED_AT])
+    begin = labview.end_of_header(lines[:_LOOKED_AT])
     rows = [
         (k, line)
         for k, line in enumerate(lines[:_LOOKED_AT])
@@ -231,15 +237,18 @@ def table_of(
             full, start = others, others[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     numbers = as_numbers([[_number(t) for t in f] for f in sample])
-    words = [line for line in lines[:start] if not is_blank(line)]
+    rest, words = tuple(lines[start:]), [line for line in lines[:start] if not is_blank(line)]
     said = described(words)
     if unit and said.quantity == "raw":
         quantity, factor = value_unit(unit)
         said = replace(said, quantity=quantity, factor=factor)
+    if labview.is_labview(lines):
+        has_times = any(f[0].strip() for f in sample)
+        header, cells, said, rest = labview.first_segment(header, lines, start, said, has_times)
+        told = told._replace(cells=told.cells or cells)
     columns = as_told(named(header) if header else Named(), width, told)
     if columns.cells and said.quantity == "raw":
         said = replace(said, quantity=columns.quantity, factor=columns.factor)
-    rest = tuple(lines[start:])
     return Table(
         dialect,
         width,
@@ -252,12 +261,6 @@ def table_of(
         whole,
         header_line,
     )
-
-
-def _after_header(lines: Sequence[str]) -> int:
-    """Return the index behind the last line that says a header ends there, as LabVIEW's do."""
-    ends = [k for k, line in enumerate(lines) if line.startswith(_HEADER_ENDS)]
-    return ends[-1] + 1 if ends else 0
 
 
 def _number(text: str) -> float:

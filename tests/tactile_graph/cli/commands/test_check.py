@@ -32,6 +32,15 @@ def test_a_file_is_checked_as_what_its_keys_say_it_is(lamps: Path) -> None:
     ]
 
 
+def test_what_a_file_marks_free_is_told_with_its_values(hand_made: Path) -> None:
+    text = (hand_made / "discs.yaml").read_text()
+    marked = text.replace("with: {level_v: 0.5}", "free: {level_v: [0.25, 0.5]}")
+    (hand_made / "marked.yaml").write_text(marked)
+    got = call("check", "marked.yaml")
+    assert got.exit_code == 0
+    assert "\n  free for tune: footprint.level_v: 0.25, 0.5\n" in got.stdout
+
+
 def test_all_that_is_wrong_with_a_plugins_file_is_told_with_its_line(lamps: Path) -> None:
     (lamps / "dark.yaml").write_text(DARK)
     got = call("check", "dark.yaml")

@@ -281,3 +281,23 @@ def test_what_has_changed_since_is_not_gone_on_with(folder: Path) -> None:
     got = ran(folder, *(w.replace("0.01", "0.0") for w in running.words), "--resume")
     assert got.returncode == 2
     assert "c.csv was begun with other content: the pipeline or its settings" in got.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("source", [("a.zarr",), DISCS], ids=["in place", "sent"])
+def test_a_short_run_is_answered_by_the_code_that_one_process_uses(
+    folder: Path, source: tuple[str, ...]
+) -> None:
+    words = ("describe", *source, "--frames", "60")
+    one, _ = written(folder, "one.csv", *words)
+    two, _ = written(folder, "two.csv", *words, "--workers", "2")
+    assert one == two
+
+
+@pytest.mark.slow
+def test_a_run_that_never_began_leaves_nothing(folder: Path) -> None:
+    pytest.importorskip("distributed", reason="the 'cluster' extra is not installed")
+    got = ran(folder, "run", "circle-1", "a.zarr", "-o", "x.csv", "--on", "tcp://127.0.0.1:9")
+    assert got.returncode == 2
+    assert "no scheduler answers there" in got.stderr
+    assert [p.name for p in folder.iterdir() if "x.csv" in p.name] == []

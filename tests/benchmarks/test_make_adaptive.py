@@ -1,0 +1,58 @@
+"""What tune makes of a shipped pipeline is shipped only where it is surely no worse."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "benchmarks"
+sys.path.insert(0, str(FOLDER))
+import make_adaptive  # noqa: E402
+from tuned import CASES, Told  # noqa: E402
+
+from tactile_graph import load, loads  # noqa: E402
+from tactile_graph_tune.split import Interval  # noqa: E402
+from tactile_graph_tune.tuned import Weight  # noqa: E402
+
+EVEN = Interval(0.0, -0.001, 0.001)
+
+
+def told(ratio: float = 0.5, **more: float) -> Told:
+    hand = Weight(*(Interval(x, x, x) for x in (900.0, 0.1, 0.02, 0.04)))
+    kinds = dict.fromkeys(Weight._fields, EVEN) | {
+        k: Interval(x / 2, 0.0, x) for k, x in more.items()
+    }
+    time = Interval(ratio, ratio - 0.1, ratio + 0.1)
+    return Told("c", "f", 9, hand, hand, time, Weight(**kinds), 1.0, 1.0, 0.9, 0.9)
+
+
+def test_every_product_is_tuned_against_itself():
+    assert {name: CASES[c].by_hand for name, c in make_adaptive.PRODUCTS.items()} == {
+        name: name for name in make_adaptive.PRODUCTS
+    }
+
+
+@pytest.mark.parametrize(
+    ("its", "why"),
+    [
+        (told(), []),
+        (told(error=0.006), ["the error may be +0.006 more than 0.100"]),
+        (told(missed=0.011), ["missed: maybe +1.1 % of the frames"]),
+        (told(false=0.02), ["false: maybe +2.0 % of the frames"]),
+        (told(0.95), ["it may take 1.05 of the time"]),
+    ],
+)
+def test_whatever_may_be_worse_by_more_than_its_margin_is_told(its, why):
+    assert list(make_adaptive.refuted_by(its)) == why
+
+
+def test_what_is_written_has_the_shipped_name_words_and_parent():
+    own = load("adaptive")
+    text = "# by tune\n" + own.text.replace("pipeline: adaptive", "pipeline: circle-ladder-tuned")
+    text = text.replace(f"about: {own.about}", "about: Every way").replace("locate-circle", "other")
+    made = make_adaptive.shipped("adaptive", text)
+    assert made.startswith("# by tune\npipeline: adaptive\n")
+    again = loads(made)
+    assert (again.about, again.evolves, again.key) == (own.about, own.evolves, own.key)
