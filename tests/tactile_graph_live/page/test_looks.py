@@ -172,7 +172,8 @@ def test_tables_have_heads(window: Any, double: Double) -> None:
     assert page.locator("#result-rows").get_by_role("rowheader").count() >= 4
     double.say(frame(1, rows=rows))
     page.wait_for_selector("#contact-rows tr")
-    assert page.locator("#contacts table").get_by_role("columnheader").count() == 2
+    heads = page.locator("#contacts table").get_by_role("columnheader")
+    wait_for(lambda: heads.count() == 2, "the things have a table")
     assert page.locator("#contact-rows").get_by_role("rowheader").count() == 2
     assert page.locator("table:not(:has(caption))").count() == 0
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-for part in ("starlette", "uvicorn", "websockets"):
-    pytest.importorskip(part, reason="the extra `live` is not there")
+pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
 from helpers_live import COUNTS, PIPELINE, Command, Sending, running
 from helpers_live_page import drawn, free_port, wait_for
@@ -84,7 +83,6 @@ def test_edit_save_see(window: Any, file: Path, record_property: Any) -> None:
         assert names == ["frame", "footprint", "boundary", "ring"]
         record_property("graph_ms", [round(1e3 * s) for s in graph_s])
         record_property("drawn_ms", [round(1e3 * s) for s in drawn_s])
-        print(f"\nsaved to graph {graph_s}\nsaved to a frame of it {drawn_s}")
         assert statistics.median(graph_s) < 0.3
         assert found.complaints() == []
 
