@@ -11,6 +11,7 @@ import time
 from base64 import b64encode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
 import uvicorn
@@ -52,7 +53,7 @@ def graph(version: int = 1, names: tuple[str, ...] = NAMES, **more: Any) -> Plai
               "x": 180.0 * i, "y": 0.0, "w": 150.0, "h": 150.0,
               "sources": list(chain[max(0, i - 1) : i])} for i, n in enumerate(chain)]  # fmt: skip
     wires = [{"start": a, "end": b, "kind": "data", "label": "", "path": "M0 75L30 75"}
-             for a, b in zip(chain, chain[1:], strict=False)]  # fmt: skip
+             for a, b in pairwise(chain)]  # fmt: skip
     nodes = [{"name": n, "step": f"{n}_step", "about": f"What {n} does.", "guard": "",
               "settings": settings if i == 0 else []} for i, n in enumerate(names)]  # fmt: skip
     columns = [{"key": k, "name": k.removesuffix("_cm").replace("_", " "), "unit": "cm"}
@@ -81,11 +82,12 @@ def frame(index: int, names: tuple[str, ...] = NAMES, **more: Any) -> Plain:
         cells.append(int(max(0.0, 254 * (1 - away / 4))))
     ring = {"shape": "circle", "role": "found", "node": names[-1], "x": x, "y": y, "radius": 2.0}
     cross = {"shape": "cross", "role": "found", "node": names[-1], "x": x, "y": y}
+    rms = {"shape": "note", "node": names[-1], "name": "rms", "value": "0.1"}
     pictures = {
         "frame": [{"shape": "heat", "node": "frame", "image": picture(cells)}],
         names[0]: [{"shape": "cells", "node": names[0],
                     "image": picture([int(c > 120) for c in cells])}],
-        names[-1]: [ring, cross, {"shape": "note", "node": names[-1], "name": "rms", "value": "0.1"}],
+        names[-1]: [ring, cross, rms],
     }  # fmt: skip
     row = {"output": names[-1], "item": 1, "outcome": "ok", "type": "Circle", "x_cm": x, "y_cm": y,
            "radius_cm": 2.0, "centre_error_cm": 0.1}  # fmt: skip
@@ -193,7 +195,8 @@ def served(double: Double, port: int = 0) -> Iterator[Double]:
     door = Door("127.0.0.1", port or free_port())
     double.address = door.address
     config = uvicorn.Config(make_app(double, door), door.host, door.port,  # type: ignore[arg-type]
-                            log_level="error", ws="websockets-sansio", timeout_graceful_shutdown=1)  # fmt: skip
+                            log_level="error", ws="websockets-sansio",
+                            timeout_graceful_shutdown=1)  # fmt: skip
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()

@@ -46,7 +46,7 @@ WARM_S = 40.0
 PIPELINE = """\
 pipeline: disc
 about: A disc that is moved about, found by the corners of its hull
-source: {step: simulate, with: {scene: moved.yaml}}
+source: {step: simulate, with: {scene: moved.yaml, frames: 106}}
 conditions:
   touched: footprint.count > 4
 nodes:

@@ -15,6 +15,7 @@ import { Transport } from "./transport.js";
 import { Yaml, trouble } from "./yaml.js";
 
 const DESCRIBE_MS = 2000;
+const SETTLED_MS = 300;
 const PROTOCOL = 1;
 
 const send = (type, fields) => {
@@ -40,6 +41,7 @@ let shown = null; // the one on the screen
 let asked = "";
 let pictures = 0;
 let drawn = [];
+let settling;
 
 function open(name) {
   if (!graph) return;
@@ -120,7 +122,16 @@ function paint() {
   write(byId("when"), whenOf(frame));
   drawn.push(performance.now() - begun);
   mark(document.documentElement, "data-drawn", frame.version);
+  clearTimeout(settling);
+  settling = setTimeout(settle, SETTLED_MS);
   answer(frame);
+}
+
+/** No frame follows for now: what is written less often than drawn catches up. */
+function settle() {
+  nodes.paint(shown);
+  card.paint(shown);
+  results.paint(shown);
 }
 
 function whenOf(frame) {

@@ -37,6 +37,8 @@ export class Transport {
   }
 
   live() {
+    clearTimeout(this.timer); // a scrub not sent yet would undo it
+    this.timer = undefined;
     this.movedAt = -Infinity;
     this.bar.value = "0";
     this.send("live");

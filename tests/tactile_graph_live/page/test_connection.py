@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -73,7 +74,7 @@ def test_tries_come_at_longer_and_longer_intervals(window: Any) -> None:
         page.wait_for_selector("#result-rows tr")
     page.wait_for_timeout(9000)
     tries = page.evaluate("tries")
-    gaps = [b - a for a, b in zip(tries[1:], tries[2:], strict=False)]
+    gaps = [b - a for a, b in pairwise(tries[1:])]
     assert 3 <= len(gaps) <= 6
     assert gaps[-1] > 2 * gaps[0]
 

@@ -78,6 +78,18 @@ def test_the_time_bar_scrubs_and_follows(page: Any, double: Double) -> None:
     assert bar.input_value() == "-7.26" or bar.input_value() == "-7.24"
 
 
+def test_live_wins_over_a_scrub_not_sent_yet(page: Any, double: Double) -> None:
+    page.evaluate("""() => {
+        const bar = document.getElementById("time");
+        bar.value = "-5";
+        bar.dispatchEvent(new Event("input"));
+        document.getElementById("live").click();
+    }""")
+    double.heard("live")
+    page.wait_for_timeout(150)
+    assert not any(a["type"] == "scrub" for a in double.asked)
+
+
 @pytest.mark.parametrize(
     ("control", "value", "asked"),
     [
