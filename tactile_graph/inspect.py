@@ -11,6 +11,7 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
   list that have none (`gaps`) or one (`with_value`); values as numbers (`scalars`) and
   as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`) and what of
   it is held against the truth (`measures_of`);
+- its rows for tables, one for each object where there are several (`make_table`, `Table`);
 - `Replay`: what a plan alone would have come to, from a run that settled more.
 """
 

@@ -9,7 +9,7 @@ MOST_WORDS = 2000
 """Of a page that is read through."""
 KINDS = {
     "user guides": "index tutorial/ how-to/ reference glossary pipelines files recordings devices "
-    "compare notebook plugins hooks api contributing project",
+    "compare notebook plugins hooks api contributing project live deadlines many-frames",
     "explanation": "explanation architecture pad likelihood any-pad fields objects merging "
     "stability",
     "evidence": "evidence/ reproduce errata benchmarks promises attacks evolution mutations",
