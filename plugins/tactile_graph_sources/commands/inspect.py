@@ -191,6 +191,8 @@ def _works(frames: Sequence[Frame]) -> _Works:
 
     Those that are shown have answered the fullest of them.
     """
+    from tactile_graph.compiled import answered_meanwhile
+
     names, about, levels = [], {}, {}
     reasons: dict[str, list[str]] = {}
     for name, text, trouble, level in _tried(frames[0]):
@@ -203,10 +205,11 @@ def _works(frames: Sequence[Frame]) -> _Works:
     names.sort(key=lambda n: ("any" not in about[n], n))
     if frames[0].image.values.size <= MOST_TRIED:
         fullest = max(frames, key=lambda frame: float(frame.image.filled(0.0).sum()))
-        for name in _first(names, MOST_SHOWN):
-            if trouble := _failure(name, fullest):
-                names.remove(name)
-                reasons.setdefault(trouble, []).append(name)
+        with answered_meanwhile():
+            for name in _first(names, MOST_SHOWN):
+                if trouble := _failure(name, fullest):
+                    names.remove(name)
+                    reasons.setdefault(trouble, []).append(name)
     return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()}, levels)
 
 
