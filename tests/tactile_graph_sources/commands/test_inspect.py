@@ -33,6 +33,12 @@ def looked(*args: object) -> dict[str, Any]:
 
 
 @pytest.fixture
+def nothing_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pipelines are told from what they take alone: running them is another test's."""
+    monkeypatch.setattr(inspect, "MOST_TRIED", 0)
+
+
+@pytest.fixture
 def mat(tmp_path: Path) -> Path:
     """A film of counts with noise 1.5, a dead, a stuck, a noisy and a missing cell, and garbage."""
     values = film(60, 10, 12)
@@ -50,6 +56,7 @@ def mat(tmp_path: Path) -> Path:
     return tmp_path / "mat.npz"
 
 
+@pytest.mark.usefixtures("nothing_tried")
 def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
     found = looked(mat)
     (sensor,) = found["sensors"]
@@ -83,6 +90,7 @@ def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_res
     assert "1 a frame as a rule, 1 to 2, 1 of them in every frame" in run(path)
 
 
+@pytest.mark.usefixtures("nothing_tried")
 def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     text = run(mat)
     assert "format    NumPy .npz" in text
