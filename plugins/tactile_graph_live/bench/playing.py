@@ -65,14 +65,12 @@ class Player:
 
     Parameters
     ----------
-    pipeline : Pipeline
-    seed : int
-    report : Report
-    rate_hz : float or None
+    open_frames : callable
+        Returns an iterator of the source's frames, given which time it is read, from 0.
+    pace : Pace or None
+        When each is due; as fast as they are taken if None.
     once : bool
         Whether it ends with the source, instead of starting over.
-    unpaced : bool
-        Whether frames come as fast as they are taken.
     first : int
         Number of the first frame.
     """

@@ -27,6 +27,8 @@ class Draft:
     Parameters
     ----------
     pipeline : Pipeline
+    base : str
+        The file's text.
     given : mapping
         What the command line set, node -> setting -> value.
     set_here : mapping
