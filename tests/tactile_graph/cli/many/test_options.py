@@ -81,8 +81,8 @@ def test_tune(folder: Path) -> None:
     _, said = both(folder, "tune", "ladder.yaml", "--frames", "24", "--rounds", "1", "--json",
                    "{}.json")  # fmt: skip
     one, two = (json.loads((folder / f"{n}.json").read_text()) for n in ("one", "two"))
-    given = [d["points"]["as given"]["run"]["loss"]["mean"] for d in (one, two)]
-    table = [d["points"]["as given"]["predicted"]["loss"]["mean"] for d in (one, two)]
+    given = [d["points"]["as given"]["run"]["error"]["mean"] for d in (one, two)]
+    table = [d["points"]["as given"]["predicted"]["error"]["mean"] for d in (one, two)]
     assert given[0] == given[1]
     assert table[0] == table[1]
     assert "of the table times were taken with 2 workers" in " ".join(said.split())
