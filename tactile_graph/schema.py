@@ -99,6 +99,11 @@ class _Maker:
                     "description": "Microseconds from a frame's arrival within which a live run "
                     "wants its result: what would not be done in time is skipped.",
                 },
+                "isolated": {
+                    "type": ["array", "null"], "items": {"type": "string", "minLength": 1},
+                    "description": "Steps that run in a process apart, which is ended and started "
+                    "anew where they hang or crash; plugin.* for all of a plugin's.",
+                },
                 "conditions": {
                     "type": ["object", "null"],
                     "propertyNames": _names(),
@@ -149,9 +154,9 @@ class _Maker:
                     "description": "Seconds the step may take: it runs in a process of its own, "
                     "which is ended and started anew where it takes longer.",
                 },
-                "isolated": {"type": "boolean",
+                "isolated": {"type": ["boolean", "null"],
                              "description": "Run the step in a process of its own: where it "
-                             "crashes, only its node fails."},
+                             "crashes, only its node fails. false: not, whatever its plugin says."},
                 "about": {"type": ["string", "number", "null"]},
             },
             "oneOf": [{"required": [kind]} for kind in ("step", "use", "first_of")],

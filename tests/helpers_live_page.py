@@ -49,20 +49,19 @@ def graph(version: int = 1, names: tuple[str, ...] = NAMES, **more: Any) -> Plai
         setting("noise_of", "text", ""),
     ]  # fmt: skip
     chain = ("frame", *names)
-    boxes = [{"name": n, "step": f"{n}_step", "role": "frame" if n == "frame" else "step",
-              "x": 180.0 * i, "y": 0.0, "w": 150.0, "h": 150.0,
-              "sources": list(chain[max(0, i - 1) : i])} for i, n in enumerate(chain)]  # fmt: skip
-    wires = [{"start": a, "end": b, "kind": "data", "label": "", "path": "M0 75L30 75"}
-             for a, b in pairwise(chain)]  # fmt: skip
+    boxes = [{"name": n, "step": f"{n}_step", "role": "frame" if n == "frame" else "step"}
+             for n in chain]  # fmt: skip
+    wires = [{"start": a, "end": b, "kind": "data"} for a, b in pairwise(chain)]
     nodes = [{"name": n, "step": f"{n}_step", "about": f"What {n} does.", "guard": "",
+              "keeps": n == names[-1],
               "settings": settings if i == 0 else []} for i, n in enumerate(names)]  # fmt: skip
     columns = [{"key": k, "name": k.removesuffix("_cm").replace("_", " "), "unit": "cm"}
                for k in ("x_cm", "y_cm", "radius_cm", "centre_error_cm")]  # fmt: skip
     yaml = "pipeline: rings\nnodes:\n  footprint: {level_v: 0.02}\n"
     return {"type": "graph", "version": version, "name": "rings", "about": "rings on a pad",
             "yaml": yaml, "file_yaml": yaml, "boxes": boxes,
-            "wires": wires, "width": 900.0, "height": 160.0, "nodes": nodes,
-            "outputs": [names[-1]], "columns": columns, "took_ms": 1.0} | more  # fmt: skip
+            "wires": wires, "nodes": nodes, "outputs": [names[-1]], "columns": columns,
+            "took_ms": 1.0, "anew": []} | more  # fmt: skip
 
 
 def picture(values: list[int] | bytes, **more: Any) -> Plain:

@@ -14,21 +14,45 @@ HEAD = (
 )
 SORTED = "sorts its points: n log n"
 PAGES = "memory that goes back to the system with each large array, see above"
+CACHE = (
+    "the time of a cell rises once, between 128×128 and 256×256, and stays: probably what it works "
+    "on leaves the cache (2 MB a core)"
+)
+OTHERS = (
+    "finds one outline where there are several: none explains such a load, so that the search goes "
+    "through all its attempts and the sample to its end; scene `one` is what it is for"
+)
 WHY = {
+    "bridge_lines": "sorts each row and column to find dead ones: n log n",
+    "choose_shape": OTHERS,
+    "compress": PAGES,
+    "contours": CACHE,
+    "digital_gradient": PAGES,
+    "ellipse_sweep": PAGES,
+    "fit_circle_load": PAGES,
+    "fit_ellipse": CACHE,
+    "fit_ellipse_direct": PAGES,
+    "fit_footprint": OTHERS,
+    "fit_rectangle": SORTED,
+    "flip_cells": PAGES,
+    "footprint_disc": OTHERS,
+    "footprint_ellipse": OTHERS,
+    "footprint_rectangle": OTHERS,
     "hull": SORTED,
     "hull_graham": SORTED,
-    "min_area_rectangle": SORTED,
-    "threshold_otsu": PAGES,
-    "sobel": PAGES,
-    "digital_gradient": PAGES,
-    "subdivide_image": PAGES,
-    "rotate_points": PAGES,
-    "fit_ellipse_direct": PAGES,
-    "skeleton": "scikit-image's thinning: pass after pass, more for thicker objects",
-    "near_hull": "each point with each side; a hull has few, this outline of all objects many",
-    "pick_contact": "sorts the contacts: n log n",
+    "identify_footprint": OTHERS,
     "line_contacts": "an even load falls into basins as many as its cells (7, 50, 250 on 32, 64, "
     "128), and each one that is joined has the whole group weighed again with all its neighbours",
+    "min_area_rectangle": SORTED,
+    "near_hull": "each point with each side; a hull has few, this outline of all objects many",
+    "pick_contact": "sorts the contacts: n log n",
+    "restore": "probably its rounds, which go on until none lowers the energy: up to 8",
+    "rotate_points": PAGES,
+    "simplify_polygon": "a tree of all corners, as in sorting: n log n, then probably the cache",
+    "skeleton": "scikit-image's thinning: pass after pass, more for thicker objects",
+    "sobel": PAGES,
+    "subdivide_image": PAGES,
+    "threshold_otsu": PAGES,
 }
 """What was found where a time grows faster than the cells."""
 
@@ -36,8 +60,9 @@ INTRODUCTION = """\
 # Growth with the pad
 
 What a frame and a cell cost each built-in step on pads from 16×16 to 512×512 cells, and how that
-grows, on two scenes: `grown`, two objects that take the same share of every pad, and `many`,
-objects of a fixed size, one in each 8×8 cells. Settings are the defaults, machine code is on disk,
+grows, on scenes of two kinds: `grown`, two objects that take the same share of every pad (`one`:
+the larger of them alone, for steps that find an outline), and `many`, objects of a fixed size, one
+in each 8×8 cells. Settings are the defaults, machine code is on disk,
 times are of the processor, medians over rounds (`python benchmarks/growth.py --page PAGE`, which
 also says how steps are fed). A call over {bound:g} s ends the step's scene there, and so does a
 first call over a minute, compiling counted.

@@ -84,14 +84,14 @@ class Bounds:
         return 3 * self.call_s
 
 
-def points_of(step: str, scenes: list[str], sides: list[int], bounds: Bounds) -> Iterator[Point]:
-    """Yield a step's times, the smallest pad of each scene first, up to the first over a bound."""
-    family = "" if step == COPY else installed().offer("steps", step).plugin.name
-    for scene in scenes:
-        yield from _of_scene(Point(step, family, scene, 0), sides, bounds)
+def family_of(step: str) -> str:
+    """Return whose step it is."""
+    return "" if step == COPY else installed().offer("steps", step).plugin.name
 
 
-def _of_scene(point: Point, sides: list[int], bounds: Bounds) -> Iterator[Point]:
+def points_of(step: str, scene: str, sides: list[int], bounds: Bounds) -> Iterator[Point]:
+    """Yield a step's times on a scene, the smallest pad first, up to the first over a bound."""
+    point = Point(step, family_of(step), scene, 0)
     context = multiprocessing.get_context("fork")  # what the parent imported is there at once
     here, there = context.Pipe(duplex=False)
     child = context.Process(target=_child, args=(there, point, sides, bounds))

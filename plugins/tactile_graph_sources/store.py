@@ -6,10 +6,12 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from tactile_graph.errors import DataError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.stores.stored import UNSURE, Lost, Stored, open_stored
 
 
@@ -32,7 +34,16 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
     UsageError
         If Zarr is not installed.
     """
-    stored = open_stored(Path(path))
+    return _whole(Path(path), report, start, in_stacks=False)
+
+
+def read_store_in_stacks(path: str | Path, report: Report) -> Iterator[Frame | FrameStack]:
+    """Yield what `read_store` does, many at once where nothing is to be said of single frames."""
+    return _whole(Path(path), report, 0, in_stacks=True)
+
+
+def _whole(path: Path, report: Report | None, start: int, in_stacks: bool) -> Iterator[Any]:
+    stored = open_stored(path)
     if report is not None:
         report.expect(max(0, stored.n_frames - start))
         _tell_damage(stored, report)
@@ -41,7 +52,8 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
         if piece.high <= start:
             continue
         try:
-            frames = stored.frames(piece)
+            given = stored.given if in_stacks and not gap else stored.frames
+            frames = [*given(piece, start)]
         except Lost as why:
             n_lost += piece.high - piece.low
             gap = True
@@ -49,8 +61,9 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
                 report.count("damaged records skipped", piece.high - piece.low)
                 report.trouble(str(path), f"{piece.words}: lost: {why}")
             continue
-        frames = frames[max(0, start - piece.low) :]
-        frames[0] = replace(frames[0], gap=gap or frames[0].gap)
+        first = frames[0]
+        if gap and isinstance(first, Frame):
+            frames[0] = replace(first, gap=True)
         gap = False
         n_given += len(frames)
         yield from frames

@@ -49,6 +49,9 @@ class Request:
         does that may be answered; the pipeline's own if not given.
     most_us : float, optional
         Find the least error that takes no longer, mean over the frames.
+    margin : float
+        Share by which the error may be greater than that of the pipeline as it is, where neither
+        ``most_error`` nor ``most_us`` is given.
     fields : tuple of str
         The only fields that guards may ask; all where empty.
     free : tuple of Free
@@ -69,6 +72,7 @@ class Request:
     most_missed: float | None = None
     most_false: float | None = None
     most_us: float | None = None
+    margin: float = 0.0
     fields: tuple[str, ...] = ()
     free: tuple[Free, ...] = ()
     rounds: int = 3

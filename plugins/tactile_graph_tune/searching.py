@@ -110,7 +110,7 @@ def searched(
 
     always = _always(spaces[0])
     goal = Goal(spaces[0].given, request.most_us, request.most_error,
-                request.most_missed, request.most_false)  # fmt: skip
+                request.most_missed, request.most_false, request.margin)  # fmt: skip
     folds = halves_of(every, split, request.seed)
     fronts = [Front() for _ in folds]
     for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):

@@ -227,17 +227,20 @@ class Pipeline(Graph):
         seed: int = 0,
         verify: bool = False,
         decider: Decider | None = None,
+        after: Runner[Result] | None = None,
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
         With ``verify`` a step fails that writes into what others read; this costs time. A
         ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or
-        what was `tactile_graph.live.Recorded` of one.
+        what was `tactile_graph.live.Recorded` of one. Where it comes ``after`` a runner of the same
+        seed, and takes its place, nodes that compute the same go on with their state.
         """
         from tactile_graph.api.result import Result
-        from tactile_graph.engine.runner import Runner
+        from tactile_graph.engine.runner import Runner, RunSettings
 
-        return Runner(self, tuple(only or self.outputs), seed, Result, verify, decider)
+        settings = RunSettings(seed, verify, decider, after)
+        return Runner(self, tuple(only or self.outputs), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""

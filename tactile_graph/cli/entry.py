@@ -15,6 +15,9 @@ def main() -> None:
     _open_streams()
     gc.set_threshold(NEW_OBJECTS, *gc.get_threshold()[1:])
     try:
+        from tactile_graph.cli.early import begin_workers
+
+        begin_workers(sys.argv[1:])
         from tactile_graph.cli.app import cli
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")

@@ -17,6 +17,7 @@ from typing import Any
 
 import numba
 from numba import types
+from numba.core.dispatcher import Dispatcher
 
 TRIED = ("0.68",)
 """Versions of numba whose inner working is known to fit."""
@@ -30,10 +31,14 @@ def whole() -> bool:
 def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
     """Return what runs the machine code of ``loops``; made at the first call, kept on disk."""
     if not whole():
-        return numba.njit(cache=True, error_model="numpy")(loops)
+        return _numbas_own(loops)
     from tactile_graph.compiled.whole import entry_of
 
     return entry_of(loops)
+
+
+def _numbas_own(loops: Callable[..., Any]) -> Dispatcher:
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(loops)
 
 
 def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> None:
@@ -43,7 +48,7 @@ def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> 
 
         entry_of(loops).compile_unless_claimed(arguments)
     else:
-        numba.njit(cache=True, error_model="numpy")(loops).compile(arguments)
+        _numbas_own(loops).compile(arguments)
 
 
 def on_disk(entry: Any, arguments: tuple[types.Type, ...]) -> bool:
@@ -73,7 +78,7 @@ class Callee:
                 self._part = _part_of(self._loops)
             return types.Dispatcher(self._part)
         if self._alone is None:
-            self._alone = numba.njit(cache=True, error_model="numpy")(self._loops)
+            self._alone = _numbas_own(self._loops)
         return types.Dispatcher(self._alone)
 
 

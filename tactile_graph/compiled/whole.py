@@ -23,7 +23,9 @@ from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
 from tactile_graph.locks import Lock
 
-OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy"}
+OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
+"""Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
+
 POLL_S = 0.02
 """Between two looks whether another process has finished."""
 
@@ -211,7 +213,8 @@ class EntryCache(FunctionCache):
     def __init__(self, loops: Callable[..., Any]) -> None:
         super().__init__(loops)
         name = f"{self._impl.filename_base}.whole"
-        self._cache_file = IndexDataCacheFile(self.cache_path, name, Reach(loops).digest)
+        made_of = f"{Reach(loops).digest} {sorted(OPTIONS.items(), key=str)}"
+        self._cache_file = IndexDataCacheFile(self.cache_path, name, made_of)
         self._name = loops.__name__
         self.waits = True
         self._claim = Lock(Path(self.cache_path, f"{name}.lock"))

@@ -30,10 +30,10 @@ def make_call(node: Node, context: Context) -> Call:
     return for_each(node, call, context) if node.each else call
 
 
-def _bound(node: Node, **injected: Any) -> Call:
+def _bound(node: Node, context: Context, **injected: Any) -> Call:
     """Return a node's step with its settings, as what costs least to call in every frame."""
     if node.isolation is not None:
-        return isolated_step(node, injected)
+        return isolated_step(node, injected, context.hosts)
     step: Any = node.bound(**injected)
     assert node.signature is not None
     call: Call = step.__call__ if node.signature.kind is Kind.CLASS else step
@@ -60,11 +60,11 @@ def _seeded(node: Node, context: Context) -> Call:
     signature = node.signature
     assert signature is not None
     if not signature.rng:
-        return _bound(node)
+        return _bound(node, context)
     words = [context.seed, int(node.key[:16], 16)]
     if signature.rng_at_init:
-        return _bound(node, **{signature.rng: np.random.default_rng(words)})
-    step = _bound(node)
+        return _bound(node, context, **{signature.rng: np.random.default_rng(words)})
+    step = _bound(node, context)
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tactile_graph.engine.isolated import Host
 from tactile_graph.engine.outcome import Failed
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.pipeline.graph import Graph
@@ -24,7 +25,7 @@ class Context:
         Gives what runs an embedded pipeline.
     """
 
-    __slots__ = ("embedded", "frame", "inner_results", "item", "item_failures", "seed")
+    __slots__ = ("embedded", "frame", "hosts", "inner_results", "item", "item_failures", "seed")
 
     def __init__(self, seed: int, embedded: Callable[[Graph], RunInner]) -> None:
         self.seed = seed
@@ -33,3 +34,5 @@ class Context:
         self.item: tuple[int, ...] = ()
         self.inner_results: dict[str, list[Outcomes | None]] = {}
         self.item_failures: list[Failed] = []
+        self.hosts: dict[str, Host] = {}
+        """Processes that nodes of the runner which is being made share."""

@@ -1,9 +1,10 @@
-"""Steps in processes of their own: one that hangs or crashes costs its node, and nothing else.
+"""Steps in processes apart: one that hangs or crashes costs its node, and nothing else.
 
-The process is there before the first frame. It is given what goes into the step and gives back
-what comes out, both pickled. Where it takes longer than it may it is killed, where it has ended by
-itself that is told; in both cases a new one is started at once, and until that is there the node is
-skipped, so that frames do not wait for it. A state the step kept is gone.
+A process is there before the first frame, of a node alone or of all nodes that share it. It is
+given what goes into a step and gives back what comes out, both pickled. Where a step takes longer
+than it may its process is killed, where that has ended by itself this is told; in both cases a new
+one is started at once, and until that is there its nodes are skipped, so that frames do not wait
+for it. The state that its steps kept is gone.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ import signal
 import subprocess
 import sys
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from queue import Empty, Queue
 from threading import Thread
-from typing import IO, Any
+from typing import IO, Any, NamedTuple
 
-from tactile_graph.engine.isolated_worker import ENDED, READY, Message, received, sent
+from tactile_graph.engine.isolated_worker import ENDED, MADE, Message, received, sent
 from tactile_graph.errors import Skip, TactileGraphError, UsageError
-from tactile_graph.pipeline.graph import Isolation, Node
+from tactile_graph.pipeline.graph import Node
 from tactile_graph.steps.signature import Kind
 
 START_S = 60.0
@@ -35,14 +36,23 @@ class CrashedError(TactileGraphError):
     """The process of a step has ended by itself."""
 
 
-def isolated_step(node: Node, injected: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return what runs a node's step in a process of its own.
+class Order(NamedTuple):
+    """A step that a process is to run, and the node it is for."""
+
+    node: str
+    pickled: bytes
+
+
+def isolated_step(node: Node, injected: Mapping[str, Any], hosts: dict[str, Host]) -> Isolated:
+    """Return what runs a node's step in another process.
 
     Parameters
     ----------
     node : Node
     injected : mapping
         What its constructor is handed beside its settings.
+    hosts : dict
+        The processes that nodes share, by name; one that is not there yet is added.
 
     Raises
     ------
@@ -54,13 +64,17 @@ def isolated_step(node: Node, injected: Mapping[str, Any]) -> Callable[..., Any]
     assert isolation is not None
     settings = {**signature.arguments(node.settings), **injected}
     try:
-        order = pickle.dumps((signature.target, settings, signature.kind is Kind.CLASS))
+        pickled = pickle.dumps((signature.target, settings, signature.kind is Kind.CLASS))
     except Exception as error:  # whatever pickle cannot take
         raise UsageError(
             f"node {node.name!r}: step {signature.name!r} cannot run in a process of its own: "
             f"{error}"
         ) from error
-    return Isolated(node.name, order, isolation)
+    name = isolation.process
+    host = hosts.get(name) or Host(name)
+    if name:
+        hosts[name] = host
+    return Isolated(host, host.add(Order(node.name, pickled)), isolation.time_limit_s)
 
 
 class Isolated:
@@ -68,19 +82,15 @@ class Isolated:
 
     Parameters
     ----------
-    name : str
-        Of the node, for messages.
-    order : bytes
-        What the process is to run.
-    isolation : Isolation
+    host : Host
+    number : int
+        Of the step there.
+    limit_s : float or None
+        How long a call may take.
     """
 
-    def __init__(self, name: str, order: bytes, isolation: Isolation) -> None:
-        self._name, self._order, self._limit_s = name, order, isolation.time_limit_s
-        self._why = ""
-        self._process = _Process(order)
-        self._ready = False
-        self._await(START_S)
+    def __init__(self, host: Host, number: int, limit_s: float | None) -> None:
+        self._host, self._number, self._limit_s = host, number, limit_s
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """Return what the step gives.
@@ -94,53 +104,98 @@ class Isolated:
         Exception
             Whatever the step raises.
         """
-        if not self._ready:
-            self._await(0.0)
-        self._process.send((args, kwargs))
+        return self._host.run(self._number, args, kwargs, self._limit_s)
+
+
+class Host:
+    """A process that runs steps one at a time, and is started anew when it has ended.
+
+    Parameters
+    ----------
+    name : str
+        Which of several nodes' processes it is; empty for that of one node.
+    """
+
+    def __init__(self, name: str = "") -> None:
+        self._name = name
+        self._orders: list[Order] = []
+        self._process = _Process()
+        self._n_made = 0
+        self._ended_by = self._broken = ""
+
+    def add(self, order: Order) -> int:
+        """Have a step made, and return its number.
+
+        Raises
+        ------
+        UsageError
+            If the process cannot run it, or does not start.
+        """
+        self._orders.append(order)
+        self._process.send(order.pickled)
+        self._take_note(START_S)
+        return len(self._orders) - 1
+
+    def run(self, number: int, args: Any, kwargs: Mapping[str, Any], limit_s: float | None) -> Any:
+        """Return what a step gives; raises what `Isolated` does."""
+        if self._n_made < len(self._orders):
+            self._take_note(0.0)
+        self._process.send((number, args, kwargs))
         try:
-            kind, value = self._process.messages.get(timeout=self._limit_s)
+            kind, value = self._process.messages.get(timeout=limit_s)
         except Empty:
-            self._anew(f"took longer than its {self._limit_s:g} s")
-            raise OverrunError(f"{self._why}: its process was killed, a new one starts") from None
+            self._start_anew(number, f"took longer than its {limit_s:g} s")
+            why = f"{self._ended_by}: its process was killed, a new one starts"
+            raise OverrunError(why) from None
         if kind == ENDED:
-            self._anew(self._process.end_in_words())
-            raise CrashedError(f"{self._why}: a new one starts")
-        if isinstance(value, Exception) and kind != READY:
+            self._start_anew(number, self._process.end_in_words())
+            raise CrashedError(f"{self._ended_by}: a new one starts")
+        if kind != MADE and isinstance(value, Exception):
             raise value
         return value
 
-    def _await(self, seconds: float) -> None:
-        """Take note that the process is there.
+    def _take_note(self, seconds: float) -> None:
+        """Take note of the steps that are made.
 
         Raises
         ------
         Skip
-            If it is not, and that is no wonder.
+            If one is not, and that is no wonder.
         UsageError
-            If it cannot run the step.
+            If the process cannot run it.
         """
-        try:
-            kind, value = self._process.messages.get(timeout=seconds) if seconds else (
-                self._process.messages.get_nowait()
-            )  # fmt: skip
-        except Empty:
-            raise Skip(f"its process is being started anew: the last {self._why}") from None
-        if kind != READY:
-            told = value if kind != ENDED else self._process.end_in_words()
-            self._process.messages.put((kind, value))  # it stays so
-            raise UsageError(f"node {self._name!r}: its own process cannot run the step: {told}")
-        self._ready = True
+        messages = self._process.messages
+        while self._n_made < len(self._orders) and not self._broken:
+            try:
+                kind, value = messages.get(timeout=seconds) if seconds else messages.get_nowait()
+            except Empty:
+                if seconds:
+                    self._broken = f"it did not start within {seconds:g} s"
+                    break
+                what = f"the process of {self._name}" if self._name else "its process"
+                raise Skip(f"{what} is being started anew: the last {self._ended_by}") from None
+            if kind == MADE:
+                self._n_made += 1
+            else:
+                self._broken = value if kind != ENDED else self._process.end_in_words()
+        if self._broken:
+            node = self._orders[self._n_made].node
+            what = f"the process of {self._name}" if self._name else "its own process"
+            raise UsageError(f"node {node!r}: {what} cannot run the step: {self._broken}")
 
-    def _anew(self, why: str) -> None:
-        self._why, self._ready = why, False
+    def _start_anew(self, number: int, why: str) -> None:
+        self._ended_by = f"{why} at node {self._orders[number].node!r}" if self._name else why
+        self._n_made = 0
         self._process.kill()
-        self._process = _Process(self._order)
+        self._process = _Process()
+        for order in self._orders:
+            self._process.send(order.pickled)
 
 
 class _Process:
     """A process, and what it has said."""
 
-    def __init__(self, order: bytes) -> None:
+    def __init__(self) -> None:
         command = [sys.executable, "-m", "tactile_graph.engine.isolated_worker"]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None
@@ -151,7 +206,6 @@ class _Process:
         Thread(target=_listen, args=args, name="isolated step", daemon=True).start()
         self.kill = weakref.finalize(self, _ended, self._process)
         self.send(sys.path)
-        self.send(order)
 
     def send(self, message: Any) -> None:
         """Send something; where nobody is there any more, `messages` says so."""

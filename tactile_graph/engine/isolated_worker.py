@@ -1,4 +1,4 @@
-"""The process that runs one step for another process; no command for people."""
+"""The process that runs steps for another process; no command for people."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import os
 import pickle
 import struct
 import sys
+from collections.abc import Callable
+from functools import partial
 from typing import IO, Any
 
-READY, VALUE, ERROR, ENDED = "ready", "value", "error", "ended"
+MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
 Message = tuple[str, Any]
 _LENGTH = struct.Struct("<Q")
 
@@ -39,26 +41,37 @@ def received(file: IO[bytes]) -> Any:
 
 
 def serve(orders: IO[bytes], answers: IO[bytes]) -> None:
-    """Make the step, and run it on whatever comes, until nothing more comes."""
+    """Make steps, and run them on whatever comes, until nothing more comes.
+
+    An order is the pickled step, or the number of one made before and what goes into it.
+    """
     sys.path[:] = received(orders)
-    try:
-        target, settings, is_class = pickle.loads(received(orders))
-        step = target(**settings) if is_class else target
-        settings = {} if is_class else settings
-    except Exception as error:
-        sent(answers, (ERROR, f"{type(error).__name__}: {error}"))
-        return
-    sent(answers, (READY, None))
+    steps: list[Callable[..., Any]] = []
     while True:
         try:
-            args, kwargs = received(orders)
+            order = received(orders)
         except EOFError:
             return
+        if isinstance(order, bytes):
+            try:
+                steps.append(_made(order))
+            except Exception as error:
+                sent(answers, (ERROR, f"{type(error).__name__}: {error}"))
+                return
+            sent(answers, (MADE, None))
+            continue
+        number, args, kwargs = order
         try:
-            answer: Message = VALUE, step(*args, **settings, **kwargs)
+            answer: Message = VALUE, steps[number](*args, **kwargs)
         except Exception as error:
             answer = ERROR, error
         _answer(answers, answer)
+
+
+def _made(order: bytes) -> Callable[..., Any]:
+    target, settings, is_class = pickle.loads(order)
+    made: Callable[..., Any] = target(**settings) if is_class else partial(target, **settings)
+    return made
 
 
 def _answer(answers: IO[bytes], answer: Message) -> None:

@@ -73,9 +73,14 @@ class Plan:
         return [i for i in self.items if i.node is not None]
 
     @property
+    def keeping(self) -> tuple[str, ...]:
+        """Names of the nodes whose steps keep state."""
+        return tuple(i.name for i in self.items if i.node is not None and i.node.stateful)
+
+    @property
     def stateful(self) -> bool:
         """Whether any step in it keeps state."""
-        return any(i.node.stateful for i in self.items if i.node is not None)
+        return bool(self.keeping)
 
     @property
     def repeatable(self) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -31,6 +32,29 @@ from tactile_graph.wires.stacks import ImageStack
 ResultT = TypeVar("ResultT", bound=Outcomes)
 
 
+@dataclass(frozen=True)
+class RunSettings:
+    """How frames are run.
+
+    Parameters
+    ----------
+    seed : int
+        Seed of the steps that take randomness.
+    verify : bool
+        Whether steps that write into what they share fail; costs time.
+    decider : Decider, optional
+        Decides for each frame what is left undone; nothing is if not given.
+    after : Runner, optional
+        Of the same seed, and verified likewise; not called any more once this one is. Nodes of
+        equal key go on with the state they have there.
+    """
+
+    seed: int = 0
+    verify: bool = False
+    decider: Decider | None = None
+    after: Runner[Any] | None = None
+
+
 class Runner(Generic[ResultT]):
     """Call it with a frame, get the result; stateful steps keep their state between calls.
 
@@ -39,37 +63,39 @@ class Runner(Generic[ResultT]):
     pipeline : Graph
     asked : tuple of str
         Nodes or ``node.field`` to ask for.
-    seed : int
-        Seed of the steps that take randomness.
     result : type
         What a frame's outcomes are handed out as.
-    verify : bool
-        Whether steps that write into what they share fail; costs time.
-    decider : Decider, optional
-        Decides for each frame what is left undone; nothing is if not given.
+    settings : RunSettings, optional
     """
 
     def __init__(
         self,
         pipeline: Graph,
         asked: tuple[str, ...],
-        seed: int,
         result: type[ResultT],
-        verify: bool = False,
-        decider: Decider | None = None,
+        settings: RunSettings | None = None,
     ) -> None:
+        settings = settings or RunSettings()
+        decider, before = settings.decider, settings.after
         asked = asked or tuple(pipeline.outputs)
         self.plan: Plan = make_plan(pipeline, asked, ladders_wait=decider is not None)
         self._result = result
-        self._context = Context(seed, self._embedded)
+        embedded = partial(_embedded, result, settings)
+        self._context: Context = (
+            Context(settings.seed, embedded) if before is None else before._context
+        )
+        self._context.hosts = {}  # a process that the runner before uses takes no more steps
         self._blank = blank_state(self.plan.n_slots)
-        self._verify = verify
+        self._verify = settings.verify
         self._calls: dict[str, Call] = {}
+        self._left = {} if before is None else before._keeping
+        self._went_on: set[str] = set()
         self._decider = decider
         deciding = None if decider is None else Deciding(options_of(self.plan), decider)
         if deciding is not None:
             deciding.decider.prepare(deciding.options)
         self._operations = make_program(self.plan, self._call, self._blank, deciding=deciding)
+        self._left = {}
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
         self._last: tuple[bytes, ResultT] | None = None
@@ -103,21 +129,36 @@ class Runner(Generic[ResultT]):
         """Whether some of its steps answer many frames at once, so that `block` is worth while."""
         return not self._verify and self._decider is None and worth_blocks(self.plan)
 
+    @property
+    def anew(self) -> tuple[str, ...]:
+        """Nodes that keep something and did not go on with what they had in the runner before."""
+        return tuple(n for n in self.plan.keeping if n not in self._went_on)
+
+    @property
+    def _keeping(self) -> dict[str, tuple[Node, Call]]:
+        """The calls that keep something (a state, a process), and whose they are."""
+        nodes = self.plan.pipeline.nodes
+        return {n: (nodes[n], c) for n, c in self._calls.items() if _keeps(nodes[n])}
+
     def _call(self, node: Node) -> Call:
         if node.name not in self._calls:
-            call = make_call(node, self._context)
-            self._calls[node.name] = watched(call, step_label(node)) if self._verify else call
+            call = self._taken_over(node)
+            if call is None:
+                call = make_call(node, self._context)
+                call = watched(call, step_label(node)) if self._verify else call
+            self._calls[node.name] = call
         return self._calls[node.name]
 
-    def _embedded(self, pipeline: Graph) -> RunInner:
-        """Return what runs a pipeline that a node of this one runs over a list."""
-        inner = Runner(pipeline, (), self._context.seed, self._result, self._verify)
-
-        def run(frame: Frame, item: tuple[int, ...]) -> Outcomes:
-            inner._context.item = item  # or every item would draw the same numbers
-            return inner(frame)
-
-        return run
+    def _taken_over(self, node: Node) -> Call | None:
+        """Return the call of an equal node of the runner before, its own name's first."""
+        nodes = self.plan.pipeline.nodes
+        for name in (node.name, *(n for n in self._left if n not in nodes)):
+            other, call = self._left.get(name, (None, None))
+            if other is not None and (other.key, other.isolation) == (node.key, node.isolation):
+                del self._left[name]
+                self._went_on.add(node.name)
+                return call
+        return None
 
     def __call__(self, frame: Frame) -> ResultT:
         """Return the result for the frame.
@@ -232,6 +273,21 @@ class Runner(Generic[ResultT]):
             state = states[row] = group.frame_state(place, self.plan.n_slots)
             self._settle(state, self._blocks.resume)
         return states
+
+
+def _keeps(node: Node) -> bool:
+    return node.stateful or node.isolation is not None
+
+
+def _embedded(result: type[Outcomes], settings: RunSettings, pipeline: Graph) -> RunInner:
+    """Return what runs a pipeline that a node of another one runs over a list."""
+    inner = Runner(pipeline, (), result, RunSettings(settings.seed, settings.verify))
+
+    def run(frame: Frame, item: tuple[int, ...]) -> Outcomes:
+        inner._context.item = item  # or every item would draw the same numbers
+        return inner(frame)
+
+    return run
 
 
 def equal_to_last(images: ImageStack) -> NDArray[np.bool_]:

@@ -250,12 +250,14 @@ def stacked_guard(guard: Guard) -> Guard:
         stacks = [v for v in values if isinstance(v, Stack)]
         if not stacks:
             return holds(*values)
-        if len(values) == 1 and isinstance(values[0], Column):
-            numbers = values[0].values.tolist()
-            known = {v: verdict((v,)) for v in set(numbers)}
-            verdicts = [known[v] for v in numbers]
+        rows = zip(*[v if isinstance(v, Stack) else repeat(v) for v in values], strict=False)
+        if all(isinstance(v, Column) for v in stacks) and len(stacks) == len(values):
+            told = [*rows]
+            known = {row: verdict(row) for row in set(told)}  # the same numbers come again
+            if len(set(known.values())) == 1 and None not in known.values():
+                return known[told[0]]
+            verdicts = [known[row] for row in told]
         else:
-            rows = zip(*[v if isinstance(v, Stack) else repeat(v) for v in values], strict=False)
             verdicts = [verdict(row) for row in rows]
         if None not in verdicts and len(set(verdicts)) == 1:
             return verdicts[0]

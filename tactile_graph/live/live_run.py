@@ -38,8 +38,9 @@ class Runnable(Protocol[ResultT]):
         seed: int = ...,
         verify: bool = ...,
         decider: Decider | None = ...,
+        after: Runner[ResultT] | None = ...,
     ) -> Runner[ResultT]:
-        """Return a callable of frames that keeps state."""
+        """Return a callable of frames that keeps state, or goes on with that of another."""
 
     def frames(self, seed: int = ..., report: Report | None = ...) -> Iterator[Frame]:
         """Return the frames of the pipeline's own source."""
@@ -146,11 +147,12 @@ class LiveRun(Generic[ResultT]):
         else:
             self.swap(self._pipeline)
 
-    def swap(self, pipeline: Runnable[ResultT], tried_on: Iterable[Frame] = ()) -> None:
+    def swap(self, pipeline: Runnable[ResultT], tried_on: Iterable[Frame] = ()) -> tuple[str, ...]:
         """Run another pipeline from the next frame on, over the same source.
 
-        It is made ready in the caller's thread, so that no frame waits for that. Its stateful steps
-        start anew.
+        It is made ready in the caller's thread, so that no frame waits for that. A node that keeps
+        something goes on with it where the pipeline before has an equal one: of the same step,
+        settings and guard, that reads the same.
 
         Parameters
         ----------
@@ -158,19 +160,27 @@ class LiveRun(Generic[ResultT]):
         tried_on : iterable of Frame, optional
             Frames that it is run on before, with a state of their own: kernels are then compiled
             when the first frame comes. Not for pipelines that write.
+
+        Returns
+        -------
+        tuple of str
+            Nodes that keep something and begin anew.
         """
         if frames := list(tried_on):
             trial = pipeline.runner(self._only, self._seed)
             for frame in frames:
                 trial(frame)
-        ready = self._made_ready(pipeline)
+        ready = self._made_ready(pipeline, self._ready.runner)
         self._pipeline = pipeline
         self._ready = ready
+        return ready.runner.anew
 
-    def _made_ready(self, pipeline: Runnable[ResultT]) -> Ready[ResultT]:
+    def _made_ready(
+        self, pipeline: Runnable[ResultT], after: Runner[ResultT] | None = None
+    ) -> Ready[ResultT]:
         deadline_us = self._asked_us or pipeline.deadline_us
         deadline = None if deadline_us is None else Deadline(self._clock)
-        runner = pipeline.runner(self._only, self._seed, decider=deadline)
+        runner = pipeline.runner(self._only, self._seed, decider=deadline, after=after)
         return Ready(runner, deadline, deadline_us)
 
     def pause(self) -> None:

@@ -16,6 +16,11 @@ from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
 
+MOST_READ = 16_384
+"""Frames of a portion that a worker reads itself: so many lines are sent back at once."""
+SHORTEST = 8
+"""Times that the last portions may be shorter than the others, for all workers to end together."""
+
 
 def ranges_of(source: Source | None) -> Ranges | None:
     """Return what reads a source's frames in any order; None if nothing does."""
@@ -76,7 +81,7 @@ class Feed:
         self._in_stacks = in_stacks and high is None
         self.start = low
         self._stop = high
-        self.size = PortionSize()
+        self.size = PortionSize() if ranges is None else PortionSize(MOST_READ)
         self._begun: Iterator[Portion] | None = None
         if ranges is not None:
             n = ranges.n_frames
@@ -122,7 +127,8 @@ class Feed:
 
     def _whole_chunks(self, low: int, stop: int, n_workers: int, together: int) -> int:
         """Return how long a portion is: of whole chunks, and shorter towards the end."""
-        size = min(self.size.n_frames, max(1, (stop - low) // (2 * n_workers)))
+        usual = self.size.n_frames
+        size = min(usual, max(1, usual // SHORTEST, (stop - low) // (2 * n_workers)))
         if size < together:
             return min(size, together - low % together)
         return (low + size) // together * together - low

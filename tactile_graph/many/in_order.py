@@ -86,9 +86,7 @@ class InOrder(Generic[Done]):
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._opened is not None:
-            self._opened.end()
-            self._opened = None
+        self._end()
 
     def results(self, portions: Iterator[Portion]) -> Iterator[tuple[Portion, Done]]:
         """Yield each portion and what it came to, in order; errors of the work are raised.
@@ -109,8 +107,8 @@ class InOrder(Generic[Done]):
 
     def drop(self) -> None:
         """Forget the portions under way: others are to come in their place."""
-        while self._under:
-            self._under.pop().future.cancel()
+        self._under.clear()
+        self._end()
 
     # -- what becomes of a portion -------------------------------------------------------------
 
@@ -118,6 +116,16 @@ class InOrder(Generic[Done]):
         if self._opened is None:
             self._opened = self._place.opened()
         return self._opened
+
+    def _end(self) -> None:
+        """End the executor and whatever it is at; another is opened when there is more to do.
+
+        Nothing that it was given is cancelled one by one: a process pool of Python 3.11 in which
+        a worker dies right after that never says what became of the rest.
+        """
+        if self._opened is not None:
+            self._opened.end()
+            self._opened = None
 
     def _submitted(self, portion: Portion, n_deaths: int = 0) -> _Under:
         portion = portion.leaving_out(self._without)
@@ -147,8 +155,7 @@ class InOrder(Generic[Done]):
         opened = self._at_work()
         broken = isinstance(death, BrokenExecutor)
         if broken:
-            opened.end()
-            self._opened = None
+            self._end()
         for under in self._under:
             if (broken and not _has_result(under.future)) or _died(under.future, opened.died):
                 again = self._submitted(under.portion, under.n_deaths + 1)
@@ -159,8 +166,7 @@ class InOrder(Generic[Done]):
 
     def _alone(self, under: _Under) -> Done:
         """Return what a portion comes to with no other beside it, so that nobody else can die."""
-        for other in list(self._under)[1:]:
-            other.future.cancel()
+        self._end()
         result = self._blameless(under)
         for other in list(self._under)[1:]:
             if not _has_result(other.future):
@@ -214,8 +220,7 @@ class InOrder(Generic[Done]):
                 self.n_deaths += 1
                 self._why = str(death)
                 if isinstance(death, BrokenExecutor):
-                    self._at_work().end()
-                    self._opened = None
+                    self._end()
                 return False, None
 
 

@@ -8,7 +8,6 @@ import signal
 import sys
 import threading
 from concurrent.futures import ProcessPoolExecutor
-from importlib.util import find_spec
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 
@@ -16,8 +15,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 from tactile_graph.plugins.registry import restrict, selected
 
-WANTED = ("tactile_graph.cli.many.job", "numba")
-"""What workers need before long, whether this process does or not."""
+FORKED = "tactile_graph.many.forked"
 
 
 def opened(address: str, n_workers: int | None) -> Opened:
@@ -44,31 +42,12 @@ def opened(address: str, n_workers: int | None) -> Opened:
     return Opened(pool, n, end)
 
 
-def hurry() -> None:
-    """Begin to get ready what workers are forked from, while this process gets ready itself."""
-    if _context().get_start_method() == "forkserver":
-        from multiprocessing.forkserver import ensure_running
-
-        ensure_running()
-
-
 def _context() -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_imported())
+    context.set_forkserver_preload([FORKED])  # unless the command line has begun it already
     return context
-
-
-def _imported() -> list[str]:
-    """Return what this process has imported, for workers to be forked from one that has it too.
-
-    That process runs no threads. Of other packages it imports the outermost module only.
-    """
-    names = [n for n in sys.modules if n.startswith("tactile_graph") and n != "tactile_graph.cli"]
-    names += [n for n in WANTED if find_spec(n) is not None]
-    others = {n.partition(".")[0] for n in sys.modules} - sys.stdlib_module_names
-    return names + sorted(n for n in others if n.isidentifier() and not n.startswith("_"))
 
 
 def _begin(lifeline: Connection, selection: str) -> None:

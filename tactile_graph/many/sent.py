@@ -23,19 +23,24 @@ MOST_BYTES = 4_000_000
 class PortionSize:
     """How many frames a portion should hold.
 
+    Parameters
+    ----------
+    most : int, optional
+
     Attributes
     ----------
     n_frames : int
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = MOST) -> None:
         self.n_frames = FIRST
+        self._most = most
 
     def took(self, n_frames: int, seconds: float) -> None:
         """Learn from how long a portion took how long the next ones should be."""
         if n_frames > 0 and seconds > 0.0:
             wanted = int(GOAL_S * n_frames / seconds)
-            self.n_frames = max(1, min(wanted, GROWTH * max(n_frames, FIRST), MOST))
+            self.n_frames = max(1, min(wanted, GROWTH * max(n_frames, FIRST), self._most))
 
 
 def sent(

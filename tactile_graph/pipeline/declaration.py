@@ -11,7 +11,8 @@ from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
 from tactile_graph.pipeline.document import Document, Path
 
 TOP_KEYS = (
-    "pipeline", "about", "evolves", "source", "deadline_us", "conditions", "nodes", "outputs",
+    "pipeline", "about", "evolves", "source", "deadline_us", "isolated", "conditions", "nodes",
+    "outputs",
 )  # fmt: skip
 NODE_KEYS = (
     "step", "use", "first_of", "in", "with", "free", "when", "each", "time_limit_s", "isolated",
@@ -52,7 +53,7 @@ class NodeDeclaration:
     when: str | None = None
     each: bool = False
     time_limit_s: float | None = None
-    isolated: bool = False
+    isolated: bool | None = None
 
 
 @dataclass
@@ -66,6 +67,7 @@ class Declaration:
     source_step: str | None = None
     source_settings: dict[str, Any] = field(default_factory=dict)
     deadline_us: float | None = None
+    isolated: list[str] = field(default_factory=list)
     conditions: dict[str, str] = field(default_factory=dict)
     nodes: dict[str, NodeDeclaration] = field(default_factory=dict)
     outputs: list[str] = field(default_factory=list)
@@ -157,10 +159,24 @@ class _Declarer:
         self.result.evolves = self.text(data, "evolves", what="'evolves'")
         self.source(data.get("source"))
         self.result.deadline_us = self.above_0(data, "deadline_us", what="'deadline_us'")
+        self.isolated(data.get("isolated"))
         self.conditions(data.get("conditions"))
         self.nodes(data.get("nodes"))
         self.outputs(data)
         return self.result
+
+    def isolated(self, data: Any) -> None:
+        if data is None:
+            return
+        wanted = "'isolated' must be a list of steps, or of plugins as plugin.*"
+        if not isinstance(data, list):
+            self.problem(f"{wanted}, got {kind_of(data)}", "isolated")
+            return
+        for i, name in enumerate(data):
+            if isinstance(name, str) and name:
+                self.result.isolated.append(name)
+            else:
+                self.problem(f"{wanted}, got {kind_of(name)}", "isolated", i)
 
     def source(self, data: Any) -> None:
         if data is None:
@@ -270,7 +286,8 @@ class _Declarer:
         given = {"when": self.document.spelled(*path, "when")} if isinstance(when, bool) else body
         node.when = self.text(given, "when", *path, what=f"{what}, 'when'") or None
         node.each = self.yes_or_no(body, "each", path, what)
-        node.isolated = self.yes_or_no(body, "isolated", path, what)
+        if body.get("isolated") is not None:
+            node.isolated = self.yes_or_no(body, "isolated", path, what)
         limit = "time_limit_s"
         node.time_limit_s = self.above_0(body, limit, *path, what=f"{what}, {limit!r}")
         for key in OF_STEPS if "step" not in body else ():

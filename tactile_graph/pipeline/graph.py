@@ -67,9 +67,18 @@ class Facts:
 
 @dataclass(frozen=True)
 class Isolation:
-    """That a step runs in a process of its own, and how long it may take there; None: ever."""
+    """That a step runs in another process, and how long it may take there.
+
+    Parameters
+    ----------
+    time_limit_s : float or None
+        As long as it likes if None.
+    process : str
+        Nodes of the same name here share a process; of "" each has its own.
+    """
 
     time_limit_s: float | None = None
+    process: str = ""
 
 
 @dataclass(frozen=True, eq=False)

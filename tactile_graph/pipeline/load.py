@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import shorten
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean
@@ -58,7 +60,17 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
     UsageError
         If there is none; says what is near.
     """
+    if not isinstance(name, str | os.PathLike):
+        raise UsageError(
+            f"a pipeline's name or file is needed, got {type(name).__name__}; loads() takes a"
+            " pipeline's YAML as text, and yaml.safe_dump() makes that of a dict"
+        )
     text = str(name)
+    if "\n" in text:
+        raise UsageError(
+            f"a pipeline's name or file is needed, got {len(text.splitlines())} lines of text,"
+            f" {shorten(text, 40)!r}; loads() takes a pipeline's YAML as text"
+        )
     if isinstance(name, Path) or text.endswith((".yaml", ".yml")) or "/" in text:
         path = Path(name)
         if _is_file(path):

@@ -26,12 +26,12 @@ from tactile_graph.pipeline.graph import (
     FRAME,
     FrameRule,
     Graph,
-    Isolation,
     Node,
     NodeKind,
     Source,
     node_key,
 )  # fmt: skip
+from tactile_graph.pipeline.isolation import check_isolated, isolation_of
 from tactile_graph.pipeline.order import resolvable_order
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
@@ -77,6 +77,7 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         uses[declared.use] -= 1
         to_come = uses[declared.use] * (len(scope.nodes) - n_before) if declared.use else 0
         _refuse_too_many(scope, declared, len(scope.nodes) + to_come)
+    check_isolated(scope)
     check_conditions(scope)
     check_fields_read(scope)
     check_overrides(scope)
@@ -206,7 +207,8 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     )  # fmt: skip
     node = Node(
         declared.name, NodeKind.STEP, output, scope.mark(declared), signature, settings, inputs,
-        guard=guard, each=declared.each, key=key, isolation=_isolation(declared),
+        guard=guard, each=declared.each, key=key,
+        isolation=isolation_of(scope, declared, signature),
         facts=output_facts(signature, settings, inputs, scope.facts, guard),
     )  # fmt: skip
     given = scope.given(declared)
@@ -214,11 +216,6 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     if len(scope.document.problems) == before and signature.kind is Kind.CLASS:
         node = _made(scope, declared, node)
     scope.add(node)
-
-
-def _isolation(declared: NodeDeclaration) -> Isolation | None:
-    alone = declared.isolated or declared.time_limit_s is not None
-    return Isolation(declared.time_limit_s) if alone else None
 
 
 def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:

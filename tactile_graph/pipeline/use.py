@@ -19,6 +19,7 @@ from tactile_graph.pipeline.embed import (
 from tactile_graph.pipeline.facts import embedded_rules, limited, ref_facts, where_reached
 from tactile_graph.pipeline.free import free_of_use
 from tactile_graph.pipeline.graph import FRAME, Graph, node_key
+from tactile_graph.pipeline.isolation import isolated_within
 from tactile_graph.pipeline.scope import Scope
 
 
@@ -118,6 +119,7 @@ def _check_given(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embe
 
 def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
     node, troubles = map_node(inner, at)
+    node = isolated_within(scope, node)
     for trouble in troubles:
         scope.problem(declared, f": {trouble}", "in")
     key = node_key("map", inner.key, *_read_keys(scope, at), scope.guard_key(at.guard))
@@ -134,7 +136,7 @@ def _inline(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding
         scope.problem(declared, f": {trouble}", "in")
     for node in nodes:
         key = node_key("in", node.key, *_read_keys(scope, at), scope.guard_key(node.guard))
-        scope.add(replace(node, key=key))
+        scope.add(replace(isolated_within(scope, node), key=key))
 
 
 def _read_keys(scope: Scope, at: Embedding) -> list[object]:

@@ -81,6 +81,14 @@ def tactile_graph_readers() -> Mapping[str, str]:  # type: ignore[empty-body]
     """
 
 
+@hook(Answer((int, float, type(None)), "the seconds a call may take, or None, is needed", False))
+def tactile_graph_isolated() -> Mapping[str, float | None]:  # type: ignore[empty-body]
+    """Step of this plugin that runs in a process apart -> seconds a call may take; None for ever.
+
+    All that are named share one process. A node that says ``isolated: false`` stays out of it.
+    """
+
+
 @hook(FILE)
 def tactile_graph_pipelines() -> Mapping[str, Path]:  # type: ignore[empty-body]
     """Pipeline name -> its YAML file."""

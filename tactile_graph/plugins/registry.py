@@ -143,6 +143,10 @@ class Registry:
         with foreign_code(plugin.name, plugin.label):
             for kind in self._hooks:
                 plugin.offers[kind] = self._ask(module, kind)
+        for name in plugin.offers["isolated"]:
+            if name not in plugin.offers["steps"]:
+                hint = did_you_mean(name, plugin.offers["steps"])
+                raise PluginError(f"hook {GROUP}_isolated: it has no step {name!r}{hint}")
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")

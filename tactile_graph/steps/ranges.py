@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 
 
 class Irregular(Exception):  # noqa: N818 -- what the frames are
@@ -28,11 +29,14 @@ class Ranges(NamedTuple):
         itself would have given them. It raises `Irregular` where it cannot be sure to.
     together : int
         How many frames are best read together: those of a chunk.
+    read_in_stacks : callable, optional
+        As ``read``; it may yield a `FrameStack` for many frames.
     """
 
     recordings: tuple[int, ...]
     read: Callable[[int, int], Iterator[Frame]]
     together: int = 1
+    read_in_stacks: Callable[[int, int], Iterator[Frame | FrameStack]] | None = None
 
     @property
     def n_frames(self) -> int:

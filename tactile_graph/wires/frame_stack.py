@@ -66,6 +66,21 @@ class FrameStack(Stack):
         """Return the images, or the frames' numbers."""
         return {"image": self.images, "index": Column(self.index)}.get(name)
 
+    @classmethod
+    def joined(cls, stacks: Sequence[FrameStack]) -> FrameStack:
+        """Return stacks on one grid, of which the frames say no more than their times, as one."""
+        first = stacks[0]
+        if len(stacks) == 1:
+            return first
+        images = first.images
+        values = np.concatenate([stack.images.values for stack in stacks])
+        times_s = [stack.time_s for stack in stacks if stack.time_s is not None]
+        return cls(
+            ImageStack(values, images.pitch_cm, images.origin_cm, images.quantity),
+            np.concatenate([stack.index for stack in stacks]),
+            np.concatenate(times_s) if times_s else None,
+        )
+
     def numbered(self, first: int) -> FrameStack:
         """Return the same frames, numbered from ``first`` on."""
         index = np.arange(first, first + len(self))

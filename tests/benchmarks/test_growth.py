@@ -68,9 +68,9 @@ def test_scenes_press_the_pad_within_its_rim(scene: str, side: int) -> None:
 def test_a_step_is_timed_and_one_that_takes_too_long_is_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = list(points_of("threshold", ["many"], [16, 32], Bounds(2.0)))
+    found = list(points_of("threshold", "many", [16, 32], Bounds(2.0)))
     assert [(p.side, bool(p.rounds_s), p.told) for p in found] == [(16, True, ""), (32, True, "")]
     monkeypatch.setattr(timing, "FIRST_S", 0.2)
-    (over,) = points_of("posterior", ["grown"], [128, 256], Bounds(0.1))
+    (over,) = points_of("posterior", "grown", [128, 256], Bounds(0.1))
     assert (over.side, over.rounds_s) == (128, ())
     assert over.told == "over 0.2 s, compiling counted"

@@ -55,6 +55,15 @@ def test_every_check_shown_names_options_and_files_that_are_there() -> None:
     ] == []
 
 
+def test_the_tests_in_a_browser_are_named_and_what_they_need_is_an_extra() -> None:
+    (line,) = block("sh browser").splitlines()
+    assert (ROOT / shlex.split(line, comments=True)[-1]).is_dir()
+    extras = project()["optional-dependencies"]
+    assert any(need.startswith("playwright") for need in extras["browser"])
+    assert any("browser" in need for need in extras["dev"])
+    assert not any("playwright" in need for need in project()["dependencies"])
+
+
 def test_every_path_the_text_names_is_there() -> None:
     named = re.findall(
         r"`((?:plugins|pipelines|tests|benchmarks)/[\w/.-]*)`", PAGE.read_text("utf-8")

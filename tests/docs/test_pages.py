@@ -186,6 +186,8 @@ def test_the_plugin_shown_is_one() -> None:
     assert [(f.index, f.time_s, f.image.peak) for f in frames] == [
         (k, 0.01 * k, k) for k in range(3)
     ]
+    (isolated,) = [s["tactile_graph_isolated"] for s in spaces if "tactile_graph_isolated" in s]
+    assert isolated().keys() <= spaces[0]["tactile_graph_steps"]().keys()
     assert set(spaces[4]["alone"].times_us) < set(spaces[4]["both"].times_us)
 
 

@@ -66,7 +66,11 @@ def learn(
     asked = Given(opened, measuring_output(opened, only), seed)
     place = place_for(workers, on, opened.runner([asked.output], seed).plan)
     report = Report()
-    read = _read(opened, asked, span, place, report)
+    try:
+        read = _read(opened, asked, span, place, report)
+    except KeyboardInterrupt:
+        say("nothing was learned: all readings are, or none", err=True)
+        raise
     if not read.rows:
         why = "; ".join(f"{n} frames: {what}" for what, n in read.left_out.most_common(3))
         raise UsageError(f"nothing to learn: no frame gave a reading ({why or 'no frames'})")

@@ -20,6 +20,7 @@ SHOWS = 4.0
 """Standard deviations of noise above zero from which on a reading is one."""
 
 
+TINY = float(np.finfo(np.float64).tiny)
 MOST_RISE = 1e6
 """Rise that is told of a frame without noise."""
 
@@ -66,7 +67,7 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
         known = its.good if known is None else its.good & known
     readings = values.ravel() if known is None else values[known]
     noise = frame_noise(readings) if readings.size else FrameNoise(0.0, 0.0, 0.0)
-    least: float | Values = max(deviations * noise.sigma, 0.5 * noise.step)
+    least: float | Values = float(max(deviations * noise.sigma, 0.5 * noise.step))
     if its is not None and its.noise is not None:
         least = np.maximum(deviations * its.noise, max(its.least, 0.5 * noise.step))
     above = values - noise.zero
@@ -138,8 +139,11 @@ class AboveNoise:
         """
         found = risen(image, self._pad, self._deviations)
         mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
+        if isinstance(found.least, float):
+            most = float(found.above[found.shows].max()) if mask.count else 0.0
+            rise = most / max(found.least, TINY)
+            return Showing(mask, found.zero + found.least, min(rise, MOST_RISE))
         level = found.zero + float(np.max(found.least))
-        least = np.broadcast_to(np.asarray(found.least), found.above.shape)[found.shows]
         with np.errstate(over="ignore"):
-            rises = found.above[found.shows] / np.maximum(least, np.finfo(np.float64).tiny)
+            rises = found.above[found.shows] / np.maximum(found.least[found.shows], TINY)
         return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE))

@@ -9,8 +9,8 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from annotated_types import Len
 
-from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
@@ -94,15 +94,7 @@ class Locate:
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""
-        tops: dict[str, dict[str, Likeliest]] = {}
-        reason = Degenerate("none of the shapes explains what is touched")
-        for name, any_pad in self._every.items():
-            try:
-                tops[name] = any_pad.tops(readings)
-            except Degenerate as why:
-                reason = why
-        if not tops:
-            raise reason
+        tops = tops_of_each(self._every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance

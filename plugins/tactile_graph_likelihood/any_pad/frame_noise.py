@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from tactile_graph_likelihood.geometry.outlines import Values
 
 UNTOUCHED = 0.25
@@ -54,16 +52,17 @@ def frame_noise(readings: Values) -> FrameNoise:
     The zero is the middle of the shortest stretch that holds a quarter of the readings; the noise
     is what lies below it, and the stretch's own width.
     """
-    values = np.sort(readings[:: max(len(readings) // MOST, 1)])
+    values = readings[:: max(len(readings) // MOST, 1)].copy()
+    values.sort()
     n = len(values)
-    steps = np.diff(values)
+    steps = values[1:] - values[:-1]
     steps = steps[steps > 0.0]
     step = float(steps.min()) if len(steps) else 0.0
     many = max(int(UNTOUCHED * n), 1)
     widths = values[many - 1 :] - values[: n - many + 1]
     at = int(widths.argmin())
     zero = 0.5 * float(values[at] + values[at + many - 1])
-    below = zero - values[: int(np.searchsorted(values, zero))]
+    below = zero - values[: int(values.searchsorted(zero))]
     if len(below) < FEWEST:
         return FrameNoise(zero, 0.0, step)
     return FrameNoise(zero, max(math.sqrt(below @ below / len(below)), widths[at] / WIDTH), step)

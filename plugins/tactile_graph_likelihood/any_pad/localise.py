@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +20,12 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     variance_inflation,
 )
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unexplained
-from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
+from tactile_graph_likelihood.any_pad.posterior import (
+    HIDDEN,
+    on_any_pad,
+    stretched,
+)
+from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
@@ -38,9 +43,17 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
-LEANS, FALLS, ALIKE = 1.0, 0.4, 2.5
-"""Patterns that an even face leaves over, in standard deviations, from which on another pressure is
-worth its time."""
+
+class Pattern(NamedTuple):
+    """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
+
+    lean: float
+    fall: float
+    alike: float
+
+
+FAINT, CLEAR = Pattern(1.0, 0.4, 2.5), Pattern(1.5, 1.5, 2.5)
+"""Patterns from which on another pressure is worth its time, and where a quick answer will do."""
 
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
@@ -50,8 +63,8 @@ PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
 PATTERN = 3.0
-"""Pattern left over from which on an outline on a large pad, where no pressure is looked at, is not
-taken to press evenly."""
+"""Pattern left over from which on an outline is not taken to press evenly where no pressure is
+looked at: on a large pad, and where a quick answer will do."""
 
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
@@ -74,6 +87,10 @@ class AnyPad:
         An outline on the pad as told: the middle of every guess.
     law : float
         As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
+    quick : bool
+        Whether no fit is sampled: each stands for itself as a normal distribution, an even face's
+        with the law's exponent, and other pressures are looked at where the pattern is clear. A
+        fainter one widens the posterior. On small pads only.
 
     Notes
     -----
@@ -86,9 +103,10 @@ class AnyPad:
 
     told: Model
     law: float = LAW
+    quick: bool = False
 
     @classmethod
-    def of(cls, settings: FootprintSettings, kind: int) -> AnyPad:
+    def of(cls, settings: FootprintSettings, kind: int, quick: bool = False) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
         sigma, voids = told.noise.sigma, told.noise.voids
@@ -98,15 +116,20 @@ class AnyPad:
             sigma = unevenness_left(settings.known_pad, sigma)
         evened = sigma < told.noise.sigma
         noise = replace(told.noise, sigma=sigma, voids=voids)
-        return cls(replace(told, noise=noise), 0.0 if evened else LAW)
+        return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick)
 
     @cached_property
-    def _fits(self) -> dict[str, Model]:
-        """By pressure, the models that estimate sigma and voids with the outline."""
-        return {
-            name: self._search(self.told.noise, *([] if name == EVEN else [name]), "sigma", "voids")
-            for name in PRESSURES
-        }
+    def _kept(self) -> dict[str, Model]:
+        return {}
+
+    def _fit(self, pressure: str) -> Model:
+        """Return the model that estimates sigma and voids with the outline, under a pressure."""
+        found = self._kept.get(pressure)
+        if found is None:
+            own = ["contrast"] if self.quick else []
+            parts = own if pressure == EVEN else [pressure]
+            found = self._kept[pressure] = self._search(self.told.noise, *parts, "sigma", "voids")
+        return found
 
     @cached_property
     def _count(self) -> int:
@@ -144,27 +167,71 @@ class AnyPad:
 
     def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, the even face's first."""
-        large = readings.states.size > LARGE_PAD
-        its, model = self, self._fits[EVEN]
-        even = model.likeliest(readings, start=start)
+        even = self._fit(EVEN).likeliest(readings, start=start)
+        return self.completed(readings, even, start is None)
+
+    def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
+        """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
+        return self._fit(EVEN).likeliest_near(readings, point)
+
+    def searched(self, readings: Readings, near: Likeliest | None = None) -> Likeliest:
+        """Return the same after all attempts that are worth their time."""
+        model = self._fit(EVEN)
+        if near is not None:
+            return model.likeliest(readings, before=near, anew=True)
+        even = model.likeliest(readings)
+        return model.likeliest(readings, before=even) if even.unsure else even
+
+    def strays(self, readings: Readings, even: Likeliest) -> float:
+        """Return the share of strays beyond an outline, 0 unless it is far more than told."""
+        found = strays_beyond(self.told, readings, self.told.point_of(even))
+        return found if found > MANY * self.told.noise.strays else 0.0
+
+    def knowing(self, strays: float) -> AnyPad:
+        """Return fits that are told of so many strays."""
+        return replace(self, told=replace(self.told, noise=replace(self.told.noise, strays=strays)))
+
+    def again(self, readings: Readings, even: Likeliest) -> Likeliest:
+        """Return what is likelier, near an outline and elsewhere, now that strays are known."""
+        near = self.near(readings, self.told.point_of(even))
+        if readings.states.size > LARGE_PAD and not near.unsure:
+            return near
+        return self._fit(EVEN).likeliest(readings, before=near)
+
+    def completed(
+        self, readings: Readings, even: Likeliest, anywhere: bool = True
+    ) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, once one is found of an even face.
+
+        Parameters
+        ----------
+        readings : Readings
+        even : Likeliest
+            By one attempt.
+        anywhere : bool
+            Whether the outline may be another clump's than it was found at.
+
+        Raises
+        ------
+        Degenerate
+            If no outline of this kind is possible.
+        """
+        large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
         if even.unsure and not large:
             even = model.likeliest(readings, before=even)
-        if start is None and readings.touched <= FEW:
+        if anywhere and readings.touched <= FEW:
             even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
-        point = self.told.point_of(even)
-        strays = strays_beyond(self.told, readings, point)
-        if strays > MANY * self.told.noise.strays:
-            noise = replace(self.told.noise, strays=strays)
-            its = replace(self, told=replace(self.told, noise=noise))
-            model = its._fits[EVEN]
-            even = model.likeliest_near(readings, point)
-        if even.unsure if large else its is not self:
+        its = self
+        if strays := self.strays(readings, even):
+            its = self.knowing(strays)
+            even = its.again(readings, even)
+        elif large and even.unsure:
             even = model.likeliest(readings, before=even)
         found = {EVEN: even}
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
-        for part in [] if large or hidden else asked_by(even.fit):
+        for part in [] if large or hidden else asked_by(even.fit, CLEAR if self.quick else FAINT):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
@@ -172,7 +239,7 @@ class AnyPad:
 
     def _by_clump(self, readings: Readings, found: Likeliest) -> Likeliest:
         """Return a likelier outline around what hangs together, where some elements lie apart."""
-        clump, model = clump_of(readings), self._fits[EVEN]
+        clump, model = clump_of(readings), self._fit(EVEN)
         if clump is None:
             return found
         begin = model.likeliest(clump)
@@ -183,10 +250,10 @@ class AnyPad:
 
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
         n, p = self._count, self.told.point_of(even)
-        begin = np.concatenate([p[:n], PRESSURES[part], p[n:]])
+        begin = np.concatenate([p[:n], PRESSURES[part], p[-2:]])
         if part == "fall":
             begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
-        return self._fits[part].likeliest_near(readings, begin)
+        return self._fit(part).likeliest_near(readings, begin)
 
     def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
         """Return the posterior around the most likely outlines, over all pressures."""
@@ -203,20 +270,46 @@ class AnyPad:
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         elif best != EVEN:
             its = replace(its, pressures={best: 1.0})
-        inflation = variance_inflation(its.neighbours, readings.touched)
         total = sum(shares.values())
-        inflation *= 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
-        pitch = float(readings.grid[2])
+        pressed = 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
-        its = on_any_pad(its, evidence, inflation, self.told.noise.sigma * pitch**1.5)
-        if readings.states.size > LARGE_PAD and its.alike > PATTERN:
-            its = unexplained(its, pitch)
+        hidden = self._hidden(its.alike, readings, len(tops))
+        return self._on_any_pad(its, readings, evidence, pressed, hidden)
+
+    def _hidden(self, alike: float, readings: Readings, n_looked_at: int) -> float:
+        """Return the variance in cm^2 of lengths that a pattern hides where it is not looked into.
+
+        Parameters
+        ----------
+        alike : float
+            As of the posterior.
+        readings : Readings
+        n_looked_at : int
+            Pressures, the even one counted.
+        """
+        if self.quick:
+            left = hidden_by(alike, readings) if n_looked_at == 1 else 0.0
+            return left + looseness(readings)
+        large = readings.states.size > LARGE_PAD
+        return hidden_by(PATTERN, readings) if large and alike > PATTERN else 0.0
+
+    def _on_any_pad(
+        self, its: Posterior, readings: Readings, evidence: float, pressed: float, hidden: float
+    ) -> Posterior:
+        """Return a posterior widened by what neighbours share, and by what a pattern may hide.
+
+        ``pressed`` is a factor on its variance, ``hidden`` a variance in cm^2 of its lengths.
+        """
+        unevenness = self.told.noise.sigma * float(readings.grid[2]) ** 1.5
+        inflation = pressed * variance_inflation(its.neighbours, readings.touched)
+        its = on_any_pad(its, evidence, inflation, unevenness, hidden)
         if readings.stretch == 1.0:
             return its
         return stretched(its, float(readings.grid[1]), readings.stretch)
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
-        return self.told.normal_around(top, self._count + len(PRESSURES[part]))
+        own = int(self.quick) if part == EVEN else len(PRESSURES[part])
+        return self.told.normal_around(top, self._count + own)
 
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
@@ -225,7 +318,7 @@ class AnyPad:
         taken whose points are worth fewer than there are unknowns, as where strays explain all
         there is, unless it promises less than a normal distribution around the top.
         """
-        if part == EVEN or self.told.kind == DISC:
+        if not self.quick and (part == EVEN or self.told.kind == DISC):
             try:
                 found = self._sampled(part, readings, top)
             except Degenerate:
@@ -251,10 +344,10 @@ class AnyPad:
         return model.posterior_around(readings, mode, loose)
 
 
-def asked_by(fit: GoodnessOfFit) -> list[str]:
+def asked_by(fit: GoodnessOfFit, least: Pattern) -> list[str]:
     """Return which pressures may explain what an even face leaves over."""
-    fall, alike = fit.fall >= FALLS, fit.neighbours >= ALIKE
-    asked = {"lean": fit.lean >= LEANS, "fall": fall, "foam": fall or alike}
+    fall, alike = fit.fall >= least.fall, fit.neighbours >= least.alike
+    asked = {"lean": fit.lean >= least.lean, "fall": fall, "foam": fall or alike}
     return [part for part in FIRST if asked[part]]
 
 
@@ -272,6 +365,15 @@ def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float
     if len(tops) > 1:
         before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
+
+
+def hidden_by(pattern: float, readings: Readings) -> float:
+    """Return the variance in cm^2 of an edge that pressure may move where a pattern is left over.
+
+    It grows with the pattern until that is `PATTERN`.
+    """
+    share = min(max(pattern / PATTERN, 0.0), 1.0)
+    return (share * HIDDEN * float(readings.grid[2])) ** 2
 
 
 def looseness(readings: Readings) -> float:

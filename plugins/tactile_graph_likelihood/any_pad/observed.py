@@ -93,7 +93,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     law = image.quantity in ("volt", "siemens", "gram")
     edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if law else -math.inf)
     logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, LEAST)), edge))
-    states = np.where(shows, ON, UNDER).astype(np.uint8)
+    states = np.where(shows, np.uint8(ON), np.uint8(UNDER))
     states[~known] = UNKNOWN
     ceiling = ceiling_of(logs[shows])
     if ceiling < math.inf:
@@ -111,21 +111,22 @@ def _loads(
 ) -> tuple[Values, Values, np.ndarray]:
     """Return loads, the load that each element would have shown as ``least``, and what is possible.
 
-    What has no law is its own load; so are volts that are not the circuit's.
+    The second has one row where columns are alike. What has no law is its own load; so are volts
+    that are not the circuit's.
     """
     every = np.ones(above.shape, np.bool_)
     if quantity not in ("volt", "siemens"):
-        return above, np.broadcast_to(least, above.shape), every
+        return above, np.atleast_2d(least), every
     siemens, valid, from_s = above, every, least
     if quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
         possible = np.count_nonzero(found.valid & (above > 0.0))
         if found.residual > MISFIT or 2 * possible < np.count_nonzero(above):
-            return above, np.broadcast_to(least, above.shape), every
+            return above, np.atleast_2d(least), every
         siemens, valid = np.where(found.valid, found.siemens, 0.0), found.valid
         from_s = least * _siemens_per_volt(siemens, above)
     loads = pad.law.load_of(siemens)
-    least_loads = pad.law.load_of(np.array(np.broadcast_to(from_s, above.shape)))
+    least_loads = pad.law.load_of(np.atleast_2d(from_s))  # a row where columns are alike
     return loads, least_loads, valid & np.isfinite(loads)
 
 

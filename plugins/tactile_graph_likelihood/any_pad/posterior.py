@@ -7,14 +7,15 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
-from tactile_graph_likelihood.single.posterior import UNLIKELY, Posterior, normal_reach
+from tactile_graph_likelihood.single.posterior import Posterior, normal_reach
 
 USUAL, ALONG = 0.36, 1.25
 """Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that
 of an outline with two sizes is, whose ends are short."""
 
-VAGUE = 2.5
-"""Times the usual deviation from which on an answer counts as vague."""
+VAGUE, STRANGE = 3.5, -6.0
+"""Times the usual deviation from which on an answer counts as vague, and the surprise from which on
+readings count as none of the model's: above it they are those of good answers beside strays."""
 
 
 HIDDEN = 0.25
@@ -60,15 +61,19 @@ class AnyPadPosterior(Posterior):
 
         They do not where they are less likely than the model's own, whatever is estimated with the
         outline; where strays on a bare pad explain them as well; or where the centre's deviation is
-        two and a half times the usual one.
+        three and a half times the usual one.
         """
-        if self.surprise <= UNLIKELY or self.log_evidence <= 0.0:
+        if self.surprise <= STRANGE or self.log_evidence <= 0.0:
             return False
         return self.centre_std_cm < VAGUE * self.usual_std_cm
 
 
 def on_any_pad(
-    found: Posterior, log_evidence: float, inflation: float, unevenness: float
+    found: Posterior,
+    log_evidence: float,
+    inflation: float,
+    unevenness: float,
+    hidden_cm2: float = 0.0,
 ) -> AnyPadPosterior:
     """Return a posterior with another evidence, its variance inflated, its usual deviation told.
 
@@ -80,6 +85,8 @@ def on_any_pad(
         Of its variance, at least 1.
     unevenness : float
         Standard deviation of ln gain, as told, times the pitch in cm to the power 3/2.
+    hidden_cm2 : float
+        Variance of its lengths that no fit tells of, as where a pattern of the load is left over.
     """
     size, usual = float(found.mean[2]), USUAL
     if found.kind != DISC:
@@ -89,15 +96,11 @@ def on_any_pad(
     if inflation > 1.0:
         values["covariance"] = inflation * found.covariance
         values["points"] = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    if hidden_cm2 > 0.0:
+        covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
+        covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
+        values["covariance"] = covariance
     return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
-
-
-def unexplained(found: AnyPadPosterior, pitch_cm: float) -> AnyPadPosterior:
-    """Return a posterior whose lengths may be off by what a pattern of the load hides."""
-    lengths = 2 + sizes.call(found.kind)
-    covariance = found.covariance.copy()
-    covariance[range(lengths), range(lengths)] += (HIDDEN * pitch_cm) ** 2
-    return replace(found, covariance=covariance)
 
 
 def stretched(found: AnyPadPosterior, top_cm: float, stretch: float) -> AnyPadPosterior:

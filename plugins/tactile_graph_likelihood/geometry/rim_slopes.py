@@ -9,7 +9,7 @@ import math
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, covered_by
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, unknowns
+from tactile_graph_likelihood.geometry.outlines import DISC, OVAL, RECTANGLE, Values, unknowns
 
 Slopes = tuple[float, float, float, float, float]
 """Along each of an outline's numbers, 0 where it has fewer."""
@@ -21,12 +21,12 @@ LEAST_SLOPE = 1e-12
 @compiled_as_is
 def has_slopes(kind: int) -> bool:
     """Return whether `covered_with_slopes` knows an outline's kind."""
-    return kind in (DISC, RECTANGLE)
+    return kind in (DISC, RECTANGLE, OVAL)
 
 
 @compiled_as_is
 def covered_with_slopes(kind: int, p: Values, grid: Values, box: Box, slopes: Values) -> Values:
-    """Return `covered.covered` of a disc or rectangle, and add its slope along each number.
+    """Return `covered.covered` of a disc, rectangle or oval, and add its slope along each number.
 
     Parameters
     ----------
@@ -64,6 +64,8 @@ def _add_slopes(
             x, y = left + j * grid[2] - p[0], top + i * grid[2] - p[1]
             if kind == DISC:
                 found = _of_disc(p[2], x, y, element, share[i, j])
+            elif kind == OVAL:
+                found = _of_oval(p, x, y, element, share[i, j])
             else:
                 found = _of_rectangle(p, x, y, element)
             for k in range(numbers):
@@ -92,6 +94,55 @@ def _within(r: float, line: float, first: float, last: float) -> float:
     """Return the length of a line, so far off the centre, within the disc, from first to last."""
     half = math.sqrt(max(r * r - line * line, 0.0))
     return max(min(last, half) - max(first, -half), 0.0)
+
+
+@compiled_as_is
+def _of_oval(p: Values, x: float, y: float, element: float, share: float) -> Slopes:
+    """Return the same of an oval.
+
+    It is the unit disc under a symmetric matrix S that is linear in its three last numbers. Where S
+    grows by D a point of the rim moves by ``D S^-1`` times its place, and by Gauss' theorem the
+    area by what that field's divergence makes of it, less what leaves by the sides within.
+    """
+    right, bottom = x + element, y + element
+    a, b, c = p[2] + p[3], -p[4], p[2] - p[3]
+    det = a * c - b * b
+    wide, high, tilt = a * a + b * b, b * b + c * c, b * (a + c)
+    l0, l1 = _chord(wide, tilt, det, x, y, bottom)
+    r0, r1 = _chord(wide, tilt, det, right, y, bottom)
+    t0, t1 = _chord(high, tilt, det, y, x, right)
+    b0, b1 = _chord(high, tilt, det, bottom, x, right)
+    at_left, at_right, at_top, at_bottom = l1 - l0, r1 - r0, t1 - t0, b1 - b0
+    area = share * element * element
+    xx = area - right * at_right + x * at_left
+    yy = area - bottom * at_bottom + y * at_top
+    xy = 0.5 * ((l1 + l0) * at_left - (r1 + r0) * at_right)
+    yx = 0.5 * ((t1 + t0) * at_top - (b1 + b0) * at_bottom)
+    by_first, by_second = (c * xx - b * xy) / det, (a * yy - b * yx) / det
+    across = (b * (xx + yy) - a * xy - c * yx) / det
+    return (
+        at_left - at_right,
+        at_top - at_bottom,
+        by_first + by_second,
+        by_first - by_second,
+        across,
+    )
+
+
+@compiled_as_is
+def _chord(
+    wide: float, tilt: float, det: float, line: float, first: float, last: float
+) -> tuple[float, float]:
+    """Return where a line, so far off the centre, enters and leaves an oval between two places.
+
+    ``wide`` is the squared half extent across the line; both are the same where it stays outside.
+    """
+    inside = wide - line * line
+    if inside <= 0.0:
+        return first, first
+    middle, half = tilt * line / wide, abs(det) * math.sqrt(inside) / wide
+    start, end = max(first, middle - half), min(last, middle + half)
+    return start, max(end, start)
 
 
 @compiled_as_is

@@ -25,7 +25,14 @@ from tactile_graph_likelihood.single.element_terms import (
     on_level,
     over_odds,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, is_plain, shares_of
+from tactile_graph_likelihood.single.load_shares import (
+    blurred,
+    foam_margin,
+    is_even,
+    passed_on,
+    press,
+    shares_of,
+)
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
@@ -148,14 +155,16 @@ def add_score(problem: Problem, score: Score, out: Information) -> None:
 
 @compiled_as_is
 def add_outer(score: Score, along: Values, out: Information) -> None:
-    """Add an element's slope and information along all that moves its load: lower half only."""
+    """Add an element's slope and information along what moves its load: lower half only.
+
+    ``along`` may leave out the last of a point's numbers.
+    """
     slope, matrix, by, weight = out.slope, out.matrix, score.load, score.load_information
     for k in range(along.shape[0]):
-        if along[k] == 0.0:
-            continue
         slope[k] += by * along[k]
+        row = weight * along[k]
         for m in range(k + 1):
-            matrix[k, m] += weight * along[k] * along[m]
+            matrix[k, m] += row * along[m]
 
 
 @compiled_as_is
@@ -180,8 +189,13 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
     rise = np.zeros((p.shape[0], box[2], box[3]))
-    if has_slopes(kind) and is_plain(noise):
+    if has_slopes(kind):
         share = covered_with_slopes(kind, p, grid, box, rise)
+        if not is_even(noise):
+            _press_with_slopes(problem, p, noise, box, share, rise)
+        if noise[FOAM] > 0.0:
+            share = blurred(share, noise[FOAM], box, rows, columns)
+            _blur(rise, first, noise[FOAM], box, rows, columns)
     else:
         share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
         steps, at = steps_of(kind, corners, p, grid), p.copy()
@@ -199,6 +213,49 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
         moved = shares_of(kind, corners, p, grid, other, box, rows, columns)
         _difference(share, moved, step, rise, first + 1 + k)
     return share, rise
+
+
+@compiled_as_is
+def _press_with_slopes(
+    problem: Problem, p: Values, noise: Values, box: Box, share: Values, rise: Values
+) -> None:
+    """Weigh coverage and its slopes, in place, by the pressure, whose own slope is differenced."""
+    kind, corners, grid, at = problem.kind, problem.corners, problem.grid, p.copy()
+    steps, pressure = steps_of(kind, corners, p, grid), np.zeros(share.shape)
+    for turn in range(unknowns(kind, corners) + 1):
+        k = turn - 1
+        if k >= 0:
+            at[k] += steps[k]
+        moved = np.zeros(share.shape)
+        for i in range(share.shape[0]):
+            for j in range(share.shape[1]):
+                moved[i, j] = 1.0 if share[i, j] > 0.0 else 0.0
+        press(kind, corners, at, grid, noise, box, moved)
+        if k < 0:
+            pressure = moved
+            continue
+        at[k] = p[k]
+        for i in range(share.shape[0]):
+            for j in range(share.shape[1]):
+                more = (moved[i, j] - pressure[i, j]) / steps[k]
+                rise[k, i, j] = rise[k, i, j] * pressure[i, j] + share[i, j] * more
+    for i in range(share.shape[0]):
+        for j in range(share.shape[1]):
+            share[i, j] *= pressure[i, j]
+
+
+@compiled_as_is
+def _blur(rise: Values, first: int, width: float, box: Box, rows: int, columns: int) -> None:
+    """Blur the slopes along an outline's numbers, in place, as foam does."""
+    plane = np.empty((box[2], box[3]))
+    for k in range(first):
+        for i in range(box[2]):
+            for j in range(box[3]):
+                plane[i, j] = rise[k, i, j]
+        spread = passed_on(plane, width, box, rows, columns)
+        for i in range(box[2]):
+            for j in range(box[3]):
+                rise[k, i, j] = spread[i, j]
 
 
 @compiled_as_is
@@ -224,8 +281,8 @@ def information(problem: Problem, p: Values, out: Information) -> None:
     -----
     With mu the logarithm of an element's expected load, a touched one adds its chance of being
     no stray over sigma**2 times the outer product of the slopes of mu, an untouched one its
-    squared score: positive whatever was read. Coverage of a disc or rectangle has its exact slope,
-    that of others is differenced over 0.02 of a pitch.
+    squared score: positive whatever was read. Coverage of a disc, rectangle or oval has its exact
+    slope, that of others is differenced over 0.02 of a pitch, as is the pressure.
     """
     kind, grid, states, logs = problem.kind, problem.grid, problem.states, problem.logs
     first, n = unknowns(kind, problem.corners), p.shape[0]
@@ -239,13 +296,15 @@ def information(problem: Problem, p: Values, out: Information) -> None:
     if box[2] <= 0 or box[3] <= 0:
         return
     share, rise = _rises(problem, p, noise, box)
-    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(n)
     row, column, load, own = box[0], box[1], p[first], noise[LEAST]
-    power, by_power = noise[CONTRAST], -1
-    sliver = SLIVER ** (1.0 / power)
+    power, by_power, moving = noise[CONTRAST], -1, first + 1
     for k in range(problem.estimated.shape[0]):
+        if problem.estimated[k] not in (SIGMA, VOIDS):
+            moving = first + 2 + k
         if problem.estimated[k] == CONTRAST:
             by_power = first + 1 + k
+    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(moving)
+    sliver = SLIVER ** (1.0 / power)
     for i in range(box[2]):
         for j in range(box[3]):
             state, its, moves = states[row + i, column + j], share[i, j], False
@@ -254,8 +313,9 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             log_share = 0.0 if its == 1.0 else math.log(its)
             log = own if state == OFF else logs[row + i, column + j]
             score = score_of(state, log, load + power * log_share, scatter)
-            for k in range(n):
-                along[k] = power * rise[k, i, j] / (max(its, sliver) if k < first else its)
+            steep, per_share = power / max(its, sliver), power / its
+            for k in range(moving):
+                along[k] = (steep if k < first else per_share) * rise[k, i, j]
                 moves = moves or along[k] != 0.0
             if moves:
                 if by_power >= 0:

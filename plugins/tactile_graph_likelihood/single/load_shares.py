@@ -56,12 +56,6 @@ def is_even(noise: Values) -> bool:
 
 
 @compiled_as_is
-def is_plain(noise: Values) -> bool:
-    """Return whether shares are coverage and nothing else."""
-    return is_even(noise) and noise[FOAM] <= 0.0
-
-
-@compiled_as_is
 def press(
     kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, shares: Values
 ) -> None:
@@ -183,18 +177,24 @@ def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> 
     nothing leaves the pad of ``rows`` x ``columns``. The window must reach 3.5 widths further than
     the outline.
     """
-    reach = math.ceil(FOAM_REACH * width) + 1
-    weights = np.empty(reach + 1)
-    for k in range(reach + 1):
-        far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
-        weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
-    turned = _blurred_down(shares, weights, box[0], rows)
-    found = _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
+    found = passed_on(shares, width, box, rows, columns)
     for i in range(found.shape[0]):
         for j in range(found.shape[1]):
             if found[i, j] < FAINT:
                 found[i, j] = 0.0
     return found
+
+
+@compiled_as_is
+def passed_on(values: Values, width: float, box: Box, rows: int, columns: int) -> Values:
+    """Return the same of any values, the faintest too."""
+    reach = math.ceil(FOAM_REACH * width) + 1
+    weights = np.empty(reach + 1)
+    for k in range(reach + 1):
+        far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
+        weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
+    turned = _blurred_down(values, weights, box[0], rows)
+    return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
 
 
 @compiled_as_is

@@ -149,14 +149,25 @@ class Model:
         return replace(found, covariance=found.covariance + normal.covariance)
 
     def likeliest(
-        self, readings: Readings, before: Likeliest | None = None, start: Start = None
+        self,
+        readings: Readings,
+        before: Likeliest | None = None,
+        start: Start = None,
+        anew: bool = False,
     ) -> Likeliest:
-        """Return the most likely outline, by one attempt, or two more after an earlier one."""
-        attempts, known = ((0, 1), None) if before is None else ((1, ATTEMPTS), before.mode)
-        return self._likeliest(readings, start, attempts, known)
+        """Return the most likely outline, by one attempt, or two more after an earlier one.
 
-    def likeliest_near(self, readings: Readings, point: Values) -> Likeliest:
-        """Return the most likely outline near a point, shape (K,), that is nearly as likely."""
+        ``anew`` says that what was found before was no attempt yet, but `likeliest_near`.
+        """
+        if before is None:
+            return self._likeliest(readings, start, (0, 1), None)
+        return self._likeliest(readings, start, (0 if anew else 1, ATTEMPTS), before.mode)
+
+    def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
+        """Return the most likely outline near a point, shape (K,), that is nearly as likely.
+
+        Without a point, near what has the moments of the touched elements.
+        """
         large = readings.states.size > LARGE_PAD
         return self._likeliest(readings, point, (0, 1) if large else (NEAR, 0), None)
 

@@ -244,7 +244,7 @@ def find_mode(
         if attempt <= 0 and start.shape[0] == n:
             trial[:] = start
         else:
-            likeliest_start(problem, table, attempt * TRIES, trial)
+            likeliest_start(problem, table, max(attempt, 0) * TRIES, trial)
         here = maximise_softly_first(problem, trial, its_root, attempt >= 0)
         again = attempt > 0 and abs(here - height) < SAME
         if here > height:

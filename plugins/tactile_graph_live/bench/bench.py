@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Pipeline, Result
 from tactile_graph.errors import TactileGraphError, text_of
+from tactile_graph.inspect import check_frame, make_plan
 from tactile_graph.live import Beside, LiveResult, LiveRun
 from tactile_graph.steps import Report
 from tactile_graph_live.bench import wire
@@ -134,7 +135,8 @@ class Bench:
             snapshot = self._looking(live).snapshot(
                 live.result, live.latency_us, arrived_s=live.arrived_ns / 1e9
             )
-            self._outbox.show(wire.Snapshot(snapshot, live.arrived_ns))
+            # Of the first frames the time it took to get ready says nothing about the page.
+            self._outbox.show(wire.Snapshot(snapshot, live.arrived_ns if self._tally.ready else 0))
         if now >= self._next_summary_ns:
             self._summarise("running")
 
@@ -160,7 +162,8 @@ class Bench:
             self._ended or self._idle
         ):
             silent = time.monotonic() - self._newest_s > SILENT_S
-            self._summarise("waiting" if silent else "running")
+            begun = self._tally.n_frames > 0 or self._newest is None
+            self._summarise("waiting" if silent else "running" if begun else "starting")
 
     def _summarise(self, state: wire.State) -> None:
         self._next_summary_ns = time.perf_counter_ns() + SUMMARY_NS
@@ -230,26 +233,29 @@ class Bench:
         Where the source is another one, or has ended, it is read from its beginning.
         """
         restart = message.restart or self._idle
+        anew: tuple[str, ...] = ()
         try:
             pipeline: Pipeline = pickle.loads(message.pickled)
-            if self._newest is not None and not restart:
-                pipeline.run(less(self._newest, self._baseline))
+            self._next_photographer = Photographer(pipeline, message.version)  # before a frame ran
+            if restart:
+                anew = pipeline.runner(seed=self._order.seed).anew  # that it can be made
+            else:
+                if self._newest is not None:
+                    _try(pipeline, less(self._newest, self._baseline))
+                anew = self._run.swap(pipeline)
         except Exception as error:
             words = str(error) if isinstance(error, TactileGraphError) else text_of(error)
             self._outbox.note(wire.Swapped(message.version, words or type(error).__name__))
             return
         self._pipeline = pipeline
-        self._next_photographer = Photographer(pipeline, message.version)
         if restart:
             with self._changed:
                 self._restart = True
                 self._player.end()
                 self._run.stop()
                 self._changed.notify_all()
-        else:
-            self._run.swap(pipeline)
         self._next_picture_ns = 0
-        self._outbox.note(wire.Swapped(message.version))
+        self._outbox.note(wire.Swapped(message.version, anew=anew))
 
     def _tare(self, on: bool) -> None:
         self._taring = Taring() if on else None
@@ -290,6 +296,14 @@ class Bench:
         self._outbox.note(wire.Said(text, level))
 
 
+def _try(pipeline: Pipeline, frame: Frame) -> None:
+    """See that a pipeline takes a frame, and have its kernels compiled before the next comes."""
+    check_frame(frame.image, make_plan(pipeline, tuple(pipeline.outputs)))
+    apart = any(node.isolation is not None for node in pipeline.nodes.values())
+    if not apart and not pipeline.writes:  # no process is started twice, nothing written twice
+        pipeline.run(frame)
+
+
 class _Tally:
     """Counts frames, and keeps their latencies until they are asked for.
 
@@ -302,12 +316,12 @@ class _Tally:
         self.n_shed = 0
         self.n_shed_before = 0
         self._shed_in_run = self._lost_in_run = 0
-        self._ready = False
+        self.ready = False
         self._latencies: list[float] = []
 
     def begin(self) -> None:
         """Count on in a new run, whose own counts begin at 0."""
-        self._ready, self._shed_in_run, self._lost_in_run = False, 0, 0
+        self.ready, self._shed_in_run, self._lost_in_run = False, 0, 0
 
     def add(self, live: Live, n_waiting: int, deadline_us: float | None) -> None:
         """Count a frame."""
@@ -316,9 +330,9 @@ class _Tally:
         self.n_lost += live.lost - self._lost_in_run
         self._lost_in_run = live.lost
         self.n_frames += 1
-        if not self._ready:
+        if not self.ready:
             self.n_shed_before += new
-            self._ready = n_waiting == 0
+            self.ready = n_waiting == 0
             return
         self.n_shed += new
         latency_us = live.latency_us

@@ -10,6 +10,7 @@ import threading
 from multiprocessing.connection import Connection
 
 from tactile_graph.compiled import warm_up
+from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins.registry import restrict
 from tactile_graph_live.bench import wire
 from tactile_graph_live.bench.bench import Bench
@@ -30,7 +31,12 @@ def main(pipe: Connection, order: wire.Order) -> None:
     warm_up()
     sys.setswitchinterval(SWITCH_S)
     outbox = Outbox(pipe.send)
-    bench = Bench(order, outbox)
+    try:
+        bench = Bench(order, outbox)
+    except TactileGraphError as error:  # a process of a step that cannot be started, say
+        outbox.note(wire.Ended(str(error), 0))
+        outbox.end()
+        return
     threading.Thread(target=_listen, args=(pipe, bench), daemon=True).start()
     threading.Thread(target=_tick, args=(bench,), daemon=True).start()
     gc.collect()

@@ -141,10 +141,14 @@ class Kept:
 
 @dataclass(frozen=True)
 class Swapped:
-    """The pipeline of this version runs, or why it does not."""
+    """The pipeline of this version runs, or why it does not.
+
+    ``anew`` names the nodes which keep something from frame to frame and begin anew.
+    """
 
     version: int
     error: str = ""
+    anew: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

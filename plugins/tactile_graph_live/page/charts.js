@@ -1,7 +1,7 @@
 // Lines over time on small canvases.
 
 import { fitted } from "./dom.js";
-import { duration, ticks } from "./numbers.js";
+import { ticks } from "./numbers.js";
 import { colour } from "./theme.js";
 
 /** What a number was over the last seconds; `push` forgets what is older. */
@@ -74,48 +74,65 @@ export function sparkline(canvas, history, now) {
   context.fill();
 }
 
-/** Draw latencies in microseconds over a minute, with axes and the deadline where there is one. */
-export function latencyChart(canvas, median, p99, deadlineUs, now) {
+const EDGE = { left: 52, right: 8, top: 20, bottom: 22 };
+const LETTERS = "11px ui-sans-serif, system-ui, sans-serif";
+
+/**
+ * Draw lines from 0 up over the time their histories keep, with axes.
+ *
+ * `lines` have a `history`, a `paint` (a colour of the style sheet) and a `dash`; `level` is drawn
+ * all the way, `title` says what goes up, and `format` writes a number of the axis.
+ */
+export function lineChart(canvas, { lines, level, title, format }, now) {
   const { context, width, height } = fitted(canvas);
   context.clearRect(0, 0, width, height);
-  const edge = { left: 52, right: 8, top: 8, bottom: 22 };
-  const highest = Math.max(p99.range()?.[1] ?? 0, median.range()?.[1] ?? 0, (deadlineUs ?? 0) * 1.1, 1) * 1.08;
-  const x = (time) => width - edge.right - ((now - time) / median.ms) * (width - edge.left - edge.right);
-  const y = (us) => height - edge.bottom - (us / highest) * (height - edge.top - edge.bottom);
-  context.font = "11px ui-sans-serif, system-ui, sans-serif";
-  context.textBaseline = "middle";
-  context.lineWidth = 1;
-  for (const us of ticks(0, highest, 4)) {
-    context.strokeStyle = colour("--grid");
-    context.beginPath();
-    context.moveTo(edge.left, Math.round(y(us)) + 0.5);
-    context.lineTo(width - edge.right, Math.round(y(us)) + 0.5);
-    context.stroke();
-    context.fillStyle = colour("--soft");
-    context.textAlign = "right";
-    context.fillText(us === 0 ? "0" : duration(us), edge.left - 6, y(us));
-  }
-  context.textBaseline = "top";
-  for (const [seconds, align] of [[60, "left"], [30, "center"], [0, "right"]]) {
-    context.textAlign = align;
-    context.fillText(seconds ? `${seconds} s ago` : "now", x(now - seconds * 1000), height - edge.bottom + 7);
-  }
+  const { ms } = lines[0].history;
+  const most = lines.map(({ history }) => history.range()?.[1] ?? 0);
+  const highest = Math.max(...most, (level ?? 0) * 1.1, 1) * 1.08;
+  const x = (time) => width - EDGE.right - ((now - time) / ms) * (width - EDGE.left - EDGE.right);
+  const y = (value) => height - EDGE.bottom - (value / highest) * (height - EDGE.top - EDGE.bottom);
+  context.font = LETTERS;
+  drawAxes(context, width, { x, y, highest, title, format, now, seconds: ms / 1000 });
   context.save();
   context.beginPath();
-  context.rect(edge.left, 0, width - edge.left, height);
+  context.rect(EDGE.left, 0, width - EDGE.left, height);
   context.clip();
   context.lineWidth = 1.6;
-  for (const [history, paint] of [[p99, "--p99"], [median, "--accent"]]) {
+  for (const { history, paint, dash } of lines) {
+    context.setLineDash(dash);
     context.strokeStyle = colour(paint);
     drawLine(context, history, x, y);
   }
-  if (deadlineUs) {
+  if (level) {
     context.setLineDash([5, 4]);
     context.strokeStyle = colour("--bad");
-    context.beginPath();
-    context.moveTo(edge.left, y(deadlineUs));
-    context.lineTo(width - edge.right, y(deadlineUs));
-    context.stroke();
+    drawLevel(context, width, y(level));
   }
   context.restore();
+}
+
+function drawAxes(context, width, { x, y, highest, title, format, now, seconds }) {
+  context.lineWidth = 1;
+  context.strokeStyle = colour("--grid");
+  context.fillStyle = colour("--soft");
+  context.textBaseline = "middle";
+  context.textAlign = "right";
+  for (const value of ticks(0, highest, 4)) {
+    drawLevel(context, width, Math.round(y(value)) + 0.5);
+    context.fillText(value === 0 ? "0" : format(value), EDGE.left - 6, y(value));
+  }
+  context.textBaseline = "top";
+  context.textAlign = "left";
+  context.fillText(title, EDGE.left, 2);
+  for (const [ago, align] of [[seconds, "left"], [seconds / 2, "center"], [0, "right"]]) {
+    context.textAlign = align;
+    context.fillText(ago ? `${ago} s ago` : "now", x(now - ago * 1000), y(0) + 7);
+  }
+}
+
+function drawLevel(context, width, y) {
+  context.beginPath();
+  context.moveTo(EDGE.left, y);
+  context.lineTo(width - EDGE.right, y);
+  context.stroke();
 }

@@ -1,6 +1,6 @@
 // The graph as the page's table of contents: a row for each node, its wires as rails beside it.
 
-import { byId, make, mark, own, write } from "./dom.js";
+import { byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { drawPicture } from "./paint.js";
@@ -48,6 +48,8 @@ export class NodeList {
     this.order = boxes.map((box) => box.name);
     this.current = names.has(this.current) ? this.current : this.order[0];
     this.rove();
+    show(byId("change"), graph.version > 1);
+    write(byId("change"), changeInWords(graph));
   }
 
   row(name) {
@@ -164,6 +166,12 @@ export class NodeList {
   focus() {
     this.rows.get(this.current)?.element.focus();
   }
+}
+
+/** Return how long a change took, and which nodes lost by it what they kept. */
+export function changeInWords({ took_ms: took, anew }) {
+  const lost = anew.length ? `What ${anew.join(", ")} kept of earlier frames began anew.` : "";
+  return [`The last change ran after ${duration(1000 * took)}.`, lost].filter(Boolean).join(" ");
 }
 
 /** Return the notes of a picture in one line. */

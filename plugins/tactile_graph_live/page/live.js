@@ -2,7 +2,7 @@
 
 import { Connection } from "./connection.js";
 import { byId, mark, own, show, write } from "./dom.js";
-import { NodeList } from "./graph.js";
+import { NodeList, changeInWords } from "./graph.js";
 import { startKeys } from "./keys.js";
 import { NodeCard } from "./node.js";
 import { Pad, describe, legend } from "./pad.js";
@@ -79,6 +79,7 @@ const TAKE = {
     write(byId("pipeline"), graph.name);
     mark(document.documentElement, "data-graph", graph.version);
     nodes.take(graph);
+    if (graph.anew.length) speech.say(changeInWords(graph));
     settings.take(graph);
     yaml.take(graph);
     results.take(graph);
@@ -154,6 +155,7 @@ function count() {
 function connected(up) {
   document.body.classList.toggle("stale", !up);
   asked = "";
+  if (!up) status.interrupt(performance.now());
   if (up) look([...nodes.inSight]);
 }
 
@@ -181,8 +183,8 @@ function arrange() {
   for (const [column, cards] of Object.entries(places)) byId(column).append(...cards.map(byId));
 }
 
-const NARROW = ["pad", "graph", "node", "results", "contacts", "timing", "settings", "file"];
-const WIDE = { left: ["pad", "file"], middle: ["graph", "settings"], right: ["node", "results", "contacts", "timing"] };
+const NARROW = ["pad", "graph", "node", "results", "contacts", "timing", "flow", "settings", "file"];
+const WIDE = { left: ["pad", "file"], middle: ["graph", "settings"], right: ["node", "results", "contacts", "timing", "flow"] };
 const wide = matchMedia("(min-width: 781px)");
 wide.addEventListener("change", arrange);
 arrange();

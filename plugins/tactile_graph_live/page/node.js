@@ -46,7 +46,7 @@ export class NodeCard {
     }
     write(byId("node-title"), this.name);
     write(byId("node-step"), node?.step ?? box?.step ?? "");
-    write(byId("node-about"), [node?.about, node?.guard && `Runs when ${node.guard}.`].filter(Boolean).join(" "));
+    write(byId("node-about"), [node?.about, node?.guard && `Runs when ${node.guard}.`, node?.keeps && "Keeps a state from frame to frame."].filter(Boolean).join(" "));
     this.settings.fill(byId("node-settings"), node);
   }
 

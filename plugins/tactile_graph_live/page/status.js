@@ -1,9 +1,10 @@
-// The line of numbers on top, the latency chart, and what the server has to say.
+// The line of numbers on top, the charts of latency and rate, and what the server has to say.
 
-import { History, latencyChart } from "./charts.js";
+import { History, lineChart } from "./charts.js";
 import { byId, make, mark, show, write } from "./dom.js";
 import { counted, duration, told as inDigits } from "./numbers.js";
 
+const KEPT_S = 60;
 const STAYS_MS = 6000;
 const MOST_TOLD = 4;
 const MOST_DIFFERENCES = 3;
@@ -11,10 +12,12 @@ const WORDS = { note: "", warning: "Warning", error: "Error" };
 
 export class Status {
   constructor() {
-    this.median = new History(60);
-    this.p99 = new History(60);
+    [this.median, this.p99, this.page] = [new History(KEPT_S), new History(KEPT_S), new History(KEPT_S)];
+    [this.rate, this.lost, this.shed] = [new History(KEPT_S), new History(KEPT_S), new History(KEPT_S)];
     this.deadlineUs = null;
-    new ResizeObserver(() => this.chart()).observe(byId("latency-chart"));
+    this.counts = [];
+    const resized = new ResizeObserver(() => this.chart());
+    for (const name of ["latency-chart", "flow-chart"]) resized.observe(byId(name));
   }
 
   hello(hello) {
@@ -40,11 +43,23 @@ export class Status {
     byId("lost-stat").classList.toggle("alarm", pulse.lost > 0);
     byId("shed-stat").classList.toggle("alarm", pulse.shed > 0);
     this.beside(pulse.beside);
-    if (pulse.state === "running" && !pulse.paused) {
-      this.median.push(performance.now(), latency.median);
-      this.p99.push(performance.now(), latency.p99);
-    }
+    this.keep(pulse, performance.now());
     this.chart();
+  }
+
+  /** Keep what the charts show. */
+  keep(pulse, now) {
+    const runs = pulse.state === "running" && !pulse.paused;
+    this.median.push(now, runs ? pulse.latency_us.median : null);
+    this.p99.push(now, runs ? pulse.latency_us.p99 : null);
+    this.page.push(now, runs ? pulse.page_latency_us.median : null);
+    this.counts.push({ at: now, lost: pulse.lost, shed: pulse.shed });
+    while (this.counts.length > 2 && this.counts[1].at <= now - 1000) this.counts.shift();
+    const before = this.counts[0];
+    const seconds = Math.max(0.2, (now - before.at) / 1000);
+    this.rate.push(now, pulse.rate_hz);
+    this.lost.push(now, Math.max(0, pulse.lost - before.lost) / seconds); // below 0: a new server
+    this.shed.push(now, Math.max(0, pulse.shed - before.shed) / seconds);
   }
 
   beside(beside) {
@@ -63,15 +78,43 @@ export class Status {
     write(byId("beside-text"), parts.filter(Boolean).join("; "));
   }
 
+  /** Nothing is known from here on: lines end, and counts begin anew. */
+  interrupt(now) {
+    for (const history of [this.median, this.p99, this.page, this.rate, this.lost, this.shed]) history.push(now, null);
+    this.counts = [];
+  }
+
   chart() {
-    latencyChart(byId("latency-chart"), this.median, this.p99, this.deadlineUs, performance.now());
+    const now = performance.now();
+    lineChart(byId("latency-chart"), {
+      title: "time since the sensor's frame was here", format: duration, level: this.deadlineUs,
+      lines: [
+        { history: this.page, paint: "--good", dash: [2, 3] },
+        { history: this.p99, paint: "--p99", dash: [] },
+        { history: this.median, paint: "--accent", dash: [] },
+      ],
+    }, now);
+    lineChart(byId("flow-chart"), {
+      title: "frames a second", format: inDigits,
+      lines: [
+        { history: this.rate, paint: "--accent", dash: [] },
+        { history: this.shed, paint: "--p99", dash: [6, 3] },
+        { history: this.lost, paint: "--bad", dash: [2, 3] },
+      ],
+    }, now);
   }
 
   describe() {
-    const range = this.p99.range();
-    const text = range ? `99 % between ${duration(range[0])} and ${duration(range[1])}` : "nothing yet";
-    mark(byId("latency-chart"), "aria-label", `Latency from sensor to result over the last minute: ${text}`);
+    const latency = between(this.p99, duration);
+    mark(byId("latency-chart"), "aria-label", `Latency over the last minute: 99 % of results ${latency}, pictures on the page ${between(this.page, duration)}`);
+    const hertz = (value) => inDigits(Number(value.toPrecision(3)));
+    mark(byId("flow-chart"), "aria-label", `Frames a second over the last minute: answered ${between(this.rate, hertz)}, lost ${between(this.lost, hertz)}, shed ${between(this.shed, hertz)}`);
   }
+}
+
+function between(history, format) {
+  const range = history.range();
+  return range ? `${format(range[0])} to ${format(range[1])}` : "not known yet";
 }
 
 /** Show something the server says; errors stay until they are put away. */

@@ -140,11 +140,13 @@ def text_with(text: str, settings: Settings) -> str:
     text : str
         A pipeline file without faults.
     settings : mapping
-        Node -> setting -> value; nodes within a pipeline that is used are left out.
+        Node -> setting -> value; of ``used/node`` it is written where ``used`` is declared.
     """
     for node, values in settings.items():
+        declared, _, within = node.partition("/")
         for setting, value in values.items():
-            text = _with_one(text, node, setting, spelled(value))
+            name = f"{within}.{setting}" if within else setting
+            text = _with_one(text, declared, name, spelled(value))
     return text
 
 

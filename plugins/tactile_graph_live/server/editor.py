@@ -152,7 +152,8 @@ class Editor:
             self._tell((Fault(0, 0, answer.error),))
             return
         took_ms = round((time.perf_counter() - began) * 1e3, 1)
-        self.now = replace(edited, graph=replace(edited.graph, took_ms=took_ms))
+        graph = replace(edited.graph, took_ms=took_ms, anew=answer.anew)
+        self.now = replace(edited, graph=graph)
         self._changed(self.now)
         if self.trouble is not None:
             self._tell(())

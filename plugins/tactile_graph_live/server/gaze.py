@@ -77,7 +77,7 @@ class Gaze:
         self.pause()
         if self.shown is not None:
             self._fetch(self.shown.frame.index, 0.0)
-        elif self._holds:
+        else:
             self._one_more()
 
     def scrub(self, back_s: float) -> None:
@@ -101,8 +101,10 @@ class Gaze:
         self._later(self._look(kept))
 
     def _one_more(self) -> None:
+        """Show the next frame that comes; of what is held, have one come."""
         self._stepping = True
-        self._send(wire.OneMore())
+        if self._holds:
+            self._send(wire.OneMore())
 
     def _fetch(self, after: int | None, back_s: float) -> None:
         self._ticket += 1

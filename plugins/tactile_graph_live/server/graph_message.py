@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import Any
 
 from tactile_graph import Pipeline
 from tactile_graph.docstring import parameters
 from tactile_graph.draw.blocks import blocks, wires
-from tactile_graph.draw.layers import Joint
-from tactile_graph.draw.layout import Point, layout
 from tactile_graph.foreign_text import visible
-from tactile_graph.inspect import Node, make_table, plain
+from tactile_graph.inspect import Graph, Node, make_table, plain
 from tactile_graph.steps.settings import adapter
 from tactile_graph.steps.signature import REQUIRED
 from tactile_graph.steps.signature import Setting as StepSetting
 from tactile_graph.vocabulary import words_and_unit
 from tactile_graph_live.server import messages
 
-BOX_PX = (150.0, 150.0)
-SMALL_BOX_PX = (110.0, 64.0)
-LONGEST_LABEL = 40
 Overrides = Mapping[str, Mapping[str, Any]]
 
 
@@ -39,51 +33,17 @@ def graph_message(
     changed : mapping
         Node -> setting -> value of what was set on the page.
     """
-    shown, joined = blocks(pipeline), wires(pipeline)
-    sizes = {b.key: SMALL_BOX_PX if b.role == "source" else BOX_PX for b in shown}
-    placed = layout(sizes, [Joint(w.start, w.end, _room(w.label), _pull(w.kind)) for w in joined])
-    boxes = []
-    for block in shown:
-        at = placed.boxes[block.key]
-        sources = tuple(dict.fromkeys(w.start for w in joined if w.end == block.key))
-        boxes.append(messages.Box(block.key, visible(block.step or block.title), block.role,
-                                  at.x, at.y, at.width, at.height, sources))  # fmt: skip
     return messages.Graph(
         version,
         visible(pipeline.name),
         visible(pipeline.about),
         *texts,
-        tuple(boxes),
-        tuple(
-            messages.Wire(w.start, w.end, w.kind, visible(w.label)[:LONGEST_LABEL], _path(route))
-            for w, route in zip(joined, placed.routes, strict=True)
-        ),
-        placed.width,
-        placed.height,
-        tuple(_node(n, changed.get(n.name, {})) for n in pipeline.nodes.values()),
+        tuple(messages.Box(b.key, visible(b.step or b.title), b.role) for b in blocks(pipeline)),
+        tuple(messages.Wire(w.start, w.end, w.kind) for w in wires(pipeline)),
+        tuple(_node(name, n, changed.get(name, {})) for name, n in _nodes(pipeline)),
         tuple(pipeline.outputs),
         tuple(_columns(pipeline)),
     )
-
-
-def _room(label: str) -> float:
-    return 7.0 * min(len(label), LONGEST_LABEL) + 14 if label else 0.0
-
-
-def _pull(kind: str) -> float:
-    return 0.01 if kind == "guard" else 1.0  # what the data goes through stays in line
-
-
-def _path(route: tuple[Point, ...]) -> str:
-    """Return a wire as the path of an SVG; every other piece of it is straight."""
-    told = [f"M{route[0].x:.1f} {route[0].y:.1f}"]
-    for number, (a, b) in enumerate(pairwise(route)):
-        if number % 2 or a.y == b.y:
-            told.append(f"L{b.x:.1f} {b.y:.1f}")
-        else:
-            half = (a.x + b.x) / 2
-            told.append(f"C{half:.1f} {a.y:.1f} {half:.1f} {b.y:.1f} {b.x:.1f} {b.y:.1f}")
-    return "".join(told)
 
 
 def _columns(pipeline: Pipeline) -> Iterator[messages.Column]:
@@ -95,7 +55,16 @@ def _columns(pipeline: Pipeline) -> Iterator[messages.Column]:
 # -- settings ------------------------------------------------------------------------------------
 
 
-def _node(node: Node, changed: Mapping[str, Any]) -> messages.Node:
+def _nodes(graph: Graph, prefix: str = "") -> Iterator[tuple[str, Node]]:
+    """Yield each node by the name that ``--set`` knows it by, also those run over a list."""
+    for node in graph.nodes.values():
+        if not prefix or node.signature is not None:
+            yield prefix + node.name, node
+        if node.inner is not None:
+            yield from _nodes(node.inner, f"{prefix}{node.name}/")
+
+
+def _node(name: str, node: Node, changed: Mapping[str, Any]) -> messages.Node:
     signature = node.signature
     meanings = parameters(signature.doc) if signature else {}
     settings = tuple(
@@ -104,7 +73,7 @@ def _node(node: Node, changed: Mapping[str, Any]) -> messages.Node:
     )
     about = signature.summary if signature else ""
     guard = visible(node.guard.text) if node.guard else ""
-    return messages.Node(node.name, visible(node.what), visible(about), guard, settings)
+    return messages.Node(name, visible(node.what), visible(about), guard, node.stateful, settings)
 
 
 def setting_message(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
-from tactile_graph import Pipeline
+from tactile_graph import Pipeline, Result
+from tactile_graph.inspect import Runner, make_plan
 from tactile_graph_live.bench.snapshot import Photographer
 from tactile_graph_live.bench.tare import less
 from tactile_graph_live.bench.wire import Kept
@@ -28,7 +29,8 @@ class Lookback:
     def __init__(self, pipeline: Pipeline, version: int, seed: int) -> None:
         self._pipeline, self._seed = pipeline, seed
         self._photographer = Photographer(pipeline, version)
-        self.lead = LEAD if pipeline.runner(seed=seed).stateful else 0
+        self.lead = LEAD if make_plan(pipeline, tuple(pipeline.outputs)).stateful else 0
+        self._runner: Runner[Result] | None = None
 
     def frame(self, kept: Kept, shown: Collection[str], pad: dict[str, Any] | None) -> Frame:
         """Return what the last of the frames comes to, after those before it.
@@ -41,10 +43,17 @@ class Lookback:
         pad : mapping, optional
             A picture in whose range of colours it is shown.
         """
-        runner = self._pipeline.runner(seed=self._seed)
+        runner = self._runner_of_its_own()
         for frame in kept.frames:
             result = runner(less(frame, kept.baseline))
+        runner.forget()  # looked at again, it is run again
         if pad is not None:
             self._photographer.like(pad)
         self._photographer.shown = shown
         return self._photographer.snapshot(result, None, kept.back_s)
+
+    def _runner_of_its_own(self) -> Runner[Result]:
+        """Return a runner without a state; the last one where it can have none."""
+        if self._runner is None or self.lead:
+            self._runner = self._pipeline.runner(seed=self._seed)
+        return self._runner

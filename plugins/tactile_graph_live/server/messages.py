@@ -44,30 +44,20 @@ class Hello:
 
 @dataclass(frozen=True)
 class Box:
-    """A node where the graph is drawn: its place in pixels of a drawing of `Graph`'s size.
-
-    ``role`` is source, frame, step or choice.
-    """
+    """A node as the graph shows it; ``role`` is source, frame, step or choice."""
 
     name: str
     step: str
     role: str
-    x: float
-    y: float
-    w: float
-    h: float
-    sources: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Wire:
-    """A line between two boxes, ``path`` as an SVG path has it; ``kind`` data, guard or choice."""
+    """A line between two boxes; ``kind`` is data, guard or choice."""
 
     start: str
     end: str
     kind: str
-    label: str
-    path: str
 
 
 @dataclass(frozen=True)
@@ -97,12 +87,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class Node:
-    """A node and its settings."""
+    """A node and its settings; ``keeps`` says whether it keeps a state from frame to frame."""
 
     name: str
     step: str
     about: str
     guard: str
+    keeps: bool
     settings: tuple[Setting, ...]
 
 
@@ -130,13 +121,13 @@ class Graph:
     file_yaml: str
     boxes: tuple[Box, ...]
     wires: tuple[Wire, ...]
-    width: float
-    height: float
     nodes: tuple[Node, ...]
     outputs: tuple[str, ...]
     columns: tuple[Column, ...]
     took_ms: float = 0.0
     """From when the change was seen until it ran."""
+    anew: tuple[str, ...] = ()
+    """Nodes that keep a state and began anew with it; those that compute the same went on."""
 
 
 @dataclass(frozen=True)
@@ -246,7 +237,7 @@ class Pulse:
     kept_s, kept_frames
         What can be scrubbed back over.
     state : str
-        running, waiting (nothing comes), ended.
+        starting (frames come, none is answered yet), running, waiting (nothing comes), ended.
     """
 
     rate_hz: float

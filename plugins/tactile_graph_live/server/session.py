@@ -159,6 +159,8 @@ class Session:
 
     def _gone(self) -> None:
         """Start another bench where this one died, unless it does nothing else."""
+        if self.over.is_set():
+            return
         often = len(self._starts) == MOST_STARTS
         if often and time.monotonic() - self._starts[0] < STARTS_WITHIN_S:
             self._fail("the process that runs the pipeline died again and again")

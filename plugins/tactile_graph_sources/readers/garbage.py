@@ -19,6 +19,8 @@ NEIGHBOURS = 3
 """How many frames before and as many after a frame it is held against."""
 JUMP = 8.0
 """Times the neighbours' own differences that garbage differs from them."""
+NEARLY = 1.0 - 1e-6
+"""Of that: sums of many frames at once may be rounded otherwise."""
 WIDE = 0.25
 """Share of the cells that garbage reaches, and of its peak that counts as reached."""
 COHERENT = 0.3
@@ -104,16 +106,19 @@ def _is_clean(film: _Film, now: FrameStack, after: Frame | FrameStack | None) ->
         return False
     if following is not None and following.shape != (NEIGHBOURS, *values.shape[1:]):
         return False
-    around = [f.image.values[None] for f, _ in film.behind]
-    if around and around[-1].shape[1:] != values.shape[1:]:
+    around = [f.image.values for f, _ in film.behind]
+    if around and around[-1].shape != values.shape[1:]:
         return False
-    film_values = np.concatenate([*around, values, *([] if following is None else [following])])
     n_behind, n = len(around), len(values)
+    after_it = values[:0] if following is None else following
     with np.errstate(over="ignore"):
-        apart = np.abs(np.diff(film_values, axis=0)).reshape(len(film_values) - 1, -1)
-    changes = np.concatenate([[np.inf], apart.sum(axis=1) / values[0].size])
-    changes[:n_behind] = [change for _, change in film.behind]
-    for i in _jumps(changes, n_behind, n).tolist():
+        parts = [np.array([*around[-1:], values[0]]), values, np.array([values[-1], *after_it])]
+        onward = np.concatenate([_changes(part) for part in parts])
+    kept = [change for _, change in film.behind] or [np.inf]
+    changes = np.concatenate([kept, onward])
+    film_values = [*around, *values, *after_it]
+    jumps = _jumps(changes, n_behind, n).tolist()
+    for i in _suspects(film_values, jumps):
         near = film_values[max(0, i - NEIGHBOURS) : i + NEIGHBOURS + 1]
         others = [Frame(Image(v)) for k, v in enumerate(near, max(0, i - NEIGHBOURS)) if k != i]
         if is_garbage(Frame(Image(film_values[i])), others):
@@ -124,6 +129,15 @@ def _is_clean(film: _Film, now: FrameStack, after: Frame | FrameStack | None) ->
     return True
 
 
+def _changes(values: Values) -> NDArray[np.float64]:
+    """Return by how much each of some frames, shape (n, rows, columns), differs from the last."""
+    size = values[0].size
+    apart = values[1:] - values[:-1]
+    np.abs(apart, out=apart)
+    means: NDArray[np.float64] = apart.reshape(len(apart), size).sum(axis=1) / size
+    return means
+
+
 def _jumps(changes: NDArray[np.float64], first: int, n: int) -> NDArray[np.intp]:
     """Return which of ``n`` frames from ``first`` on change more than those around them."""
     edge = np.full(NEIGHBOURS, np.inf)
@@ -132,6 +146,24 @@ def _jumps(changes: NDArray[np.float64], first: int, n: int) -> NDArray[np.intp]
     others = np.min([padded[at + k] for k in (-3, -2, -1, 2, 3)], axis=0)
     jumps = np.minimum(padded[at], padded[at + 1]) > 2.0 * others
     return np.asarray(at[jumps] - NEIGHBOURS)
+
+
+def _suspects(film_values: Sequence[Values], jumps: Sequence[int]) -> list[int]:
+    """Return which of the frames that jump may be garbage: some have not all neighbours, others
+    are not nearly as far from the usual as garbage is."""
+    whole = [i for i in jumps if NEIGHBOURS <= i < len(film_values) - NEIGHBOURS]
+    if not whole:
+        return [*jumps]
+    places = [k for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k]
+    size = film_values[0].size
+    near = np.array([film_values[i + k] for i in whole for k in places])
+    near = near.reshape(len(whole), len(places), size)
+    usual = np.median(near, axis=1, keepdims=True)
+    apart = np.median(np.abs(near - usual).sum(axis=2), axis=1)
+    own = np.array([film_values[i] for i in whole]).reshape(len(whole), size)
+    far = np.abs(own - usual[:, 0]).sum(axis=1) > NEARLY * JUMP * apart
+    cleared = {i for i, is_far in zip(whole, far.tolist(), strict=True) if not is_far}
+    return [i for i in jumps if i not in cleared]
 
 
 @dataclass(slots=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import unknown_quantity
 from tactile_graph_sources.readers import capcontact
-from tactile_graph_sources.readers.archive import opened
+from tactile_graph_sources.readers.archive import mapped, opened
 from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.datasets import (
     Held,
@@ -35,6 +36,8 @@ MOST_MEMBERS = 1000
 MOST_TIMES = 200
 SMALL, LARGE = 64_000_000, 256_000_000
 """Bytes; a smaller array may be packed as small as it likes."""
+WORTH_MAPPING = 1_000_000
+"""Bytes of an array, stored as it is, from which on it is mapped, not read."""
 _UNPACK = "unpack it, and give those that are recordings"
 OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
         "pitch_cm", "origin_cm", "truth")  # fmt: skip
@@ -85,13 +88,7 @@ class Archive:
         """Return shape and type of an array by its head alone; errors as of `load`."""
         try:
             with self._file.open(self.names[name]) as member:
-                version = np.lib.format.read_magic(member)
-                read = (
-                    np.lib.format.read_array_header_1_0
-                    if version == (1, 0)
-                    else np.lib.format.read_array_header_2_0
-                )
-                shape, _, dtype = read(member)
+                shape, _, dtype = _head_of(member)
                 return shape, dtype
         except Exception as error:
             raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
@@ -117,7 +114,7 @@ class Archive:
             )
 
     def load(self, name: str) -> NDArray[Any]:
-        """Return an array.
+        """Return an array; a large one that is stored as it is never stands in memory as a whole.
 
         Raises
         ------
@@ -128,6 +125,9 @@ class Archive:
         try:
             info = self.names[name]
             stored = info.compress_type == zipfile.ZIP_STORED and info.file_size <= self._size
+            found = self._mapped(info) if stored and info.file_size > WORTH_MAPPING else None
+            if found is not None:
+                return found
             if info.file_size > SMALL and not stored:
                 # What is damaged is refused before it fills the memory.
                 with self._file.open(self.names[name]) as member:
@@ -140,6 +140,16 @@ class Archive:
                 return array
         except Exception as error:
             raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
+
+    def _mapped(self, info: zipfile.ZipInfo) -> NDArray[Any] | None:
+        """Return a stored array as it lies in the file; None where its size is not as it says."""
+        with self._file.open(info) as member:
+            shape, by_column, dtype = _head_of(member)
+            begin = member.tell()
+        if dtype.hasobject or math.prod(shape) * dtype.itemsize != info.file_size - begin:
+            return None
+        held = mapped(self.where, info)
+        return np.ndarray(shape, dtype, held, begin, order="F" if by_column else "C")
 
     def optional(self, name: str, shape: tuple[int, ...], kinds: str) -> NDArray[Any] | None:
         """Return an array if it is there; a wrong shape or type is an error.
@@ -159,6 +169,18 @@ class Archive:
                 f"expected shape {shape}",
             )
         return array
+
+
+def _head_of(member: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Return shape, whether columns come first, and type of an array, by its head."""
+    version = np.lib.format.read_magic(member)
+    read = (
+        np.lib.format.read_array_header_1_0
+        if version == (1, 0)
+        else np.lib.format.read_array_header_2_0
+    )
+    shape, by_column, dtype = read(member)
+    return shape, by_column, dtype
 
 
 def _checked(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
@@ -243,7 +265,7 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     reading.report.expect(n)
-    told = (valid, device_times, gaps, doubtful, labels, *truths)
+    told = (valid, device_times, gaps, doubtful, labels, truths)
     if all(one is None for one in told):  # nothing is to be said of single frames
         times_s = None if times is None else times.astype(np.float64)
         if reading.wants(""):
@@ -262,7 +284,7 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
                 time_s=_time(times, k),
                 sensor=sensor,
                 valid=None if valid is None else valid[k],
-                truth=truths[k],
+                truth=None if truths is None else truths[k],
                 device_time_s=_time(device_times, k),
                 gap=gaps is not None and bool(gaps[k]),
             )
@@ -274,18 +296,19 @@ def _time(times: NDArray[Any] | None, k: int) -> float | None:
     return float(times[k]) if times is not None and np.isfinite(times[k]) else None
 
 
-def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth]:
+def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth] | None:
+    """Return the truth of each frame; None where nobody knows any."""
     text = arrays.optional("truth", (), "U")
     if text is None:
-        return [None] * n
+        return None
     try:
         truths = truth_from_json(str(text))
         if len(truths) != n:
             raise ValueError(f"truth of {len(truths)} frames for {n} frames")
     except ValueError as error:
         reading.report.trouble(reading.at("truth"), f"the truth is left out: {error}")
-        return [None] * n
-    return truths
+        return None
+    return None if all(truth is None for truth in truths) else truths
 
 
 FORMAT = RecordingFormat(

@@ -231,7 +231,7 @@ class Reading:
                 return None
             if factor != 1.0:
                 values *= factor
-        if not (np.abs(values) <= LARGEST).all():
+        if not -LARGEST <= values.min() <= values.max() <= LARGEST:  # no NaN is
             return None
         grid = (self._pitch(same.get("pitch_cm")), self._origin(same.get("origin_cm")))
         images = ImageStack(values, *grid, self._quantity(same.get("quantity", "raw")))

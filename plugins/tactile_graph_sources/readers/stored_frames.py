@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from tactile_graph.wires import Frame
+from tactile_graph.wires.frame_stack import MOST_FRAMES, FrameStack
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.store import read_store
+from tactile_graph_sources.store import read_store, read_store_in_stacks
 from tactile_graph_sources.stores.layout import JOURNAL, METADATA, is_store
 
 
-def read(reading: Reading) -> Iterator[Frame]:
+def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of a store as far as it is whole; raises what `read_store` raises."""
     reading.recognised(f"by the files in it, {METADATA} or {JOURNAL}")
-    yield from as_told(reading, read_store(reading.path, reading.report))
+    frames = read_store_in_stacks if reading.in_stacks else read_store
+    yield from as_told(reading, frames(reading.path, reading.report))
 
 
-def as_told(reading: Reading, frames: Iterable[Frame]) -> Iterator[Frame]:
+def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[Any]:
     """Yield frames of a store as the settings tell of them; those of other sensors are left out.
 
     Raises
@@ -27,7 +30,10 @@ def as_told(reading: Reading, frames: Iterable[Frame]) -> Iterator[Frame]:
         If shape, pitch, origin or quantity cannot be true, or are not what the settings say.
     """
     reading.is_own = True
-    for stored in frames:
+    for stored in _joined(frames):
+        if isinstance(stored, FrameStack):
+            yield from _stack_as_told(reading, stored)
+            continue
         image = stored.image
         if not reading.wants(stored.label):
             continue
@@ -45,6 +51,45 @@ def as_told(reading: Reading, frames: Iterable[Frame]) -> Iterator[Frame]:
             gap=stored.gap,
         )
         yield replace(frame, doubtful=True) if stored.doubtful else frame
+
+
+def _joined(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame | FrameStack]:
+    """Yield short stacks, as chunks may be, as longer ones; all are on one grid."""
+    held: list[FrameStack] = []
+    try:
+        for some in frames:
+            if held and not _goes_with(some, held):
+                yield FrameStack.joined(held)
+                held = []
+            if isinstance(some, FrameStack):
+                held.append(some)
+            else:
+                yield some
+    except Exception:
+        yield from [FrameStack.joined(held)] if held else []
+        raise
+    yield from [FrameStack.joined(held)] if held else []
+
+
+def _goes_with(some: Frame | FrameStack, held: Sequence[FrameStack]) -> bool:
+    if isinstance(some, Frame) or (some.time_s is None) != (held[0].time_s is None):
+        return False
+    return sum(map(len, held)) + len(some) <= MOST_FRAMES
+
+
+def _stack_as_told(reading: Reading, stored: FrameStack) -> Iterator[Frame | FrameStack]:
+    images = stored.images
+    _, rows, columns = images.shape
+    if not reading.wants(""):
+        return
+    reading.told.agree(str(reading.path), rows, columns)
+    yield from reading.frames(
+        images.values,
+        stored.time_s,
+        pitch_cm=images.pitch_cm,
+        origin_cm=images.origin_cm,
+        quantity=images.quantity,
+    )
 
 
 STORE = RecordingFormat(

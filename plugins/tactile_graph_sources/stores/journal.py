@@ -41,6 +41,18 @@ class Columns(NamedTuple):
     notes: tuple[bytes, ...]
     """JSON of label and truth; empty where there is neither."""
 
+    @property
+    def say_more(self) -> bool:
+        """Whether more is said of any frame than its time, or of some their times only."""
+        untimed = np.isnan(self.time_s)
+        return bool(
+            any(self.notes)
+            or self.gap.any()
+            or self.doubtful.any()
+            or not np.isnan(self.device_time_s).all()
+            or untimed.any() != untimed.all()
+        )
+
 
 class Block(NamedTuple):
     """Frames from ``low`` up to, not with, ``high``, and the CRC-32 of their values."""
@@ -106,8 +118,9 @@ class Journal:
 def crc_of(values: NDArray[np.float64]) -> int:
     """Return the CRC-32 of frames' values, their shape counted in: one of (N, rows, columns)."""
     whole = np.ascontiguousarray(values, dtype="<f8")
-    whole = np.where(np.isnan(whole), np.nan, whole)  # NaN have many bit patterns
-    return zlib.crc32(whole.tobytes(), zlib.crc32(repr(whole.shape[1:]).encode()))
+    if np.isnan(whole.min(initial=0.0)):
+        whole = np.where(np.isnan(whole), np.nan, whole)  # NaN have many bit patterns
+    return zlib.crc32(whole.data, zlib.crc32(repr(whole.shape[1:]).encode()))
 
 
 def packed(columns: Columns) -> str:
@@ -132,8 +145,11 @@ def unpacked(text: str, n: int) -> Columns:
         dtype = np.dtype(COLUMNS[name][0])
         arrays[name] = np.frombuffer(raw, dtype, n, at)
         at += n * dtype.itemsize
-    ends = [0, *arrays.pop("notes_end").tolist()]
-    return Columns(**arrays, notes=tuple(raw[at + a : at + b] for a, b in pairwise(ends)))
+    ends = arrays.pop("notes_end")
+    if not ends.any():
+        return Columns(**arrays, notes=(b"",) * n)
+    notes = tuple(raw[at + a : at + b] for a, b in pairwise([0, *ends.tolist()]))
+    return Columns(**arrays, notes=notes)
 
 
 def head_line(head: Head) -> bytes:

@@ -139,9 +139,8 @@ def array_of(path: Path, name: str, data: Metadata, n: int, mode: str = "r") -> 
     return zarr.Array.from_dict(zarr.storage.StorePath(store, name), with_rows(data, n))
 
 
-def chunk_file(path: Path, name: str, data: Metadata, row: int) -> str:
+def chunk_file(array: Any, name: str, row: int) -> str:
     """Return the file of the chunk that holds a row of an array, as a path within the store."""
-    array = array_of(path, name, data, row + 1)
     place = (row // array.chunks[0], *(0 for _ in array.shape[1:]))
     return f"{name}/{array.metadata.encode_chunk_key(place)}"
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import stat
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
+from tactile_graph.wires.stacks import ImageStack
 from tactile_graph_sources.readers.truth import truth_from_json
 from tactile_graph_sources.stores.journal import (
     Block,
@@ -109,7 +112,7 @@ class Stored:
     def rows(self, name: str, low: int, high: int) -> Any:
         """Return rows of an array; raises Lost."""
         try:
-            array = array_of(self.path, name, self.metadata[name], high)
+            array = self._values if name == "values" else self._array(name, high)
             with np.errstate(invalid="ignore"):  # wrong metadata may make no number an integer
                 rows = array[low:high]
         except Exception as error:  # a damaged chunk makes Zarr raise whatever its codec raises
@@ -119,7 +122,15 @@ class Stored:
 
     def chunk_file(self, name: str, row: int) -> str:
         """Return the file of the chunk that holds a row, as a path within the store."""
-        return chunk_file(self.path, name, self.metadata[name], row)
+        array = self._values if name == "values" else self._array(name, row + 1)
+        return chunk_file(array, name, row)
+
+    @cached_property
+    def _values(self) -> Any:
+        return self._array("values", self.n_frames)
+
+    def _array(self, name: str, n: int) -> Any:
+        return array_of(self.path, name, self.metadata[name], n)
 
     def values(self, piece: Piece) -> NDArray[np.float64]:
         """Return a piece's values, (N, rows, columns).
@@ -186,26 +197,52 @@ class Stored:
         ------
         Lost
         """
+        return self._frames(piece, (low, high), self.values(piece), self.columns(piece))
+
+    def given(
+        self, piece: Piece, low: int = 0, high: int | None = None
+    ) -> Sequence[Frame | FrameStack]:
+        """Return what `frames` does, as one stack where nothing is to be said of single ones."""
         values, columns = self.values(piece), self.columns(piece)
-        unsure = not self.sure or (self.journaled and piece.block is None)
+        if self._unsure(piece) or columns.say_more:
+            return self._frames(piece, (low, high), values, columns)
+        first, last = max(low, piece.low), min(piece.high if high is None else high, piece.high)
+        part = slice(first - piece.low, last - piece.low)
+        grid = (self._pair("pitch_cm"), self._pair("origin_cm"), str(self.attributes["quantity"]))
+        times = None if np.isnan(columns.time_s).any() else columns.time_s[part]
+        return [FrameStack(ImageStack(values[part], *grid), np.arange(first, last), times)]
+
+    def _unsure(self, piece: Piece) -> bool:
+        return not self.sure or (self.journaled and piece.block is None)
+
+    def _pair(self, name: str) -> tuple[float, float]:
+        x, y = self.attributes[name]
+        return float(x), float(y)
+
+    def _frames(
+        self,
+        piece: Piece,
+        span: tuple[int, int | None],
+        values: NDArray[np.float64],
+        columns: Columns,
+    ) -> list[Frame]:
+        low, high = span
         try:
             first, last = max(0, low - piece.low), (high or piece.high) - piece.low
             wanted = enumerate(values[first:last], first)
             frames = [self._frame(piece.low + i, v, columns, i) for i, v in wanted]
         except Exception as error:  # notes of an old store, which nothing vouches for
             raise Lost(f"the notes on them cannot be read: {_short(error)}") from error
-        return [replace(f, doubtful=True) for f in frames] if unsure else frames
+        return [replace(f, doubtful=True) for f in frames] if self._unsure(piece) else frames
 
     def _frame(self, index: int, values: NDArray[np.float64], columns: Columns, i: int) -> Frame:
-        x_cm, y_cm = self.attributes["pitch_cm"]
-        left_cm, top_cm = self.attributes["origin_cm"]
         note = json.loads(columns.notes[i] or b"{}")
         times = (float(columns.time_s[i]), float(columns.device_time_s[i]))
         time_s, device_time_s = (None if np.isnan(t) else t for t in times)
         return Frame.of(
             values,
-            (float(x_cm), float(y_cm)),
-            (float(left_cm), float(top_cm)),
+            self._pair("pitch_cm"),
+            self._pair("origin_cm"),
             str(self.attributes["quantity"]),
             index=index,
             time_s=time_s,

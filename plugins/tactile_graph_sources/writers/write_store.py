@@ -268,7 +268,8 @@ class StoreWriter:
 
     def _put_values_on_disc(self, low: int) -> None:
         """Before the journal vouches for them, which has a copy of all the rest."""
-        chunk = self.path / chunk_file(self.path, "values", self._metadata["values"], low)
+        array = array_of(self.path, "values", self._metadata["values"], low + 1)
+        chunk = self.path / chunk_file(array, "values", low)
         if chunk.exists():  # Zarr writes none in which every value is missing
             put_on_disc(chunk, self.path)
 

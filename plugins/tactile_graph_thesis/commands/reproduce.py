@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.many.options import place_asked, workers_options
+from tactile_graph.cli.say import say
 from tactile_graph_thesis.commands.targets import BOOK, STDOUT, Targets
 
 if TYPE_CHECKING:
@@ -107,12 +108,17 @@ def _made(makers: Makers, book: bool) -> list[Outcome]:
     found: list[Outcome] = []
     pictures: dict[str, bytes] = {}
     items, work, targets = makers.items, makers.work, makers.targets
-    with Showing(items, work, tables=not book, aside=targets.csv == STDOUT) as showing:
-        for written in makers.written():
-            if written.svg is not None:
-                pictures[written.outcome.item.id] = written.svg
-            showing.done(written.outcome)
-            found.append(written.outcome)
+    try:
+        with Showing(items, work, tables=not book, aside=targets.csv == STDOUT) as showing:
+            for written in makers.written():
+                if written.svg is not None:
+                    pictures[written.outcome.item.id] = written.svg
+                showing.done(written.outcome)
+                found.append(written.outcome)
+    except KeyboardInterrupt:
+        if targets.folder is not None:
+            say(f"{len(found)} of {len(items)} items are in {targets.folder}", err=True)
+        raise
     if book and targets.folder is not None:
         _write_book(found, pictures, targets.folder, work)
     showing.end(found, targets.written(book), time.perf_counter() - start, book)

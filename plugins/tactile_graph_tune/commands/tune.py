@@ -16,6 +16,7 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
 )
 from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
+from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -68,6 +69,9 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @click.option("--error-at-most", "most_error", type=click.FloatRange(min=0.0), metavar="ERROR",
               help="Find the cheapest whose mean error, where something lies, is no greater.  "
               "[default: as it is]")  # fmt: skip
+@click.option("--margin", type=click.FloatRange(min=0.0), default=0.0, metavar="SHARE",
+              help="Share by which the error may be greater than it is, where neither it nor the "
+              "time is limited.  [default: 0]")  # fmt: skip
 @click.option("--missed-at-most", "most_missed", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
               help="Miss no more of the frames where something lies.  [default: as it is]",
               )  # fmt: skip
@@ -108,7 +112,7 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     )
     request = Request(
         opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
-        asked.most_false, asked.most_us, asked.fields, free, asked.rounds, asked.seed,
+        asked.most_false, asked.most_us, asked.margin, asked.fields, free, asked.rounds, asked.seed,
         place_asked(asked.workers, asked.on),
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
@@ -117,6 +121,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
             frames = _frames(opened, span, asked)
             apart = [f for name in asked.held_out for f in _recorded(opened, name, asked)]
             found = tuned_of(request, frames, apart, lambda what, n, of: bar.at(n, of))
+    except KeyboardInterrupt:
+        say("nothing was chosen, and nothing written", err=True)
+        raise
     finally:
         bar.stop()
     _show(found)
@@ -145,6 +152,7 @@ class _Options:
     most_missed: float | None
     most_false: float | None
     most_us: float | None
+    margin: float
     rounds: int
     seed: int
     written: str | None
@@ -158,6 +166,8 @@ def _check_files(asked: _Options) -> None:
     """Refuse what could not be written in the end, before the work."""
     if asked.most_error is not None and asked.most_us is not None:
         raise UsageError("--error-at-most and --time-at-most: one of them is the goal, not both")
+    if asked.margin and (asked.most_error, asked.most_us) != (None, None):
+        raise UsageError("--margin: only where neither --error-at-most nor --time-at-most is given")
     if asked.written is not None:
         if not asked.written.endswith((".yaml", ".yml")):
             raise UsageError(f"-o {asked.written}: a pipeline file ends in .yaml")

@@ -36,6 +36,7 @@ class Goal:
 
     Each is None where it was not said: then an error, a share of misses, or one of false answers
     may be no greater than ``given``'s, and a time may be anything. Steps never fail in more frames.
+    ``margin`` is the share by which the error may be greater all the same.
     """
 
     given: Choice
@@ -43,6 +44,7 @@ class Goal:
     error: float | None = None
     missed: float | None = None
     false: float | None = None
+    margin: float = 0.0
 
     @property
     def by_time(self) -> bool:
@@ -54,7 +56,7 @@ class Goal:
         own = weigh(self.given, rows)
         return Means(
             inf if self.time_us is None else self.time_us,
-            inf if self.by_time else _said(self.error, own.error),
+            inf if self.by_time else _said(self.error, (1.0 + self.margin) * own.error),
             _said(self.missed, own.missed),
             _said(self.false, own.false),
             float(own.failed),

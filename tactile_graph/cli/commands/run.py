@@ -140,10 +140,6 @@ def run(
     divided = workers is not None or on is not None or resume
     if divided:
         _check_divided(lines, plot, decisions)
-        if on is None:
-            from tactile_graph.many.processes import hurry
-
-            hurry()
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
     if divided:

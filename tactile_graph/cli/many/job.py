@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +24,7 @@ from tactile_graph.many.sharing import for_the_way, ready
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.ranges import Irregular, Ranges
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.frame_stack import FrameStack
 
 if TYPE_CHECKING:
     from tactile_graph.api.result import Result
@@ -158,8 +159,7 @@ class _Bench:
             self.runner = self._settled(portion)
         frames, pipeline = self._frames(portion), self.job.pipeline
         if portion.high - self.job.start >= WORTH_BLOCKS:
-            given = frames if portion.sent is None else iter(portion.given())
-            return pipeline.blocks(given, self.runner)
+            return pipeline.blocks(self._stacks(portion) or frames, self.runner)
         return pipeline.results(frames, self.runner)
 
     def _settled(self, portion: Portion) -> Runner[Result]:
@@ -175,6 +175,14 @@ class _Bench:
             if settling.done or low == portion.start or not memory:
                 return runner
             back *= FARTHER
+
+    def _stacks(self, portion: Portion) -> Iterable[Frame | FrameStack] | None:
+        """Return a portion's frames in stacks where they are to be had so, and are all wanted."""
+        if portion.sent is not None:
+            return portion.given()
+        read = None if self.ranges is None else self.ranges.read_in_stacks
+        wanted = portion.without.isdisjoint(range(portion.low, portion.high))
+        return read(portion.low, portion.high) if read is not None and wanted else None
 
     def _frames(self, portion: Portion) -> Iterator[Frame]:
         if portion.sent is not None:

@@ -128,8 +128,10 @@ class DataSet:
         with said(self._root):
             if not self._lock.take():
                 raise UsageError(f"-o {self._root}: another run is writing into it")
-            for left in self._root.glob(f"{KEY}=*/.part-*.part"):  # of a run that was killed
-                left.unlink()
+            # Of a run that was killed.
+            for lost in (f"{KEY}=*/.part-*.part", f".{MANIFEST}.*.part"):
+                for left in self._root.glob(lost):
+                    left.unlink()
 
     def _of(self, name: str) -> _Recording:
         found = self._written.get(name)

@@ -20,6 +20,8 @@ from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import said, uninterrupted
 
 ROWS_A_GROUP = 10_000
+FRAME = "frame"
+"""The column of numbers that frames are counted by."""
 MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
 
 
@@ -112,11 +114,17 @@ class ParquetFile:
                 units = units_of(self._table, self._quantity)
                 fields = [_field(arrow, c, units.get(c.key, "")) for c in self._table.columns]
                 self._schema = arrow.schema(fields)
-                self._writer = arrow.parquet.ParquetWriter(str(self._part), self._schema)
+                self._writer = _writer(arrow, str(self._part), self._schema)
             cells = {c.key: _plain(self._cells[c.key], c.kind) for c in self._table.columns}
             self._writer.write_table(arrow.table(cells, schema=self._schema))
         self._cells = {key: [] for key in self._cells}
         self._n_rows = 0
+
+
+def _writer(arrow: Any, where: str | BinaryIO, schema: Any) -> Any:
+    """Return what writes a file; a dictionary of numbers that hardly come twice is not tried."""
+    repeating = [f.name for f in schema if not (arrow.types.is_floating(f.type) or f.name == FRAME)]
+    return arrow.parquet.ParquetWriter(where, schema, use_dictionary=repeating or False)
 
 
 def _field(arrow: Any, column: Column, unit: str) -> Any:
@@ -152,7 +160,7 @@ def _joined(parts: Iterator[bytes], file: BinaryIO) -> None:
     """Write the rows of several files as one, in groups as large as one process makes them."""
     arrow = pyarrow()
     first = arrow.parquet.read_table(io.BytesIO(next(parts)))
-    with arrow.parquet.ParquetWriter(file, first.schema) as writer:
+    with _writer(arrow, file, first.schema) as writer:
         held, n_held = [first], first.num_rows
         for part in parts:
             table = arrow.parquet.read_table(io.BytesIO(part), schema=first.schema)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
+from tactile_graph.cli.output.column_texts import csv_lines, number_texts
 from tactile_graph.engine.block import Block
 from tactile_graph.engine.block_columns import parts_of, plain_fields
 from tactile_graph.engine.outcome import NO_VALUE
@@ -20,7 +21,7 @@ from tactile_graph.engine.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said
-from tactile_graph.foreign_text import csv_line, csv_lines, visible
+from tactile_graph.foreign_text import csv_line, visible
 from tactile_graph.wires.stacks import Column, Stack
 
 
@@ -140,7 +141,7 @@ def _json_numbers(numbers: list[Any]) -> Iterable[str]:
     """Return numbers as JSON has them, one type throughout as a rule."""
     kinds = {number.__class__ for number in numbers}
     if kinds == {int} or (kinds == {float} and all(map(math.isfinite, numbers))):
-        return map(repr, numbers)
+        return number_texts(numbers)
     return map(_json_number, numbers)
 
 

@@ -192,6 +192,23 @@ def assigned(values: Any, n: int) -> float:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("tried", [("0.0",), machine_code.TRIED])
+def test_other_threads_run_while_machine_code_does(
+    fresh: Any, monkeypatch: pytest.MonkeyPatch, tried: tuple[str, ...]
+) -> None:
+    monkeypatch.setattr(machine_code, "TRIED", tried)
+    total = fresh().total
+    assert total.compiled(1.0, 1) == 1.0
+    worker = threading.Thread(target=total.compiled, args=(1.0, 400_000_000))
+    worker.start()
+    stamps = [time.perf_counter()]
+    while worker.is_alive():
+        time.sleep(0.001)
+        stamps.append(time.perf_counter())
+    assert max(np.diff(stamps)) < 0.5 * (stamps[-1] - stamps[0])
+
+
+@pytest.mark.slow
 def test_numbas_own_functions_serve_entries_and_others_alike() -> None:
     entry = whole.entry_of(assigned.loops)
     assert entry(VALUES, 5) == 1.0

@@ -5,15 +5,19 @@ from __future__ import annotations
 import gc
 import os
 import time
+import types
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import helpers_isolated as steps
 from helpers_graphs import STEPS, frame, registry
-from tactile_graph import Image, Pipeline, loads
+from tactile_graph import Image, Pipeline, hookimpl, loads
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.pipeline.graph import Isolation
+from tactile_graph.plugins.registry import Registry
 
 pytestmark = pytest.mark.slow
 OWN = {
@@ -135,3 +139,120 @@ def test_mistakes_in_the_file_are_told_with_their_place(node: str, message: str)
 def test_what_was_said_of_a_step_stands_in_the_record_of_the_run() -> None:
     resolved = pipeline("step: moody, in: frame, time_limit_s: 0.5").resolved()
     assert resolved["nodes"]["risky"]["time_limit_s"] == 0.5
+
+
+# -- steps that share a process ------------------------------------------------------------------
+
+TOGETHER = """
+pipeline: p
+isolated: [{isolated}]
+nodes:
+  one: {{step: elsewhere, in: frame}}
+  two: {{step: elsewhere, in: frame}}
+  sum: {{step: counting, in: frame}}
+  at_home: {{step: elsewhere, in: frame, isolated: false}}
+  other: {{step: read, in: frame, isolated: false}}
+outputs: [one, two, sum, at_home, other]
+"""
+
+
+def marked(isolated: str = "", **marks: float | None) -> Pipeline:
+    """Return a pipeline of a plugin ``risky`` that marks steps, and of a file that names some."""
+    module = types.ModuleType("risky")
+    offered = {**OWN, "read": STEPS["read"]}
+    module.tactile_graph_steps = hookimpl(lambda: offered)  # type: ignore[attr-defined]
+    module.tactile_graph_isolated = hookimpl(lambda: marks)  # type: ignore[attr-defined]
+    plugins = Registry([("risky", "risky-package", "1", lambda: module)])
+    (plugin,) = plugins.plugins
+    assert not plugin.error, plugin.error
+    return loads(TOGETHER.format(isolated=isolated), "p.yaml", plugins)
+
+
+def processes(result: Any) -> list[int]:
+    return [result[name] for name in ("one", "two", "at_home")]
+
+
+@pytest.mark.parametrize(
+    ("isolated", "marks"),
+    [("elsewhere", {}), ("risky.elsewhere", {}), ("risky.*", {}), ("", {"elsewhere": None})],
+)
+def test_steps_named_by_the_file_or_marked_by_their_plugin_share_a_process(
+    isolated: str, marks: dict[str, float | None]
+) -> None:
+    one, two, at_home = processes(marked(isolated, **marks).runner()(frame(0)))
+    assert one == two != at_home == os.getpid()
+
+
+def test_two_names_of_the_list_are_two_processes() -> None:
+    text = TOGETHER.replace("two: {{step: elsewhere", "two: {{step: moody")
+    names = "elsewhere, moody, counting"
+    graph = loads(text.format(isolated=names), "p.yaml", registry({**STEPS, **OWN}))
+    found = {n.isolation.process for n in graph.nodes.values() if n.isolation}
+    assert len(found) == 3
+
+
+def test_a_step_that_ends_the_process_takes_the_state_of_those_beside_it_and_is_named() -> None:
+    text = TOGETHER.replace("two: {{step: elsewhere", "two: {{step: moody").format(isolated="t.*")
+    runner = loads(text, "p.yaml", registry({**STEPS, **OWN}, plugin="t")).runner()
+    assert runner(frame(9))["sum"][0] == 1
+    crashed = runner(frame(steps.CRASHES, 1))
+    assert "ended its process by SIGKILL at node 'two'" in crashed.outcome("two").reason
+    assert crashed["other"] == steps.CRASHES
+    waits = runner(frame(9, 2)).outcome("sum")
+    assert isinstance(waits, Skipped)
+    told = "the process of t is being started anew: the last ended its process by SIGKILL"
+    assert waits.reason.startswith(told)
+    end = time.monotonic() + 60
+    while "sum" not in (result := runner(frame(9, 3))):
+        assert time.monotonic() < end
+        runner.forget()
+        time.sleep(0.02)
+    assert result["sum"][0] == 1
+
+
+def test_a_plugin_may_say_how_long_a_call_takes_at_most() -> None:
+    graph = marked(elsewhere=2.5)
+    assert graph.nodes["one"].isolation == Isolation(2.5, "risky")
+    assert graph.resolved()["nodes"]["one"]["time_limit_s"] == 2.5
+    assert graph.nodes["at_home"].isolation is None
+
+
+def test_nodes_of_pipelines_that_are_used_are_found_by_the_list_too(tmp_path: Path) -> None:
+    inner = "pipeline: i\nnodes: {a: {step: elsewhere, in: frame}}\noutputs: [a]"
+    (tmp_path / "i.yaml").write_text(inner)
+    text = "pipeline: p\nisolated: [elsewhere]\nnodes: {used: {use: i.yaml}}\noutputs: [used]"
+    graph = loads(text, str(tmp_path / "p.yaml"), registry({**STEPS, **OWN}))
+    isolation = graph.nodes["used/a"].isolation
+    assert isolation is not None
+    assert isolation.process
+
+
+def test_a_runner_that_takes_anothers_place_takes_its_processes_too() -> None:
+    first = marked("elsewhere").runner()
+    one, two, _ = processes(first(frame(0)))
+    then = marked("elsewhere").runner(after=first)
+    assert processes(then(frame(0)))[:2] == [one, two]
+    assert then.anew == ()
+
+
+@pytest.mark.parametrize(
+    ("isolated", "message"),
+    [
+        ("isolated: moody", "'isolated' must be a list of steps, or of plugins as"),
+        ("isolated: [2]", r"'isolated' must be a list of steps, .*, got 2"),
+        ("isolated: [mody]", "'isolated': no step named 'mody'; did you mean 'moody'"),
+        ("isolated: [nobody.*]", "'isolated': no plugin named 'nobody'"),
+    ],
+)
+def test_mistakes_in_the_list_are_told_with_their_place(isolated: str, message: str) -> None:
+    text = f"pipeline: p\n{isolated}\nnodes: {{a: {{step: moody, in: frame}}}}\noutputs: [a]"
+    with pytest.raises(PipelineError, match=rf"p.yaml:2:\d+: {message}"):
+        loads(text, "p.yaml", registry({**STEPS, **OWN}))
+
+
+def test_a_plugin_that_marks_what_it_has_not_is_told() -> None:
+    module = types.ModuleType("risky")
+    module.tactile_graph_steps = hookimpl(lambda: OWN)  # type: ignore[attr-defined]
+    module.tactile_graph_isolated = hookimpl(lambda: {"mody": None})  # type: ignore[attr-defined]
+    (plugin,) = Registry([("risky", "risky-package", "1", lambda: module)]).plugins
+    assert "tactile_graph_isolated: it has no step 'mody'; did you mean 'moody'" in plugin.error

@@ -55,6 +55,23 @@ def test_chance_deaths_beside_a_deadly_frame_blame_no_other() -> None:
     assert (came, left_out) == ([k for k in range(60) if k != 12], [12])
 
 
+def test_nothing_is_cancelled_in_an_executor_that_may_break(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A process pool of Python 3.11 never says what became of the rest if it does."""
+
+    def refused(future: Future[Any]) -> bool:
+        raise AssertionError("cancelled")
+
+    monkeypatch.setattr(Future, "cancel", refused)
+    came, left_out = done(place({25}))
+    assert (came, left_out) == ([k for k in range(60) if k != 25], [25])
+    with InOrder(place(), frames, b"", [].append) as workers:
+        next(workers.results(portions(6)))
+        workers.drop()
+        assert [k for _, found in workers.results(portions(6)) for k in found] == [*range(60)]
+
+
 def test_workers_that_die_without_any_frame_end_it_and_blame_none() -> None:
     class Down(Executor):
         def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:

@@ -130,9 +130,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             r"\(byte 0xf6 in line 2\); save it as UTF-8$",
         ),
         ("files/no.yaml", "^no pipeline file 'files/no.yaml'$"),
+        ({"pipeline": "p"}, r"^a pipeline's name or file is needed, got dict; loads\(\) takes"),
+        (None, "^a pipeline's name or file is needed, got NoneType; "),
+        ("pipeline: p\nabout: x.yaml", "got 2 lines of text, 'pipeline: p about: x.yaml'; loads"),
     ],
 )
-def test_what_is_no_readable_file_is_told(reg: Any, name: str, message: str) -> None:
+def test_what_is_no_readable_file_is_told(reg: Any, name: Any, message: str) -> None:
     with pytest.raises(UsageError, match=message):
         load(name, reg)
 

@@ -79,6 +79,36 @@ def test_a_disc_is_found_on_more_pads_that_nobody_described(kind, centre_cm, rad
     check_a_disc_is_found(kind, centre_cm, radius_cm)
 
 
+@many
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "centre_cm"),
+    [
+        ("noise 1 mV", 0.13),
+        ("law 1/F", 0.13),
+        ("leaning face", 0.22),
+        ("foam 0.6 cells", 0.30),
+        ("small objects", 0.25),
+    ],
+)
+def test_a_quick_disc_is_as_good_and_no_surer_than_it_may_be(kind, centre_cm):
+    off, _, held, _ = looked_at(KINDS[kind], step=LocateDisc(quick=True))
+    assert off < centre_cm
+    assert held >= 0.8
+
+
+@pytest.mark.slow
+@plain
+def test_on_a_large_pad_a_quick_disc_is_the_disc():
+    rng = np.random.default_rng(3)
+    y, x = np.mgrid[:40, :40]
+    values = np.where(np.hypot(x - 20.3, y - 19.6) < 8.0, 100.0, 0.0)
+    values *= np.exp(0.3 * rng.standard_normal(values.shape))
+    image = Image(values, (1.3, 1.3), (-0.15, -0.15), "gram")
+    one, other = (LocateDisc(quick=quick)(image) for quick in (False, True))
+    assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
+
+
 @pytest.mark.slow
 @plain
 def test_an_object_over_the_edge_is_found():
@@ -119,6 +149,29 @@ def test_the_shape_is_told_by_the_evidence():
             assert found.probability == getattr(found, found.name)
             right += found.name == shape
     assert right >= 10
+
+
+@many
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["3 stuck elements", "strays 1 %", "gains correlated"])
+def test_a_good_answer_is_hardly_ever_flagged(kind):
+    off, _, _, fits = looked_at(KINDS[kind], 60)
+    assert off < 0.15
+    assert fits >= 0.9
+
+
+@many
+@pytest.mark.slow
+def test_what_is_flagged_is_further_off():
+    frames = Bench(KINDS["turn-on 40 g"], np.random.default_rng(5)).frames(60)
+    off, fits = [], []
+    for frame in frames:
+        (true,), found = frame.truth, LocateDisc().posterior(frame.image)
+        off.append(math.dist(found.mean[:2], (true.shape.x_cm, true.shape.y_cm)))
+        fits.append(found.fits)
+    far, near = np.array(off)[~np.array(fits)], np.array(off)[fits]
+    assert 5 < far.size < 40
+    assert far.mean() > 3.0 * near.mean()
 
 
 @many

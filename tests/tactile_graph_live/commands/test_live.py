@@ -12,6 +12,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -492,3 +493,18 @@ def test_a_variant_runs_beside_and_what_it_came_to_is_kept(folder: Path) -> None
     told = json.loads(figures.read_text())
     assert told["frames"] >= 10
     assert {"frame", "difference", "first", "beside"} == set(told["kept"][0])
+
+
+def test_ten_viewers_get_the_newest_and_cost_no_frame(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "100") as command, ExitStack() as open_pages:
+        pages = [open_pages.enter_context(Page(command)) for _ in range(10)]
+        for page in pages:
+            page.until("frame")
+        pulse = pages[0].until("pulse", viewers=10)
+        lost = pulse["shed"]
+        for page in pages:
+            index = [page.until("frame")["index"] for _ in range(5)]
+            assert index == sorted(set(index))
+        pulse = pages[0].until("pulse", viewers=10)
+        assert pulse["shed"] == lost
+        assert pulse["rate_hz"] > 50

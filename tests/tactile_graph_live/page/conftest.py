@@ -30,9 +30,9 @@ COMPLAINTS = """
 """
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """The system's Chromium."""
+    """The system's Chromium; of each module its own, as an event loop runs as long as it does."""
     playwright = pytest.importorskip("playwright.sync_api", reason="no playwright")
     pytest.importorskip("uvicorn", reason="the extra `live` is not there")
     if BROWSER is None:

@@ -201,7 +201,8 @@ def test_outcomes_are_words_and_shapes(page: Any, double: Double) -> None:
         "all => all.map(p => p.getAttribute('d'))"
     )
     assert len(set(drawn)) == 3
-    assert "all points lie in a line" in page.locator("#nodes [data-name=circle]").inner_text()
+    circle = page.locator("#nodes [data-name=circle]")
+    wait_for(lambda: "all points lie in a line" in circle.inner_text(), "the reason is written")
 
 
 def test_numbers_stand_with_their_units(page: Any, double: Double) -> None:

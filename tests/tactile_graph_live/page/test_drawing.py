@@ -115,6 +115,39 @@ def test_numbers_stand_in_the_cells(page: Any, double: Double) -> None:
     assert page.evaluate(ink, [x, y]) > 10
 
 
+PAINTED = """([id, name]) => {
+    const e = document.createElement("span");
+    e.style.color = `var(${name})`;
+    document.body.append(e);
+    const [r, g, b] = getComputedStyle(e).color.match(/\\d+/g).map(Number);
+    const c = document.getElementById(id), ratio = c.width / c.clientWidth;
+    const data = c.getContext("2d").getImageData(54 * ratio, 0, c.width - 64 * ratio, c.height).data;
+    let n = 0;
+    for (let i = 0; i < data.length; i += 4) {
+        const away = Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b);
+        if (data[i + 3] > 100 && away < 12) n += 1;
+    }
+    return n;
+}"""
+
+
+def test_lost_and_shed_frames_and_both_latencies_have_lines_of_their_colours(
+    page: Any, double: Double
+) -> None:
+    to_page = {"median": 1300.0, "p99": 2000.0, "most": 2500.0}
+    for n in range(12):
+        double.say(pulse(lost=20 * n, shed=30 * n, frames=100 * n, page_latency_us=to_page))
+        page.wait_for_timeout(120)
+    for canvas, lines in (("flow-chart", ("--accent", "--p99", "--bad")),
+                          ("latency-chart", ("--accent", "--p99", "--good", "--bad"))):  # fmt: skip
+        for name in lines:
+            assert page.evaluate(PAINTED, [canvas, name]) > 5, (canvas, name)
+    told = [key.strip() for key in page.locator("#flow .keyed > span").all_inner_texts()]
+    assert told == ["answered", "lost on the way", "shed here"]
+    told = [key.strip() for key in page.locator("#timing .keyed > span").all_inner_texts()]
+    assert told == ["to the result, median", "99\xa0%", "to the page, median", "deadline"]
+
+
 def test_thirty_pictures_a_second_cost_little_and_leave_nothing_behind(
     page: Any, double: Double
 ) -> None:

@@ -152,7 +152,7 @@ def test_nothing_moves_where_that_is_not_wanted(window: Any, double: Double) -> 
 def test_landmarks_labels_and_headings(window: Any, double: Double) -> None:
     page = opened(window, double).page
     assert page.get_by_role("banner").count() == page.get_by_role("main").count() == 1
-    regions = ["Pad", "Graph", "Settings", "File", "Results", "Latency"]
+    regions = ["Pad", "Graph", "Settings", "File", "Results", "Latency", "Rate"]
     for name in regions:
         assert page.get_by_role("region", name=name, exact=True).count() == 1, name
     assert page.get_by_role("heading", level=1).inner_text() == "rings"

@@ -1,4 +1,4 @@
-"""The page's own little algorithms: rails beside the graph, changed lines, numbers in words."""
+"""The page's own little algorithms: rails, changed lines, numbers in words, what charts keep."""
 
 from __future__ import annotations
 
@@ -123,3 +123,28 @@ def test_ticks_are_round_and_within(call: Any) -> None:
     assert call("numbers", "ticks", 0, 20.8, 5) == [0, 5, 10, 15, 20]
     assert call("numbers", "ticks", 0, 3, 6) == [0, 0.5, 1, 1.5, 2, 2.5, 3]
     assert call("numbers", "ticks", 2, 2, 5) == [2]
+
+
+HISTORY = """async ([seconds, values]) => {
+    const { History } = await import("/charts.js");
+    const history = new History(seconds);
+    for (const [at, value] of values) history.push(at, value);
+    return [history.times, history.values, history.range()];
+}"""
+
+
+def history(page: Any, seconds: float, values: list[Any]) -> Any:
+    return page.evaluate(HISTORY, [seconds, values])
+
+
+def test_a_history_keeps_some_seconds_and_gaps(window: Any) -> None:
+    page = window().page
+    with served(Double()) as double:
+        page.goto(double.address)
+        times, values, of = history(page, 10, [[0, 1], [100, None], [200, 3]])
+        assert (times, values, of) == ([0, 100, 200], [1, None, 3], [1, 3])
+        assert history(page, 10, [[0, None]])[2] is None
+        times, values, of = history(page, 1, [[10 * n, n] for n in range(5000)])
+        assert len(times) == len(values) <= 100 + 65  # trimmed now and then
+        assert times[-1] - times[0] <= 1000 + 650
+        assert of[1] == 4999

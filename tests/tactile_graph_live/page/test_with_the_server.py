@@ -133,6 +133,42 @@ def test_a_slider_changes_what_runs_and_the_yaml_is_saved(window: Any, file: Pat
         assert found.complaints() == []
 
 
+NESTED = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  seen: {step: threshold, in: frame, with: {level_v: 0.01}}
+  objects: {step: split_contacts, in: [frame, seen]}
+  tracks: {step: track, in: objects.contacts}
+  cheap: {use: circle-1}
+outputs: [cheap, tracks]
+"""
+
+
+def test_a_setting_within_a_pipeline_that_is_used_and_what_begins_anew(
+    window: Any, file: Path
+) -> None:
+    file.write_text(NESTED)
+    with running(file.parent, file.name, "--rate", "40") as command:
+        found = opened(window, command)
+        page = found.page
+        group = page.locator("#setting-groups [data-node='cheap/footprint']")
+        if group.get_attribute("open") is None:
+            group.locator("summary").click()
+        box = group.get_by_label("level V", exact=True)
+        box.fill("0.05")
+        box.press("Enter")
+        page.locator("#yaml li.changed").wait_for()
+        told = page.locator("#yaml li.changed").inner_text()
+        assert "cheap: {use: circle-1, with: {footprint.level_v: 0.05}}" in told
+        change = page.locator("#change")
+        change.wait_for()
+        assert "anew" not in change.inner_text()
+        save(file, NESTED.replace("0.01", "0.02"))
+        wait_for(lambda: "What tracks kept" in change.inner_text(), "what began anew is told", 20)
+        assert found.complaints() == []
+
+
 def test_pause_step_scrub_and_live(window: Any, file: Path) -> None:
     with running(file.parent, file.name, "--rate", "40") as command:
         found = opened(window, command)

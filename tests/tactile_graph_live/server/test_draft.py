@@ -77,6 +77,37 @@ def test_values_are_spelled_so_that_yaml_reads_them_back() -> None:
         assert "\n" not in spelled(value)
 
 
+NESTED = """\
+pipeline: nested
+source: {step: sample, with: {name: discs}}
+nodes:
+  cheap: {use: circle-1, with: {footprint.level_v: 0.02}}  # quick
+  middle:
+    use: circle-3
+  print: {step: threshold, in: frame, with: {level_v: 0.01}}
+  areas: {step: split_contacts, in: [frame, print]}
+  each_one: {use: circle-2, in: areas.contacts, each: true}
+outputs: [cheap, middle, each_one]
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "told"),
+    [
+        ("cheap/footprint", "{use: circle-1, with: {footprint.level_v: 0.03}}  # quick"),
+        ("middle/footprint", "use: circle-3\n    with: {footprint.level_v: 0.03}\n"),
+        ("each_one/footprint", "each: true, with: {footprint.level_v: 0.03}}"),
+    ],
+)
+def test_a_setting_within_a_pipeline_that_is_used_is_written_where_it_is_used(
+    tmp_path: Path, node: str, told: str
+) -> None:
+    draft = opened(tmp_path, NESTED).with_value(node, "level_v", 0.03)
+    assert told in draft.text
+    assert tg.loads(draft.text).key == draft.pipeline.key != tg.loads(NESTED).key
+    assert draft.without_values(node, "level_v").text == NESTED
+
+
 def opened(tmp_path: Path, text: str = FLOW) -> Draft:
     path = tmp_path / "mine.yaml"
     path.write_text(text)

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame
+from tactile_graph.engine.gathering import flat
 from tactile_graph.steps import Report
 from tactile_graph.steps.ranges import Irregular, Ranges
-from tactile_graph_sources.recording import recording
+from tactile_graph.wires.frame_stack import FrameStack
+from tactile_graph_sources.recording import recording, recording_stacked
 from tactile_graph_sources.stores.in_ranges import ranges_of_stores
 from tactile_graph_sources.writers.write_store import StoreWriter
 
@@ -64,6 +66,38 @@ def test_any_range_is_what_the_source_gives(tmp_path: Path, settings: dict[str, 
         for high in (low + 1, low + 13, len(whole)):
             read = [told(f) for f in found.read(low, min(high, len(whole)))]
             assert read == whole[low:high]
+
+
+@pytest.mark.parametrize("settings", [{}, {"skip": 7}, {"flip": "rows"}], ids=str)
+def test_stacks_hold_the_same_frames(tmp_path: Path, settings: dict[str, Any]) -> None:
+    path = store(tmp_path / "a.zarr", 73)
+    whole = [told(f) for f in recording(path=path, report=Report(), **settings)]
+    found = ranges(path, **settings)
+    assert found.read_in_stacks is not None
+    for low in range(0, len(whole), 9):
+        for high in (low + 1, low + 13, len(whole)):
+            read = [*found.read_in_stacks(low, min(high, len(whole)))]
+            assert [told(f) for f in flat(read)] == whole[low:high]
+            assert "flip" in settings or any(isinstance(some, FrameStack) for some in read)
+
+
+def test_stacks_end_where_there_is_more_to_say(tmp_path: Path) -> None:
+    """What is marked, damaged or garbage comes frame by frame, as without stacks."""
+    path = store(tmp_path / "a.zarr", 1100, garbage=(1041,))
+    (path / "values" / "c" / "107" / "0" / "0").unlink()
+    reports = Report(), Report()
+    one_by_one = [told(f) for f in recording(path=path, report=reports[0])]
+    settings = {"frame_column": "", "value_column": "", "time_column": "", "cells": ""}
+    stacks = recording_stacked(
+        path=path, time_unit="", time_format="", report=reports[1], **settings
+    )
+    read = [*stacks]
+    assert isinstance(read[0], FrameStack)
+    assert [told(f) for f in flat(read)] == one_by_one
+    assert reports[0].counts == reports[1].counts
+    assert sorted(reports[0].troubles) == sorted(reports[1].troubles)
+    assert reports[0].counts["frames of garbage left out"] == 1
+    assert reports[0].counts["damaged records skipped"] == 10
 
 
 def test_a_leap_in_time_makes_it_irregular_as_far_as_it_is_told(tmp_path: Path) -> None:

@@ -43,6 +43,11 @@ def test_luck_on_one_half_is_not_taken():
     assert chosen(error=0.5) == 1
 
 
+def test_a_margin_is_a_share_of_the_error_as_it_is():
+    assert chosen(margin=1.4) == 2
+    assert chosen(margin=1.6) == 1
+
+
 def test_what_wins_on_empty_frames_only_is_not_taken():
     COLUMNS_3 = goal().limits(np.arange(4), weigh)
     assert not weigh(FOUND[3], np.arange(4)).within(COLUMNS_3)

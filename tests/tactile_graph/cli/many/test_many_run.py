@@ -301,3 +301,16 @@ def test_a_run_that_never_began_leaves_nothing(folder: Path) -> None:
     assert got.returncode == 2
     assert "no scheduler answers there" in got.stderr
     assert [p.name for p in folder.iterdir() if "x.csv" in p.name] == []
+
+
+@pytest.mark.slow
+def test_short_runs_are_equal_to_the_last_bit_by_machine_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Plain code answers a kernel's first calls, wherever these are: some of its sums differ."""
+    words = ("run", "objects", "--source", "simulate", "--with", "scene=mixed", "--frames", "40")
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", "compiled")
+    for name, workers in (("one.jsonl", ()), ("two.jsonl", ("--workers", "2"))):
+        got = ran(tmp_path, *words, *workers, "-o", name)
+        assert got.returncode == 0, got.stderr
+    assert (tmp_path / "one.jsonl").read_bytes() == (tmp_path / "two.jsonl").read_bytes()

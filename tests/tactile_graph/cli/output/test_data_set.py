@@ -184,6 +184,14 @@ def test_two_runs_do_not_write_into_one_at_once() -> None:
     assert rows() == {"left.txt": 2}
 
 
+def test_what_a_killed_run_left_of_the_manifest_is_cleared_up() -> None:
+    assert run("left.txt").exit_code == 0
+    left = Path("results", "._manifest.json.1.part")
+    left.write_bytes(b"{")
+    assert run("left.txt").exit_code == 0
+    assert not left.exists()
+
+
 def test_a_folder_as_output_says_how_a_data_set_is_asked_for() -> None:
     Path("results").mkdir()
     done = run("left.txt", to="results")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,6 @@ from tactile_graph.cli.output.writers import Csv, JsonLines
 from tactile_graph.engine.block import Block
 from tactile_graph.engine.columns import columns_of
 from tactile_graph.engine.table import make_table
-from tactile_graph.foreign_text import csv_line, csv_lines
 from tactile_graph.wires import TrueObject
 from tactile_graph.wires.frame_stack import in_stacks
 
@@ -106,13 +104,6 @@ def test_parquet_holds_the_same(both: Any, tmp_path: Path) -> None:
         file.close()
         tables.append(pq.read_table(tmp_path / f"{name}.parquet"))
     assert tables[0].equals(tables[1], check_metadata=True)
-
-
-def test_columns_become_the_lines_that_rows_become() -> None:
-    columns: list[list[Any]] = [[1, 2], [None, -0.0], ["=1+1", 'a"b\x1b'], [True, 1e-300]]
-    lines = csv_lines(columns)
-    assert lines == "".join(csv_line(row) for row in zip(*columns, strict=True))
-    assert next(csv.reader(lines.splitlines())) == ["1", "", "'=1+1", "True"]
 
 
 def test_blocks_of_a_whole_file_come_to_its_frames(plain_kernels: None) -> None:

@@ -1,0 +1,121 @@
+"""Which of some kinds of outlines a frame leaves possible, each looked at as long as it may win."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
+from tactile_graph_likelihood.any_pad.localise import AnyPad
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
+from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.model import Likeliest
+from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.search import POOR, moments
+
+ROUND = 0.6
+"""Variance of touched elements across over along from which on a disc is looked at first."""
+
+HOPELESS = 12.0
+"""Nats, over what neighbouring elements share, by which an even face's evidence is behind that of
+another kind once it is no longer looked at: what explains the rest explains it for both."""
+
+LOST = -5.0
+"""Surprise below which an attempt has rather been caught somewhere than shown a kind's worth."""
+
+Tops = dict[str, Likeliest]
+
+
+def tops_of_each(every: Mapping[str, AnyPad], readings: Readings) -> dict[str, Tops]:
+    """Return the most likely outlines of each kind, by pressure.
+
+    Parameters
+    ----------
+    every : mapping of str to AnyPad
+        By the name of the kind.
+    readings : Readings
+
+    Returns
+    -------
+    dict of str to dict
+        Of a kind that is hopelessly behind, the even face's alone, roughly; a kind of which no
+        outline is possible is left out.
+
+    Raises
+    ------
+    Degenerate
+        If none is possible.
+    """
+    found: dict[str, Likeliest] = {}
+    if readings.states.size <= LARGE_PAD and len(every) > 1:
+        every, found = _first_look(every, readings)
+    best = max(found.values(), key=lambda its: its.evidence, default=None)
+    tops: dict[str, Tops] = {}
+    reason = Degenerate("none of the shapes explains what is touched")
+    for name, any_pad in every.items():
+        try:
+            if best is None:
+                tops[name] = any_pad.tops(readings)
+            elif _may_win(any_pad, found[name], best, readings.touched):
+                tops[name] = any_pad.completed(readings, found[name])
+            else:
+                tops[name] = {EVEN: found[name]}
+        except Degenerate as why:
+            reason = why
+    if not tops:
+        raise reason
+    return tops
+
+
+def _first_look(
+    every: Mapping[str, AnyPad], readings: Readings
+) -> tuple[Mapping[str, AnyPad], dict[str, Likeliest]]:
+    """Return what attempts find of each kind that may win, and roughly of the others.
+
+    Where there are strays, with the fits that know of them: they compare where all know of as many.
+    """
+    kinds = {any_pad.told.kind: name for name, any_pad in every.items()}
+    first = kinds.get(DISC if _is_round(readings) else RECTANGLE, next(iter(every)))
+    lead = every[first].searched(readings)
+    if lead.mode.height == -math.inf:
+        return every, {}
+    if strays := every[first].strays(readings, lead):
+        every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
+        lead = every[first].again(readings, lead)
+    found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
+    for name, any_pad in every.items():
+        if name == first:
+            continue
+        grown = is_disc and any_pad.told.kind == ELLIPSE
+        its = any_pad.near(readings, _as_ellipse(lead.mode.p) if grown else None)
+        best = max(found.values(), key=lambda one: one.evidence)
+        if (its.unsure or not grown) and _may_win(any_pad, its, best, readings.touched):
+            its = any_pad.searched(readings, its)
+        found[name] = its
+    return every, found
+
+
+def _may_win(any_pad: AnyPad, its: Likeliest, best: Likeliest, touched: int) -> bool:
+    """Return whether an outline is not hopelessly behind another one, or only caught there."""
+    if its.mode.height == -math.inf:
+        return True
+    if its.fit.surprise < LOST and any_pad.told.kind != DISC:
+        return True
+    shared = variance_inflation(best.fit.neighbours, touched)
+    return best.evidence - its.evidence < HOPELESS * shared
+
+
+def _is_round(readings: Readings) -> bool:
+    """Return whether what is touched is about as wide as it is high, along any axis."""
+    _, _, _, xx, xy, yy, _ = moments.call(readings.grid, readings.logs, readings.states).tolist()
+    middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
+    return bool(middle - off >= ROUND * (middle + off))
+
+
+def _as_ellipse(disc: Values) -> Values:
+    """Return the numbers of an ellipse that is a disc, and what follows them."""
+    return np.concatenate([disc[:3], disc[2:3], [0.0], disc[3:]])

@@ -1,0 +1,93 @@
+"""A runner takes the place of another: what computes the same goes on with its state."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from helpers_graphs import STEPS, cases, frame, registry, shown
+from tactile_graph import Pipeline, loads
+
+FLOW = """
+pipeline: sums
+nodes:
+  number: {step: read, in: frame}
+  more: {step: add1, in: number, with: {k: 1}}
+  sum: {step: count, in: number}
+  sum_of_more: {step: count, in: more}
+outputs: [sum, sum_of_more]
+"""
+
+
+def pipeline(text: str = FLOW) -> Pipeline:
+    return loads(text, "p.yaml", registry(STEPS))
+
+
+def sums(runner: Any, index: int) -> tuple[int, int]:
+    result = runner(frame(10, index))
+    return result["sum"], result["sum_of_more"]
+
+
+def test_a_node_that_computes_the_same_goes_on_and_one_that_reads_another_begins_anew() -> None:
+    first = pipeline().runner()
+    assert [sums(first, i) for i in range(2)] == [(10, 11), (20, 22)]
+    then = pipeline(FLOW.replace("k: 1", "k: 2")).runner(after=first)
+    assert then.anew == ("sum_of_more",)
+    assert sums(then, 2) == (30, 12)
+    back = pipeline().runner(after=then)
+    assert back.anew == ("sum_of_more",)
+    assert sums(back, 3) == (40, 11)
+
+
+def test_a_runner_that_comes_after_none_begins_everything_anew() -> None:
+    assert pipeline().runner().anew == ("sum", "sum_of_more")
+
+
+def test_a_node_keeps_its_state_under_another_name() -> None:
+    first = pipeline().runner()
+    sums(first, 0)
+    then = pipeline(FLOW.replace("sum_of_more", "total")).runner(after=first)
+    assert then.anew == ()
+    assert then(frame(10, 1))["total"] == 22
+
+
+def test_the_time_that_passed_is_told_across_the_change() -> None:
+    first = pipeline().runner()
+    first(frame(10, 0, 1.0))
+    then = pipeline(FLOW.replace("k: 1", "k: 2")).runner(after=first)
+    assert then(frame(10, 1, 1.5))["sum"] == 20 + 50
+
+
+@settings(
+    max_examples=40,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    database=None,
+)
+@given(case=cases())
+def _goes_on(folder: Path, case: tuple[dict[str, Any], dict[str, Any]]) -> None:
+    document, library = case
+    files = {name: folder / f"{name}.yaml" for name in library}
+    for name, path in files.items():
+        path.write_text(shown(library[name]))
+    at_home, runner = (
+        loads(shown(document), "random.yaml", registry(STEPS, files)).runner() for _ in range(2)
+    )
+    for index, number in enumerate((0, 3, 4, 5, 1, 2)):
+        one = frame(number, index, 0.5 * index)
+        expected = at_home(one).explain()
+        assert [(s.node, s.state, s.reason) for s in runner(one).explain()] == [
+            (s.node, s.state, s.reason) for s in expected
+        ]
+        again = loads(shown(document), "random.yaml", registry(STEPS, files))
+        runner = again.runner(after=runner)
+        assert runner.anew == ()
+
+
+@pytest.mark.slow
+def test_any_pipeline_goes_on_as_if_nothing_had_happened(tmp_path: Path) -> None:
+    _goes_on(tmp_path)

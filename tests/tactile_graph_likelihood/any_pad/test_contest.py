@@ -1,0 +1,70 @@
+"""Kinds of outlines are looked at as long as they may win, and compare where all know the same."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
+from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
+from tactile_graph_likelihood.single.any_pressure import EVEN
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+from second_simulator import KINDS, Bench
+
+# Machine code is compiled for tests that look at many frames; plain code serves the others.
+many = pytest.mark.usefixtures("warm_kernels")
+plain = pytest.mark.usefixtures("plain_kernels")
+
+
+def frames_of(kind, shape="disc", n=12, seed=7):
+    return [*Bench(KINDS[kind], np.random.default_rng(seed)).frames(n, shape)]
+
+
+@plain
+@pytest.mark.slow
+def test_a_kind_that_is_hopelessly_behind_is_left_as_it_was_found():
+    step = Locate()
+    frame = frames_of("noise 0.2 mV", n=3)[2]
+    readings = step.readings(frame.image)
+    tops = tops_of_each(step._every, readings)
+    assert [*tops["rectangle"]] == [EVEN]
+    assert tops["disc"][EVEN].evidence > tops["rectangle"][EVEN].evidence + 12.0
+    chance = probabilities(tops, readings)
+    assert chance["disc"] > 0.5
+    assert chance["rectangle"] < 1e-4
+
+
+@many
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["disc", "rectangle"])
+@pytest.mark.parametrize("kind", ["noise 1 mV", "foam 0.6 cells", "over the edge"])
+def test_what_is_left_out_would_not_have_won(kind, shape):
+    step, off = Locate(), []
+    for frame in frames_of(kind, shape):
+        readings = step.readings(frame.image)
+        every = {name: any_pad.tops(readings) for name, any_pad in step._every.items()}
+        full = probabilities(every, readings)
+        found = probabilities(tops_of_each(step._every, readings), readings)
+        off.append(abs(full[shape] - found[shape]))
+    assert np.median(off) < 0.01
+    assert np.mean(np.array(off) > 0.3) < 0.1
+
+
+@many
+@pytest.mark.slow
+def test_the_shape_is_told_among_strays():
+    step = Locate()
+    names = [step(frame.image).name for frame in frames_of("strays 4 %")]
+    assert names.count("disc") >= 11
+
+
+@many
+@pytest.mark.slow
+def test_all_kinds_know_of_the_same_strays():
+    step = Locate()
+    readings = step.readings(frames_of("strays 4 %")[0].image)
+    every, _ = _first_look(step._every, readings)
+    (strays,) = {any_pad.told.noise.strays for any_pad in every.values()}
+    assert 0.008 < strays < 0.12

@@ -1,0 +1,167 @@
+"""What file and page say is brought to the bench when it is right, and told when it is not."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import pickle
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("starlette", reason="the live extra is not installed")
+
+import tactile_graph as tg
+from tactile_graph.cli.watch import files_read, stamp
+from tactile_graph.errors import PipelineError
+from tactile_graph_live.bench.wire import Swap, Swapped
+from tactile_graph_live.server.draft import Draft
+from tactile_graph_live.server.editor import Edited, Editor
+from tactile_graph_live.server.messages import Trouble
+from tactile_graph_live.server.watching import FileSense
+
+FLOW = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  footprint: {step: threshold, in: frame, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: footprint}
+outputs: [boundary]
+"""
+
+
+class Desk:
+    """An editor of a file, and a bench that answers as it is told to."""
+
+    def __init__(self, path: Path) -> None:
+        path.write_text(FLOW)
+        self.path = path
+        self.swaps: list[Swap] = []
+        self.changes: list[Edited] = []
+        self.troubles: list[Trouble] = []
+        self.answer: Callable[[Swap], Swapped | None] = lambda swap: Swapped(swap.version)
+        self.editor = Editor(
+            Draft.of(tg.load(path)), 0, FileSense(stamp, files_read),
+            swap=self._swap, changed=self.changes.append, wrong=self.troubles.append,
+        )  # fmt: skip
+
+    def _swap(self, swap: Swap) -> None:
+        self.swaps.append(swap)
+        answer = self.answer(swap)
+        if answer is not None:
+            asyncio.get_running_loop().call_soon(self.editor.swapped, answer)
+
+    def save(self, text: str) -> None:
+        beside = self.path.with_suffix(".new")
+        beside.write_text(text)
+        os.replace(beside, self.path)
+
+    def level_v(self) -> Any:
+        return self.editor.now.draft.pipeline.nodes["footprint"].settings["level_v"]
+
+    def play(self, *work: Callable[[], Awaitable[None]]) -> None:
+        async def all_of_it() -> None:
+            for one in work:
+                await one()
+
+        asyncio.run(all_of_it())
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(tmp_path / "mine.yaml")
+
+
+def test_a_file_that_is_right_runs_and_counts_up(desk: Desk) -> None:
+    desk.save(FLOW.replace("0.01", "0.02"))
+    desk.play(desk.editor.reload)
+    (swap,), (edited,) = desk.swaps, desk.changes
+    assert pickle.loads(swap.pickled).nodes["footprint"].settings["level_v"] == 0.02
+    assert (swap.version, swap.restart, desk.editor.version) == (2, False, 2)
+    assert edited.graph.took_ms > 0
+    assert desk.troubles == []
+
+
+def test_a_file_that_is_wrong_is_told_and_changes_nothing(desk: Desk) -> None:
+    desk.save(FLOW.replace("threshold", "treshold"))
+    desk.play(desk.editor.reload)
+    ((fault,),) = [t.errors for t in desk.troubles]
+    assert (fault.line, fault.column) == (4, 21)
+    assert desk.swaps == desk.changes == []
+    assert desk.editor.version == 1
+    desk.save(FLOW)
+    desk.play(desk.editor.reload)
+    assert desk.troubles[-1].errors == ()
+    assert desk.editor.trouble is None
+
+
+def test_what_the_bench_refuses_is_told_and_the_old_graph_stays(desk: Desk) -> None:
+    desk.answer = lambda swap: Swapped(swap.version, "takes 8 x 8 cells")
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    assert desk.troubles[-1].errors[0].text == "takes 8 x 8 cells"
+    assert desk.level_v() == 0.01
+
+
+def test_an_answer_to_an_older_change_is_not_taken_for_this_ones(desk: Desk) -> None:
+    desk.answer = lambda swap: Swapped(swap.version - 1)
+
+    async def change() -> None:
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(desk.editor.set("footprint", "level_v", 0.02), 0.3)
+
+    desk.play(change)
+    assert desk.changes == []
+
+
+def test_of_values_that_come_fast_the_newest_is_tried(desk: Desk) -> None:
+    async def drag() -> None:
+        values = [0.01 * n for n in range(2, 40)]
+        await asyncio.gather(*(desk.editor.set("footprint", "level_v", v) for v in values))
+
+    desk.play(drag)
+    assert desk.level_v() == pytest.approx(0.39)
+    assert len(desk.swaps) < 5
+
+
+def test_a_value_that_is_not_allowed_is_raised_to_who_asked(desk: Desk) -> None:
+    async def change() -> None:
+        with pytest.raises(PipelineError, match="level_v"):
+            await desk.editor.set("footprint", "level_v", "high")
+
+    desk.play(change)
+    assert desk.swaps == []
+
+
+def test_settings_are_taken_back_one_or_all(desk: Desk) -> None:
+    desk.play(
+        lambda: desk.editor.set("footprint", "level_v", 0.02),
+        lambda: desk.editor.set("footprint", "above", True),
+        lambda: desk.editor.unset("footprint", "level_v"),
+    )
+    assert desk.level_v() == 0.01
+    assert "above: true" in desk.changes[-1].graph.yaml
+    desk.play(desk.editor.unset)
+    assert desk.changes[-1].graph.yaml == desk.changes[-1].graph.file_yaml == FLOW
+
+
+def test_another_source_starts_anew_and_what_began_anew_is_told(desk: Desk) -> None:
+    desk.answer = lambda swap: Swapped(swap.version, anew=("tracks",))
+    desk.save(FLOW.replace("sample, with: {name: discs}", "simulate"))
+    desk.play(desk.editor.reload)
+    assert desk.swaps[-1].restart
+    assert desk.changes[-1].graph.anew == ("tracks",)
+
+
+def test_a_save_is_seen_by_itself(desk: Desk) -> None:
+    async def saved() -> None:
+        watching = asyncio.create_task(desk.editor.watch())
+        desk.save(FLOW.replace("0.01", "0.05"))
+        end = asyncio.get_running_loop().time() + 10
+        while not desk.changes and asyncio.get_running_loop().time() < end:
+            await asyncio.sleep(0.01)
+        watching.cancel()
+
+    desk.play(saved)
+    assert desk.level_v() == 0.05
