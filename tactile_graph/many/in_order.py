@@ -25,6 +25,9 @@ DEADLY = 2
 """Deaths over the same frames, alone, by which these are to blame."""
 BROKE = (BrokenExecutor, OSError, EOFError)
 """What an executor raises that is given work and cannot have it done any more."""
+PATIENCE_S = 5.0
+"""How long to wait for a portion before the executor is asked whether it still takes work: a
+process pool of Python 3.11 that breaks while it is given work may forget that without a word."""
 Done = TypeVar("Done")
 
 
@@ -141,13 +144,36 @@ class InOrder(Generic[Done]):
         first = self._under[0]
         while True:
             try:
-                result: Done = first.future.result()
-                return result
-            except self._at_work().died as death:
+                return self._waited(first.future)
+            except self._deaths as death:
                 self._mend(death)
             if first.n_deaths >= TOLERATED:
                 return self._alone(first)
             first = self._under[0]
+
+    @property
+    def _deaths(self) -> tuple[type[BaseException], ...]:
+        """What tells that a worker died, or that the executor is of no use any more."""
+        return (*self._at_work().died, BrokenExecutor)
+
+    def _waited(self, future: Future[Done]) -> Done:
+        """Return what a portion came to; who waits long asks now and then whether work is taken.
+
+        Raises
+        ------
+        BrokenExecutor
+            If the executor takes no work any more and says nothing of what it was given.
+        """
+        while True:
+            try:
+                return future.result(timeout=PATIENCE_S)
+            except TimeoutError:
+                if future.done():  # an error of the work, or what came right now
+                    return future.result()
+            try:
+                self._at_work().executor.submit(int)
+            except BROKE as error:
+                raise BrokenExecutor(str(error)) from error
 
     def _mend(self, death: BaseException) -> None:
         """Open another executor where this one broke, and submit again what was lost with it."""
@@ -215,8 +241,8 @@ class InOrder(Generic[Done]):
         while True:
             try:
                 under = self._submitted(portion)
-                return True, under.future.result()
-            except self._at_work().died as death:
+                return True, self._waited(under.future)
+            except self._deaths as death:
                 self.n_deaths += 1
                 self._why = str(death)
                 if isinstance(death, BrokenExecutor):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from threading import Event
+from time import sleep
 from typing import Any
 
 import pytest
 
 from helpers_many import place
 from tactile_graph.errors import DataError
+from tactile_graph.many import in_order
 from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
 from tactile_graph.many.in_order import AHEAD, InOrder
 from tactile_graph.many.portion import Portion
@@ -80,6 +82,60 @@ def test_workers_that_die_without_any_frame_end_it_and_blame_none() -> None:
     down = Place(ExecutorKind("down", lambda a, n: Opened(Down(), 2, lambda: None)), "", 2)
     with pytest.raises(DataError, match="die before their first frame, no process to be had"):
         done(down)
+
+
+class Forgetful(Executor):
+    """Forgets the portions it has from the nth on; of anything else it says that it is broken."""
+
+    def __init__(self, n: int) -> None:
+        self.n = n
+        self.asked = 0
+
+    def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        if function is int:
+            self.asked += 1
+            if self.asked > 1:
+                raise BrokenExecutor("a process ended abruptly")
+            future.set_result(0)
+            return future
+        self.n -= 1
+        if self.n >= 0:
+            future.set_result(function(*args, **kwargs))
+        return future
+
+
+@pytest.mark.parametrize("died", [(BrokenExecutor,), (ConnectionError,)])
+def test_portions_that_a_broken_executor_forgets_are_done_again(
+    monkeypatch: pytest.MonkeyPatch, died: tuple[type[BaseException], ...]
+) -> None:
+    monkeypatch.setattr(in_order, "PATIENCE_S", 0.01)
+    pools = [Forgetful(2), Forgetful(99)]
+    opened = iter(pools)
+    kind = ExecutorKind("pools", lambda a, n: Opened(next(opened), 2, lambda: None, died))
+    assert done(Place(kind, "", 2)) == (list(range(60)), [])
+    assert [pool.asked for pool in pools] == [2, 0]
+
+
+def test_who_waits_long_asks_again_and_waits_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(in_order, "PATIENCE_S", 0.01)
+    pool = ThreadPoolExecutor(2)
+    kind = ExecutorKind("threads", lambda a, n: Opened(pool, 2, pool.shutdown))
+    times_out = TimeoutError("the work's own")
+
+    def slow(given: bytes, portion: Portion) -> list[int]:
+        sleep(0.05)
+        if portion.low == 30:
+            raise times_out
+        return frames(given, portion)
+
+    with InOrder(Place(kind, "", 2), slow, b"", [].append) as workers:
+        results = workers.results(portions(6))
+        came = [k for _ in range(3) for k in next(results)[1]]
+        with pytest.raises(TimeoutError) as raised:
+            next(results)
+    assert came == list(range(30))
+    assert raised.value is times_out
 
 
 def test_an_error_of_the_work_is_raised_in_its_turn() -> None:
