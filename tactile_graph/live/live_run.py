@@ -13,6 +13,7 @@ from threading import Lock, Thread
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from tactile_graph.engine.deadline import Deadline
+from tactile_graph.engine.isolated import ProcessState
 from tactile_graph.engine.options import Decider
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
@@ -124,6 +125,11 @@ class LiveRun(Generic[ResultT]):
     def n_waiting(self) -> int:
         """How many frames wait now."""
         return len(self._waiting)
+
+    @property
+    def processes(self) -> dict[str, ProcessState]:
+        """How the processes fare of the nodes that run in one of their own."""
+        return self._ready.runner.processes
 
     @property
     def paused(self) -> bool:

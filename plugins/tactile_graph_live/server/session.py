@@ -30,6 +30,7 @@ from tactile_graph_live.server.messages import Level, encoded
 from tactile_graph_live.server.osc import OscSender
 from tactile_graph_live.server.programs import Programs
 from tactile_graph_live.server.recorder import LONGEST_LABEL, Recorder
+from tactile_graph_live.server.restarts import Restarts
 from tactile_graph_live.server.viewers import Asked, Picture, Viewer, Viewers
 from tactile_graph_live.server.vitals import Vitals
 from tactile_graph_live.server.watching import FileSense
@@ -86,6 +87,7 @@ class Session:
         self._osc = OscSender(setup.osc) if setup.osc else None
         self._device = is_device(setup.pipeline)
         self._vitals = Vitals()
+        self._restarts = Restarts()
         self._taking: _Recording | None = None
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
@@ -181,6 +183,8 @@ class Session:
             self._publish(message)
         elif isinstance(message, wire.Summary):
             self._vitals.add(message)
+            for news in self._restarts.news(message.processes):
+                self._tell(news, "warning")
         elif isinstance(message, wire.Taken):
             if self._taking is not None:
                 self._taking.take(message)

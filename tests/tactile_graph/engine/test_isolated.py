@@ -235,6 +235,42 @@ def test_a_runner_that_takes_anothers_place_takes_its_processes_too() -> None:
     assert then.anew == ()
 
 
+def test_a_runner_tells_how_the_processes_fare() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    assert runner.processes == {"risky": ("", 0, False, "")}
+    runner(frame(steps.CRASHES))
+    state = runner.processes["risky"]
+    assert (state.n_restarts, state.starting) == (1, True)
+    assert state.why == "ended its process by SIGKILL"
+    end = time.monotonic() + 60
+    while runner.processes["risky"].starting:  # without a frame that asks for it
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    assert runner(frame(7))["risky"] == 7
+    assert runner.processes["risky"].n_restarts == 1
+
+
+def test_one_that_takes_its_place_tells_on_and_under_the_new_names() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    runner(frame(steps.CRASHES))
+    text = "pipeline: p\nnodes: {dared: {step: moody, in: frame, isolated: true}}\noutputs: [dared]"
+    then = loads(text, "p.yaml", registry({**STEPS, **OWN})).runner(after=runner)
+    assert {n: s.n_restarts for n, s in then.processes.items()} == {"dared": 1}
+
+
+def test_processes_within_a_pipeline_that_is_mapped_are_told_of(tmp_path: Path) -> None:
+    inner = "pipeline: i\nnodes: {a: {step: elsewhere, in: frame, isolated: true}}\noutputs: [a]"
+    (tmp_path / "i.yaml").write_text(inner)
+    text = (
+        "pipeline: p\nnodes:\n  pair: {step: pair, in: frame}\n"
+        "  used: {use: i.yaml, in: pair, each: true}\noutputs: [used]"
+    )
+    own = registry({**STEPS, **OWN, "pair": steps.pair})
+    runner = loads(text, str(tmp_path / "p.yaml"), own).runner()
+    assert list(runner.processes) == ["used/a"]
+    assert len(runner(frame(3))["used"]) == 2
+
+
 @pytest.mark.parametrize(
     ("isolated", "message"),
     [
