@@ -158,7 +158,7 @@ class LiveRun(Generic[ResultT]):
 
         It is made ready in the caller's thread, so that no frame waits for that. A node that keeps
         something goes on with it where the pipeline before has an equal one: of the same step,
-        settings and guard, that reads the same.
+        settings and guard, that reads the same. So it does with what is known of its times.
 
         Parameters
         ----------
@@ -176,17 +176,18 @@ class LiveRun(Generic[ResultT]):
             trial = pipeline.runner(self._only, self._seed)
             for frame in frames:
                 trial(frame)
-        ready = self._made_ready(pipeline, self._ready.runner)
+        ready = self._made_ready(pipeline, self._ready)
         self._pipeline = pipeline
         self._ready = ready
         return ready.runner.anew
 
     def _made_ready(
-        self, pipeline: Runnable[ResultT], after: Runner[ResultT] | None = None
+        self, pipeline: Runnable[ResultT], after: Ready[ResultT] | None = None
     ) -> Ready[ResultT]:
+        before, timed = (None, None) if after is None else (after.runner, after.deadline)
         deadline_us = self._asked_us or pipeline.deadline_us
-        deadline = None if deadline_us is None else Deadline(self._clock)
-        runner = pipeline.runner(self._only, self._seed, decider=deadline, after=after)
+        deadline = None if deadline_us is None else Deadline(self._clock, timed)
+        runner = pipeline.runner(self._only, self._seed, decider=deadline, after=before)
         return Ready(runner, deadline, deadline_us)
 
     def pause(self) -> None:
