@@ -101,6 +101,7 @@ class Session:
             swap=self._send,
             changed=self._changed,
             wrong=self.viewers.tell,
+            say=self._tell,
         )
         look = lambda: self._editor.now.lookback  # noqa: E731 -- the one of the moment
         self._gaze = Gaze(self._send, self.viewers, look, self._later, not self._device)
@@ -168,6 +169,7 @@ class Session:
             self._fail("the process that runs the pipeline died again and again")
             return
         self._tell("the process that runs the pipeline died; it is started anew", "error")
+        self._editor.bench_died()
         self._start_bench()
 
     def _fail(self, why: str) -> None:
