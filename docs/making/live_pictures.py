@@ -128,19 +128,19 @@ def still(page: Any, path: Path) -> None:
 
 def story(page: Any, file: Path) -> Iterator[None]:
     """Do what the moving picture shows, a bit at a time."""
-    yield from (None for _ in range(18))
+    yield from (None for _ in range(14))
     page.locator("#nodes [data-name=footprint]").click()
-    yield from (None for _ in range(8))
+    yield from (None for _ in range(7))
     slider = page.locator("#node-settings").get_by_role("slider").first
     for level in (0.012, 0.016, 0.02, 0.024, 0.028, 0.032, 0.036, 0.04):
         slider.fill(str(level))
         yield
-    yield from (None for _ in range(5))
+    yield from (None for _ in range(3))
     page.locator("#node-close").click()
     file.write_text(WRONG)
-    yield from (None for _ in range(16))
+    yield from (None for _ in range(14))
     file.write_text(MORE)
-    yield from (None for _ in range(24))
+    yield from (None for _ in range(20))
 
 
 def save(page: Any, file: Path, text: str) -> None:
