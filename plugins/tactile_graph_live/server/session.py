@@ -89,6 +89,7 @@ class Session:
         self._vitals = Vitals()
         self._restarts = Restarts()
         self._taking: _Recording | None = None
+        self._recording_changes = asyncio.Lock()
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -273,7 +274,7 @@ class Session:
             "scrub": gaze.scrub,
             "tare": lambda: self._send(wire.Tare(True)),
             "untare": lambda: self._send(wire.Tare(False)),
-            "record": self._record,
+            "record": lambda on, label: self._later(self._record(on, label)),
             "set": lambda node, setting, value: self._later(self._editor.set(node, setting, value)),
             "unset": lambda node, setting: self._later(self._editor.unset(node, setting)),
             "save": lambda name: self._later(self._save(name)),
@@ -325,15 +326,16 @@ class Session:
         rows = bool(len(self.programs)) or self._osc is not None
         self._send(wire.Want(rows, self._taking is not None and not self._taking.ending))
 
-    def _record(self, on: bool, label: str) -> None:
-        """Begin or end a recording, or go on with it under another label."""
+    async def _record(self, on: bool, label: str) -> None:
+        """Begin or end a recording, or go on with it under another label; one after the other."""
         label = visible(label)[:LONGEST_LABEL]
-        if self._taking is not None and on:
-            self._taking.recorder.label = label
-        elif on:
-            self._later(self._start_recording(label))
-        elif self._taking is not None:
-            self._later(self._stop_recording())
+        async with self._recording_changes:
+            if self._taking is not None and on:
+                self._taking.recorder.label = label
+            elif on:
+                await self._start_recording(label)
+            else:
+                await self._stop_recording()
 
     async def _start_recording(self, label: str) -> None:
         pipeline = self._editor.now.draft.pipeline
@@ -343,9 +345,6 @@ class Session:
         recorder = await asyncio.to_thread(
             Recorder, self._setup.folder, pipeline.name, label, about, failed
         )
-        if self._taking is not None:  # two asked at once
-            await asyncio.to_thread(recorder.close)
-            return
         self._taking = _Recording(recorder)
         self._tell_wants()
         self._tell(f"recording to {recorder.path}")

@@ -12,8 +12,10 @@ from typing import Any
 import pytest
 
 import helpers_isolated as steps
+import helpers_isolated_kernels as kernel_steps
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Image, Pipeline, hookimpl, loads
+from tactile_graph.compiled import mode
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
@@ -24,6 +26,7 @@ OWN = {
     "moody": steps.moody,
     "counting": steps.Counting,
     "elsewhere": steps.elsewhere,
+    "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
 }
 
@@ -78,6 +81,14 @@ def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
     assert isinstance(outcome, Failed)
     assert "ended its process by SIGKILL: a new one starts" in outcome.reason
     assert run_until_back(runner, 7)[-1]["risky"] == 7
+
+
+def test_no_call_waits_for_a_compiler_which_would_count_for_its_time() -> None:
+    """It is imported before the first call, and plain code answers while it works."""
+    runner = pipeline("step: readiness, in: frame, isolated: true").runner()
+    imported, n_answering = runner(frame(0))["risky"]
+    assert imported
+    assert n_answering == ((os.cpu_count() or 1) > 1 and mode() == "auto")
 
 
 def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixture[str]) -> None:
