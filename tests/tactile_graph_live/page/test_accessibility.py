@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, graph, pulse, served
+from helpers_live_page import Double, frame, graph, pulse, served, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -123,7 +123,7 @@ def test_the_help_is_a_dialog_with_a_name_and_the_rest_is_out_of_reach(page: Any
 
 def test_pictures_and_charts_are_told_in_words(page: Any, double: Double) -> None:
     double.say(pulse(lost=3), frame(1))
-    page.wait_for_timeout(2300)
+    wait_for(lambda: any("answered 500" in t for t in page.evaluate(CANVASES)), "charts are told")
     told = page.evaluate(CANVASES)
     assert all(told)
     (latency,) = [t for t in told if t.startswith("Latency")]

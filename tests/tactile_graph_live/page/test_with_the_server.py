@@ -51,6 +51,17 @@ def opened(window: Any, command: Command) -> Any:
     return found
 
 
+def standing(page: Any) -> str:
+    """Return which frame is shown, once no other follows."""
+    shown = ["", page.locator("#when").inner_text()]
+    for _ in range(40):
+        page.wait_for_timeout(300)
+        shown.append(page.locator("#when").inner_text())
+        if shown[-1] == shown[-2]:
+            return str(shown[-1])
+    raise AssertionError(f"frames go on: {shown}")
+
+
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "mine.yaml"
@@ -193,13 +204,10 @@ def test_pause_step_scrub_and_live(window: Any, file: Path) -> None:
     with running(file.parent, file.name, "--rate", "40") as command:
         found = opened(window, command)
         page = found.page
-        page.wait_for_timeout(2000)
+        page.wait_for_timeout(2000)  # that there is something to scrub over
         page.keyboard.press("Space")
         page.locator("#link[data-state=paused]").wait_for()
-        page.wait_for_timeout(300)
-        still = page.locator("#when").inner_text()
-        page.wait_for_timeout(300)
-        assert page.locator("#when").inner_text() == still
+        still = standing(page)
         number = int(still.split(" · ")[0].removeprefix("frame "))
         page.keyboard.press(".")
         drawn(page, f"frame {number + 1}")
