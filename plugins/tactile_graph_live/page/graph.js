@@ -67,7 +67,7 @@ export class NodeList {
     const bar = make("span", { class: "share", "aria-hidden": "true" });
     const element = make("div", { role: "option", "aria-selected": "false", tabindex: "-1", "data-name": name },
       rail, canvas,
-      make("span", { class: "words" }, make("b", {}, name), make("span", { class: "line" }, step, apart), reason),
+      make("span", { class: "words" }, make("b", { class: "line" }, make("span", {}, name)), make("span", { class: "line" }, step, apart), reason),
       make("span", { class: "fate" }, fate, time, bar));
     const row = { element, rail, canvas, step, apart, isolated: [], reason, fate, time, bar, us: null, times: [], next: -1 };
     this.rows.set(name, row);

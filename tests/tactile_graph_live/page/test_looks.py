@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, graph, pulse, served, wait_for
+from helpers_live_page import Double, frame, graph, hello, pulse, served, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -91,6 +91,22 @@ def test_a_phone_shows_one_column_and_nothing_hangs_over(window: Any, double: Do
 def test_no_width_makes_the_page_scroll_sideways(window: Any, double: Double, width: int) -> None:
     page = opened(window, double, viewport={"width": width, "height": 800}).page
     assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+def test_long_names_leave_room_for_what_marks_their_nodes(window: Any) -> None:
+    long = "a_rather_long_name_of_a_node_that_fits_nowhere"
+    message = graph(1, ("footprint", long))
+    message["nodes"][1]["apart"] = {"process": "", "time_limit_s": None}
+    rows = [{"output": long, "item": 1, "outcome": "ok", "type": "Circle", "x_cm": 1.0}]
+    first = frame(0, ("footprint", long), rows=rows)
+    with served(Double(hello(), message, pulse(), first)) as double:
+        page = opened(window, double, viewport={"width": 390, "height": 800}).page
+        row = page.locator(f"#nodes [data-name={long}]")
+        for line in (row.locator("b"), row.locator(".line").last):
+            assert line.evaluate("e => e.scrollWidth <= e.clientWidth")
+        assert row.locator(".apart").evaluate("e => e.scrollWidth <= e.clientWidth + 1")
+        table = page.locator("#results .scroll")
+        assert table.evaluate("e => e.scrollWidth <= e.clientWidth")
 
 
 def test_large_letters_still_fit(window: Any, double: Double) -> None:
