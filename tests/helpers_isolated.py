@@ -28,6 +28,11 @@ def moody(image: Image, *, plus: int = 0) -> int:
     return number + plus
 
 
+def pair(image: Image) -> list[Image]:
+    """Return the image twice."""
+    return [image, image]
+
+
 class Counting:
     """Counts its calls, in whichever process it is."""
 

@@ -36,13 +36,14 @@ OPTIONS = [
 RATE_HZ = 12
 N_PLACES = 96
 N_EMPTY = 10
-GIF_PX = (800, 500)
+WINDOW_PX = (1440, 1010)
+GIF_PX = (800, 561)
 GIF_MS = 110
 GIF_COLOURS = 160
 RARE = 0.35
 """Power by which a colour's pixels count for the palette."""
-WARM_S = 40.0
-"""Until there is something in the charts."""
+WARM_S = 75.0
+"""Until the charts, of the last minute, have left the beginning behind."""
 PIPELINE = """\
 pipeline: disc
 about: A disc that is moved about, found by the corners of its hull
@@ -127,19 +128,32 @@ def still(page: Any, path: Path) -> None:
 
 def story(page: Any, file: Path) -> Iterator[None]:
     """Do what the moving picture shows, a bit at a time."""
-    yield from (None for _ in range(18))
+    yield from (None for _ in range(14))
     page.locator("#nodes [data-name=footprint]").click()
-    yield from (None for _ in range(8))
+    yield from (None for _ in range(7))
     slider = page.locator("#node-settings").get_by_role("slider").first
     for level in (0.012, 0.016, 0.02, 0.024, 0.028, 0.032, 0.036, 0.04):
         slider.fill(str(level))
         yield
-    yield from (None for _ in range(5))
+    yield from (None for _ in range(3))
     page.locator("#node-close").click()
     file.write_text(WRONG)
-    yield from (None for _ in range(16))
+    yield from (None for _ in range(14))
     file.write_text(MORE)
     yield from (None for _ in range(20))
+
+
+def save(page: Any, file: Path, text: str) -> None:
+    """Save the file, and wait until the page shows its graph."""
+    before = page.locator("html").get_attribute("data-graph")
+    file.write_text(text)
+    page.locator(f"html:not([data-graph='{before}'])").wait_for(state="attached", timeout=120_000)
+
+
+def compiled(page: Any, file: Path) -> None:
+    """Have compiled what the moving picture runs: it is to show what editing is like, not that."""
+    save(page, file, MORE)
+    save(page, file, PIPELINE)
 
 
 def common_palette(seen: list[Image.Image]) -> Image.Image:
@@ -183,13 +197,14 @@ def main() -> None:
         sync_playwright() as started,
     ):
         browser = started.chromium.launch(executable_path=program, args=OPTIONS)
-        page = opened(browser, address, (1440, 900), "light")
+        page = opened(browser, address, WINDOW_PX, "light")
+        compiled(page, Path(name) / "disc.yaml")
         page.wait_for_timeout(1e3 * WARM_S)
         still(page, given.output / "live-day.png")
         moving(page, Path(name) / "disc.yaml", given.output / "live.gif")
+        save(page, Path(name) / "disc.yaml", PIPELINE)
         page.context.close()
-        (Path(name) / "disc.yaml").write_text(PIPELINE)
-        page = opened(browser, address, (1440, 900), "dark")
+        page = opened(browser, address, WINDOW_PX, "dark")
         page.locator("#nodes [data-name=hull]").click()
         page.wait_for_timeout(8000)
         still(page, given.output / "live-night.png")

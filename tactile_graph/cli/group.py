@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from difflib import get_close_matches
 from typing import Any
 
@@ -12,6 +13,15 @@ import click
 from tactile_graph.cli import endings, shared
 from tactile_graph.errors import PluginError, did_you_mean, one_of
 from tactile_graph.plugins import registry
+
+
+def _preparing_told(ctx: click.Context) -> AbstractContextManager[None]:
+    """Have it told what is compiled; the help of a command compiles nothing."""
+    if not {*ctx.help_option_names}.isdisjoint([*ctx._protected_args, *ctx.args]):
+        return nullcontext()
+    from tactile_graph.compiled.preparing import Line, told_by
+
+    return told_by(Line())
 
 
 class Group(click.Group):
@@ -99,10 +109,8 @@ class Group(click.Group):
 
     def invoke(self, ctx: click.Context) -> None:
         """Run the command asked for; what it returns is no exit code."""
-        from tactile_graph.compiled.preparing import Line, told_by
-
         try:
-            with told_by(Line()):
+            with _preparing_told(ctx):
                 super().invoke(ctx)
         except BrokenPipeError:
             endings.stop_writing()

@@ -33,10 +33,12 @@ def make_call(node: Node, context: Context) -> Call:
 def _bound(node: Node, context: Context, **injected: Any) -> Call:
     """Return a node's step with its settings, as what costs least to call in every frame."""
     if node.isolation is not None:
-        return isolated_step(node, injected, context.hosts)
-    step: Any = node.bound(**injected)
+        step = isolated_step(node, injected, context.hosts)
+        context.apart[node.name] = step.host
+        return step
+    bound: Any = node.bound(**injected)
     assert node.signature is not None
-    call: Call = step.__call__ if node.signature.kind is Kind.CLASS else step
+    call: Call = bound.__call__ if node.signature.kind is Kind.CLASS else bound
     return _with_defaults(call) if isinstance(call, partial) else call
 
 

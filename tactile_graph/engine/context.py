@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from tactile_graph.engine.isolated import Host
 from tactile_graph.engine.outcome import Failed
@@ -22,12 +22,16 @@ class Context:
     seed : int
         Seed of the steps that take randomness.
     embedded : callable
-        Gives what runs an embedded pipeline.
+        Gives what runs an embedded pipeline, and the processes of its nodes that run apart.
     """
 
-    __slots__ = ("embedded", "frame", "hosts", "inner_results", "item", "item_failures", "seed")
+    __slots__ = (
+        "apart", "embedded", "frame", "hosts", "inner_results", "item", "item_failures", "seed",
+    )  # fmt: skip
 
-    def __init__(self, seed: int, embedded: Callable[[Graph], RunInner]) -> None:
+    def __init__(
+        self, seed: int, embedded: Callable[[Graph], tuple[RunInner, Mapping[str, Host]]]
+    ) -> None:
         self.seed = seed
         self.embedded = embedded
         self.frame: Frame
@@ -36,3 +40,5 @@ class Context:
         self.item_failures: list[Failed] = []
         self.hosts: dict[str, Host] = {}
         """Processes that nodes of the runner which is being made share."""
+        self.apart: dict[str, Host] = {}
+        """Node -> its process, of the nodes of that runner which run apart."""

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.options import Option, Options
+from tactile_graph.engine.options import Option, Options, Work
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.wires.frame import Frame
 
@@ -111,20 +111,33 @@ class Deadline:
     ----------
     clock : callable
         Nanoseconds now.
+    after : Deadline, optional
+        In whose place it comes, by the same clock; decides no more once this one does. What is
+        known there of the times of options of equal work is known here, and how much is allowed.
     """
 
-    def __init__(self, clock: Callable[[], int] = perf_counter_ns) -> None:
+    def __init__(
+        self, clock: Callable[[], int] = perf_counter_ns, after: Deadline | None = None
+    ) -> None:
         self.due_ns = 0
-        self.allowed_risk = FIRST_RISK
+        self.allowed_risk: float = FIRST_RISK if after is None else after.allowed_risk
         self._clock = clock
+        self._before = after
         self._expected: list[Expected] = []
+        self._works: list[Work] = []
         self._spared: list[Option] = []
         self._kind = 0
         self._begun: list[int] = []
 
     def prepare(self, options: Options) -> None:
         """Take note of what there is to decide about."""
-        self._expected = [Expected() for _ in options]
+        known: dict[Work, list[Expected]] = {}
+        if self._before is not None:
+            for work, expected in zip(self._before._works, self._before._expected, strict=True):
+                known.setdefault(work, []).append(expected)
+            self._before = None
+        self._works = [option.work for option in options]
+        self._expected = [known[w].pop(0) if known.get(w) else Expected() for w in self._works]
         self._spared = [o for o in options if o.spared and o.always]
 
     def begin(self, frame: Frame) -> None:

@@ -91,7 +91,8 @@ class InnerFrame(Frame):
 def mapped(node: Node, context: Context) -> Call:
     """Return the embedded pipeline run over lists: of images, of what takes its nodes' places."""
     assert node.inner is not None
-    run = context.embedded(node.inner)
+    run, apart = context.embedded(node.inner)
+    context.apart.update({f"{node.name}/{name}": host for name, host in apart.items()})
     fields = getattr(node.output, "_fields", ())
     names = list(node.inner.outputs)
     over = [b.port.name for b in node.inputs if b.iterates]

@@ -77,6 +77,27 @@ def isolated_step(node: Node, injected: Mapping[str, Any], hosts: dict[str, Host
     return Isolated(host, host.add(Order(node.name, pickled)), isolation.time_limit_s)
 
 
+class ProcessState(NamedTuple):
+    """How the process of a step that runs apart fares.
+
+    Attributes
+    ----------
+    name : str
+        Under which several nodes share it; empty for that of one node.
+    n_restarts : int
+        How often it was started anew.
+    starting : bool
+        Whether it is being started just now; its nodes are skipped meanwhile.
+    why : str
+        What ended the last one; empty if none has ended.
+    """
+
+    name: str
+    n_restarts: int
+    starting: bool
+    why: str
+
+
 class Isolated:
     """Call it with what goes into the step.
 
@@ -90,7 +111,8 @@ class Isolated:
     """
 
     def __init__(self, host: Host, number: int, limit_s: float | None) -> None:
-        self._host, self._number, self._limit_s = host, number, limit_s
+        self.host = host
+        self._number, self._limit_s = number, limit_s
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """Return what the step gives.
@@ -104,7 +126,7 @@ class Isolated:
         Exception
             Whatever the step raises.
         """
-        return self._host.run(self._number, args, kwargs, self._limit_s)
+        return self.host.run(self._number, args, kwargs, self._limit_s)
 
 
 class Host:
@@ -120,8 +142,15 @@ class Host:
         self._name = name
         self._orders: list[Order] = []
         self._process = _Process()
-        self._n_made = 0
+        self._n_made = self._n_restarts = 0
         self._ended_by = self._broken = ""
+
+    @property
+    def state(self) -> ProcessState:
+        """How it fares; may be asked by another thread than the one that runs steps."""
+        n_known = self._n_made + self._process.messages.qsize()
+        starting = n_known < len(self._orders) and not self._broken
+        return ProcessState(self._name, self._n_restarts, starting, self._ended_by)
 
     def add(self, order: Order) -> int:
         """Have a step made, and return its number.
@@ -186,6 +215,7 @@ class Host:
     def _start_anew(self, number: int, why: str) -> None:
         self._ended_by = f"{why} at node {self._orders[number].node!r}" if self._name else why
         self._n_made = 0
+        self._n_restarts += 1
         self._process.kill()
         self._process = _Process()
         for order in self._orders:

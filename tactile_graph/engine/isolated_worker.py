@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import pickle
 import struct
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from functools import partial
 from typing import IO, Any
 
 MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
 Message = tuple[str, Any]
+KERNELS = "tactile_graph.compiled.kernel"
 _LENGTH = struct.Struct("<Q")
 
 
@@ -40,10 +43,16 @@ def received(file: IO[bytes]) -> Any:
     return pickle.loads(data)
 
 
-def serve(orders: IO[bytes], answers: IO[bytes]) -> None:
+def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> None:
     """Make steps, and run them on whatever comes, until nothing more comes.
 
     An order is the pickled step, or the number of one made before and what goes into it.
+
+    Parameters
+    ----------
+    orders, answers : file
+    made : callable
+        Called when a step is made, before that is told.
     """
     sys.path[:] = received(orders)
     steps: list[Callable[..., Any]] = []
@@ -55,6 +64,7 @@ def serve(orders: IO[bytes], answers: IO[bytes]) -> None:
         if isinstance(order, bytes):
             try:
                 steps.append(_made(order))
+                made()
             except Exception as error:
                 sent(answers, (ERROR, f"{type(error).__name__}: {error}"))
                 return
@@ -74,6 +84,30 @@ def _made(order: bytes) -> Callable[..., Any]:
     return made
 
 
+class _Kernels:
+    """Sees that calls, which have a limit, wait for no compiler, nor for its import."""
+
+    def __init__(self) -> None:
+        self._answering = ExitStack()
+        self._ready = False
+
+    def make_ready(self) -> None:
+        """Have plain code answer while kernels are compiled, if a step has brought any."""
+        if self._ready or KERNELS not in sys.modules:
+            return
+        from tactile_graph.compiled import answered_meanwhile
+
+        importlib.import_module("tactile_graph.compiled.machine_code")
+        self._answering.enter_context(answered_meanwhile())
+        self._ready = True
+
+    def __enter__(self) -> _Kernels:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._answering.close()
+
+
 def _answer(answers: IO[bytes], answer: Message) -> None:
     try:
         sent(answers, answer)
@@ -86,4 +120,5 @@ def _answer(answers: IO[bytes], answer: Message) -> None:
 if __name__ == "__main__":
     channel = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a step prints is for people
-    serve(sys.stdin.buffer, channel)
+    with _Kernels() as kernels:
+        serve(sys.stdin.buffer, channel, kernels.make_ready)

@@ -14,8 +14,10 @@ from typing import Any, Protocol
 
 from tactile_graph.engine.outcome import Skipped, for_want_of_time
 from tactile_graph.engine.plan import Item, Plan, is_ladder
-from tactile_graph.pipeline.graph import NodeKind
+from tactile_graph.pipeline.graph import Isolation, NodeKind
 from tactile_graph.wires.frame import Frame
+
+Work = frozenset[tuple[str, Isolation | None]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +39,9 @@ class Option:
         Whether every frame comes to it, or to what stands in its place.
     instead : tuple of int
         Numbers of the choices that stand before it in its ladder, where it is the last.
+    work : frozenset
+        The nodes that are run with it unless something else has run them before: their keys, and
+        in what process they run. Options of equal work take as long, in whatever plan they stand.
     """
 
     number: int
@@ -46,6 +51,7 @@ class Option:
     spared: bool
     always: bool
     instead: tuple[int, ...] = ()
+    work: Work = frozenset()
 
     @property
     def skipped(self) -> Skipped:
@@ -99,8 +105,9 @@ def options_of(plan: Plan) -> Options:
         if _may_wait(item) and (item.slot in main or item.slot not in blocks.slots):
             spared, always = item.slot in least.slots, item.slot in main
             if not spared or always:
+                work = _work(plan, item.slot, main)
                 found.nodes[item.slot] = Option(
-                    len(found), item.name, item.slot, item.slot, spared, always
+                    len(found), item.name, item.slot, item.slot, spared, always, (), work
                 )
     for ladder in ladders:
         _add_choices(found, plan, ladder, least.slots)
@@ -118,9 +125,22 @@ def _add_choices(found: Options, plan: Plan, ladder: Item, least: set[int]) -> N
             continue  # there at once, or done in any case
         instead = tuple(before) if last else ()
         name, number = plan.items[slot].name, len(found)
-        option = Option(number, name, slot, ladder.slot, last, always, instead)
+        work = _work(plan, slot, frozenset(plan.main))
+        option = Option(number, name, slot, ladder.slot, last, always, instead, work)
         found.choices[ladder.slot, place] = option
         before.append(number)
+
+
+def _work(plan: Plan, slot: int, main: frozenset[int]) -> Work:
+    """Return what is run with a slot's node: itself, and what it needs that frames may not need."""
+    seen, waiting, work = set[int](), [slot], set[tuple[str, Isolation | None]]()
+    while waiting:
+        item = plan.items[waiting.pop()]
+        seen.add(item.slot)
+        if item.node is not None:
+            work.add((item.node.key, item.node.isolation))
+        waiting += [s for s in item.reads if s not in main and s not in seen]
+    return frozenset(work)
 
 
 def _may_wait(item: Item) -> bool:

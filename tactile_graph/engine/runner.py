@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, Generic, TypeVar
@@ -15,6 +16,7 @@ from tactile_graph.engine.block import Block, Constant, Group, Repeats, first_se
 from tactile_graph.engine.blocks import Blocks, worth_blocks
 from tactile_graph.engine.calls import Call, make_call
 from tactile_graph.engine.context import Context, RunInner
+from tactile_graph.engine.isolated import Host, ProcessState
 from tactile_graph.engine.options import Decider, options_of
 from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
@@ -85,6 +87,9 @@ class Runner(Generic[ResultT]):
             Context(settings.seed, embedded) if before is None else before._context
         )
         self._context.hosts = {}  # a process that the runner before uses takes no more steps
+        self._apart_before = {} if before is None else before._apart
+        self._apart: dict[str, Host] = {}
+        self._context.apart = self._apart
         self._blank = blank_state(self.plan.n_slots)
         self._verify = settings.verify
         self._calls: dict[str, Call] = {}
@@ -95,7 +100,7 @@ class Runner(Generic[ResultT]):
         if deciding is not None:
             deciding.decider.prepare(deciding.options)
         self._operations = make_program(self.plan, self._call, self._blank, deciding=deciding)
-        self._left = {}
+        self._left, self._apart_before = {}, {}
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
         self._last: tuple[bytes, ResultT] | None = None
@@ -135,6 +140,11 @@ class Runner(Generic[ResultT]):
         return tuple(n for n in self.plan.keeping if n not in self._went_on)
 
     @property
+    def processes(self) -> dict[str, ProcessState]:
+        """How the processes fare of the nodes that run apart; ``map/node`` within a mapped one."""
+        return {name: host.state for name, host in self._apart.items()}
+
+    @property
     def _keeping(self) -> dict[str, tuple[Node, Call]]:
         """The calls that keep something (a state, a process), and whose they are."""
         nodes = self.plan.pipeline.nodes
@@ -157,8 +167,14 @@ class Runner(Generic[ResultT]):
             if other is not None and (other.key, other.isolation) == (node.key, node.isolation):
                 del self._left[name]
                 self._went_on.add(node.name)
+                self._take_processes(name, node.name)
                 return call
         return None
+
+    def _take_processes(self, before: str, now: str) -> None:
+        for name, host in self._apart_before.items():
+            if name == before or name.startswith(f"{before}/"):
+                self._apart[now + name.removeprefix(before)] = host
 
     def __call__(self, frame: Frame) -> ResultT:
         """Return the result for the frame.
@@ -279,15 +295,17 @@ def _keeps(node: Node) -> bool:
     return node.stateful or node.isolation is not None
 
 
-def _embedded(result: type[Outcomes], settings: RunSettings, pipeline: Graph) -> RunInner:
-    """Return what runs a pipeline that a node of another one runs over a list."""
+def _embedded(
+    result: type[Outcomes], settings: RunSettings, pipeline: Graph
+) -> tuple[RunInner, Mapping[str, Host]]:
+    """Return what runs a pipeline for a node that runs it over a list, and its processes."""
     inner = Runner(pipeline, (), result, RunSettings(settings.seed, settings.verify))
 
     def run(frame: Frame, item: tuple[int, ...]) -> Outcomes:
         inner._context.item = item  # or every item would draw the same numbers
         return inner(frame)
 
-    return run
+    return run, inner._apart
 
 
 def equal_to_last(images: ImageStack) -> NDArray[np.bool_]:

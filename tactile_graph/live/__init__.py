@@ -1,6 +1,7 @@
 """Frames as they come: read by one thread, answered by another, the oldest shed under load."""
 
 from tactile_graph.engine.deadline import Deadline
+from tactile_graph.engine.isolated import ProcessState
 from tactile_graph.engine.options import Recorded
 from tactile_graph.live.beside import Beside
 from tactile_graph.live.live_result import LiveResult
@@ -8,4 +9,13 @@ from tactile_graph.live.live_run import LiveRun
 from tactile_graph.live.live_stream import LiveStream
 from tactile_graph.live.paced import paced
 
-__all__ = ["Beside", "Deadline", "LiveResult", "LiveRun", "LiveStream", "Recorded", "paced"]
+__all__ = [
+    "Beside",
+    "Deadline",
+    "LiveResult",
+    "LiveRun",
+    "LiveStream",
+    "ProcessState",
+    "Recorded",
+    "paced",
+]

@@ -13,6 +13,7 @@ from threading import Lock, Thread
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from tactile_graph.engine.deadline import Deadline
+from tactile_graph.engine.isolated import ProcessState
 from tactile_graph.engine.options import Decider
 from tactile_graph.engine.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
@@ -126,6 +127,11 @@ class LiveRun(Generic[ResultT]):
         return len(self._waiting)
 
     @property
+    def processes(self) -> dict[str, ProcessState]:
+        """How the processes fare of the nodes that run in one of their own."""
+        return self._ready.runner.processes
+
+    @property
     def paused(self) -> bool:
         """Whether frames are let pass without a result."""
         return self._paused
@@ -152,7 +158,7 @@ class LiveRun(Generic[ResultT]):
 
         It is made ready in the caller's thread, so that no frame waits for that. A node that keeps
         something goes on with it where the pipeline before has an equal one: of the same step,
-        settings and guard, that reads the same.
+        settings and guard, that reads the same. So it does with what is known of its times.
 
         Parameters
         ----------
@@ -170,17 +176,18 @@ class LiveRun(Generic[ResultT]):
             trial = pipeline.runner(self._only, self._seed)
             for frame in frames:
                 trial(frame)
-        ready = self._made_ready(pipeline, self._ready.runner)
+        ready = self._made_ready(pipeline, self._ready)
         self._pipeline = pipeline
         self._ready = ready
         return ready.runner.anew
 
     def _made_ready(
-        self, pipeline: Runnable[ResultT], after: Runner[ResultT] | None = None
+        self, pipeline: Runnable[ResultT], after: Ready[ResultT] | None = None
     ) -> Ready[ResultT]:
+        before, timed = (None, None) if after is None else (after.runner, after.deadline)
         deadline_us = self._asked_us or pipeline.deadline_us
-        deadline = None if deadline_us is None else Deadline(self._clock)
-        runner = pipeline.runner(self._only, self._seed, decider=deadline, after=after)
+        deadline = None if deadline_us is None else Deadline(self._clock, timed)
+        runner = pipeline.runner(self._only, self._seed, decider=deadline, after=before)
         return Ready(runner, deadline, deadline_us)
 
     def pause(self) -> None:

@@ -175,6 +175,7 @@ class Bench:
                 kept_s, kept_frames, state, self._baseline is not None,
                 dict(self._report.counts),
                 None if self._beside is None else self._beside.summary(),
+                self._run.processes,
             )
         )  # fmt: skip
 

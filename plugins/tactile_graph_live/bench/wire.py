@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Frame
+from tactile_graph.live import ProcessState
 from tactile_graph_live.server.messages import Frame as Shown
 from tactile_graph_live.server.messages import Level
 
@@ -109,7 +110,8 @@ class Taken:
 class Summary:
     """All frames since the last summary in numbers; counts are since the start.
 
-    ``latencies_us`` has one for each frame, float32.
+    ``latencies_us`` has one for each frame, float32. ``processes`` says how those of nodes fare
+    that run in one of their own.
     """
 
     latencies_us: NDArray[np.float32]
@@ -123,6 +125,7 @@ class Summary:
     tared: bool
     counters: Mapping[str, int]
     beside: dict[str, Any] | None = None
+    processes: Mapping[str, ProcessState] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

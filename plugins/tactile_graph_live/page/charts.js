@@ -1,7 +1,7 @@
 // Lines over time on small canvases.
 
 import { fitted } from "./dom.js";
-import { ticks } from "./numbers.js";
+import { short, ticks } from "./numbers.js";
 import { colour } from "./theme.js";
 
 /** What a number was over the last seconds; `push` forgets what is older. */
@@ -119,7 +119,7 @@ function drawAxes(context, width, { x, y, highest, title, format, now, seconds }
   context.textAlign = "right";
   for (const value of ticks(0, highest, 4)) {
     drawLevel(context, width, Math.round(y(value)) + 0.5);
-    context.fillText(value === 0 ? "0" : format(value), EDGE.left - 6, y(value));
+    context.fillText(value === 0 ? "0" : short(format(value)), EDGE.left - 6, y(value));
   }
   context.textBaseline = "top";
   context.textAlign = "left";

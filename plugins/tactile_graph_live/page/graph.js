@@ -4,6 +4,7 @@ import { byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { drawPicture } from "./paint.js";
+import { faresInWords, withinOf } from "./processes.js";
 import { ordered, rails } from "./rails.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -20,6 +21,7 @@ export class NodeList {
     this.look = look;
     this.rows = new Map();
     this.inSight = new Set();
+    this.processes = {};
     this.wordsAt = 0;
     this.list.addEventListener("keydown", (event) => this.key(event));
     this.list.addEventListener("click", (event) => {
@@ -42,6 +44,8 @@ export class NodeList {
       write(row.step, box.role === "frame" ? "what the source gives" : box.step);
       row.element.classList.toggle("output", outputs.has(box.name));
       mark(row.element, "title", about.get(box.name)?.about ?? "");
+      row.isolated = withinOf(box.name, graph.nodes);
+      this.apart(box.name, row);
       row.rail.replaceWith((row.rail = railOf(drawn.rows[i], drawn.count)));
       if (this.list.children[i] !== row.element) this.list.insertBefore(row.element, this.list.children[i] ?? null);
     });
@@ -56,18 +60,34 @@ export class NodeList {
     const canvas = make("canvas", { class: "thumb", "aria-hidden": "true" });
     const rail = document.createElementNS(SVG, "svg");
     const step = make("span", { class: "step" });
+    const apart = make("span", { class: "apart", hidden: true }, make("span", { "aria-hidden": "true" }), make("span", { class: "unseen" }));
     const reason = make("span", { class: "reason" });
     const fate = badge();
     const time = make("span", { class: "time" });
     const bar = make("span", { class: "share", "aria-hidden": "true" });
     const element = make("div", { role: "option", "aria-selected": "false", tabindex: "-1", "data-name": name },
       rail, canvas,
-      make("span", { class: "words" }, make("b", {}, name), step, reason),
+      make("span", { class: "words" }, make("b", { class: "line" }, make("span", {}, name)), make("span", { class: "line" }, step, apart), reason),
       make("span", { class: "fate" }, fate, time, bar));
-    const row = { element, rail, canvas, step, reason, fate, time, bar, us: null, times: [], next: -1 };
+    const row = { element, rail, canvas, step, apart, isolated: [], reason, fate, time, bar, us: null, times: [], next: -1 };
     this.rows.set(name, row);
     this.observer.observe(element);
     return row;
+  }
+
+  /** Show how the processes fare of nodes that run apart. */
+  takeProcesses(processes) {
+    this.processes = processes;
+    for (const [name, row] of this.rows) if (row.isolated.length) this.apart(name, row);
+  }
+
+  apart(name, row) {
+    const { short, long, starting } = faresInWords(row.isolated, this.processes);
+    show(row.apart, row.isolated.length > 0);
+    write(row.apart.firstChild, short);
+    write(row.apart.lastChild, `${short}: ${long}`);
+    row.apart.classList.toggle("starting", starting);
+    mark(row.apart, "title", long);
   }
 
   drop(name, row) {

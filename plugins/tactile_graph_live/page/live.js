@@ -97,6 +97,8 @@ const TAKE = {
   pulse(message) {
     connection.runs(message.paused ? "paused" : message.state);
     status.take(message);
+    nodes.takeProcesses(message.processes ?? {});
+    card.takeProcesses(message.processes ?? {});
     transport.take(message);
   },
   told(message) {

@@ -3,6 +3,7 @@
 import { byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
+import { faresInWords, withinOf } from "./processes.js";
 import { drawPicture, extentOf } from "./paint.js";
 
 const WORDS_MS = 250;
@@ -16,6 +17,8 @@ export class NodeCard {
     this.closed = closed;
     this.badge = badge();
     this.name = null;
+    this.isolated = [];
+    this.processes = {};
     this.wordsAt = 0;
     this.why = make("span");
     byId("node-outcome").append(this.badge, this.why);
@@ -47,7 +50,15 @@ export class NodeCard {
     write(byId("node-title"), this.name);
     write(byId("node-step"), node?.step ?? box?.step ?? "");
     write(byId("node-about"), [node?.about, node?.guard && `Runs when ${node.guard}.`, node?.keeps && "Keeps a state from frame to frame."].filter(Boolean).join(" "));
+    this.isolated = withinOf(this.name, graph.nodes);
+    this.takeProcesses(this.processes);
     this.settings.fill(byId("node-settings"), node);
+  }
+
+  /** Tell how the process fares where the node runs apart. */
+  takeProcesses(processes) {
+    this.processes = processes;
+    if (this.name !== null) write(byId("node-apart"), faresInWords(this.isolated, processes).long);
   }
 
   close() {

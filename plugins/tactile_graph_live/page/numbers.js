@@ -40,6 +40,9 @@ export function duration(us) {
 
 export const counted = (n) => (Number.isFinite(n) ? n.toLocaleString("en").replaceAll(",", "\u202f") : "–");
 
+/** Return a number that was told without the zeros at the end of its decimals: `50.0 ms` is `50 ms`. */
+export const short = (text) => text.replace(/(\.\d*?)0+(?=\D|$)/, "$1").replace(/\.(?=\D|$)/, "");
+
 /** Return about `most` round numbers between two ends. */
 export function ticks(low, high, most) {
   const span = high - low;

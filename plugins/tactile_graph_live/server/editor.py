@@ -16,8 +16,10 @@ from tactile_graph_live.server.lookback import Lookback
 from tactile_graph_live.server.messages import Fault, Graph, Trouble
 from tactile_graph_live.server.watching import SETTLE_S, FileSense, Watched
 
-SWAP_S = 30.0
-"""The longest a bench may take to make a pipeline ready: it may have to compile."""
+SLOW_S = 2.0
+"""After so long it is told that a pipeline is still being made ready."""
+SWAP_S = 60.0
+"""The longest that is waited for it: a bench may have to compile."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,8 @@ class Editor:
         Called when another pipeline runs.
     wrong : callable
         Called with what is wrong, or that nothing is any more.
+    say : callable
+        Called with what else is to be known.
     """
 
     def __init__(
@@ -54,9 +58,10 @@ class Editor:
         swap: Callable[[Swap], None],
         changed: Callable[[Edited], None],
         wrong: Callable[[Trouble], None],
+        say: Callable[[str], None],
     ) -> None:
         self._seed = seed
-        self._swap, self._changed, self._wrong = swap, changed, wrong
+        self._swap, self._changed, self._wrong, self._say = swap, changed, wrong, say
         self._version = 1
         self._watched = Watched(sense, [draft.pipeline.file])
         self._watched.take(draft.read_again)  # to know what else is read with it
@@ -64,6 +69,7 @@ class Editor:
         self.trouble: Trouble | None = None
         self._lock = asyncio.Lock()
         self._answer: asyncio.Future[Swapped] | None = None
+        self._asked: tuple[Edited, float] | None = None
         self._waiting: dict[tuple[str, str], Any] = {}
 
     @property
@@ -132,11 +138,19 @@ class Editor:
     # -- the bench ---------------------------------------------------------------------------------
 
     def swapped(self, answer: Swapped) -> None:
-        """Take the bench's answer."""
-        waits = self._answer is not None and not self._answer.done()
-        if waits and answer.version == self._version:
-            assert self._answer is not None
+        """Take the bench's answer, be it so late that nobody waits for it any more."""
+        if self._answer is None or answer.version != self._version:
+            return
+        if not self._answer.done():
             self._answer.set_result(answer)
+        elif self._asked is not None and not answer.error:
+            self._runs(*self._asked, answer)
+
+    def bench_died(self) -> None:
+        """Wait no more for its answer."""
+        if self._answer is not None and not self._answer.done():
+            died = "the process that runs the pipeline died of this change"
+            self._answer.set_result(Swapped(self._version, died))
 
     async def _apply(self, draft: Draft, began: float) -> None:
         self._version += 1
@@ -144,13 +158,28 @@ class Editor:
         restart = not draft.same_source(self.now.draft)
         self._swap(Swap(self._version, pickle.dumps(draft.pipeline), restart))
         edited = await asyncio.to_thread(self._edited, draft, self._version)
-        try:
-            answer = await asyncio.wait_for(self._answer, SWAP_S)
-        except TimeoutError:
-            answer = Swapped(self._version, f"the bench did not answer for {SWAP_S:g} s")
+        self._asked = edited, began
+        answer = await self._answered(self._answer)
         if answer.error:
             self._tell((Fault(0, 0, answer.error),))
-            return
+        else:
+            self._runs(edited, began, answer)
+
+    async def _answered(self, answer: asyncio.Future[Swapped]) -> Swapped:
+        """Return the bench's answer, or that there was none."""
+        done, _ = await asyncio.wait({answer}, timeout=SLOW_S)
+        if not done:
+            self._say("the new graph is being made ready; until then the old one runs")
+            done, _ = await asyncio.wait({answer}, timeout=SWAP_S - SLOW_S)
+        if done:
+            return answer.result()
+        answer.cancel()
+        slow = f"it is not ready after {SWAP_S:g} s; it will run if it gets so"
+        return Swapped(self._version, slow)
+
+    def _runs(self, edited: Edited, began: float, answer: Swapped) -> None:
+        """Take note that another pipeline runs."""
+        self._asked = None
         took_ms = round((time.perf_counter() - began) * 1e3, 1)
         graph = replace(edited.graph, took_ms=took_ms, anew=answer.anew)
         self.now = replace(edited, graph=graph)

@@ -73,7 +73,16 @@ def _node(name: str, node: Node, changed: Mapping[str, Any]) -> messages.Node:
     )
     about = signature.summary if signature else ""
     guard = visible(node.guard.text) if node.guard else ""
-    return messages.Node(name, visible(node.what), visible(about), guard, node.stateful, settings)
+    return messages.Node(
+        name, visible(node.what), visible(about), guard, node.stateful, settings, _apart(node)
+    )
+
+
+def _apart(node: Node) -> messages.Apart | None:
+    isolation = node.isolation
+    if isolation is None:
+        return None
+    return messages.Apart(visible(isolation.process), isolation.time_limit_s)
 
 
 def setting_message(

@@ -86,6 +86,17 @@ class Setting:
 
 
 @dataclass(frozen=True)
+class Apart:
+    """That a node's step runs in another process, ended there after so many seconds, if at all.
+
+    ``process`` is the name under which several nodes share one; empty where it is the node's own.
+    """
+
+    process: str
+    time_limit_s: float | None
+
+
+@dataclass(frozen=True)
 class Node:
     """A node and its settings; ``keeps`` says whether it keeps a state from frame to frame."""
 
@@ -95,6 +106,7 @@ class Node:
     guard: str
     keeps: bool
     settings: tuple[Setting, ...]
+    apart: Apart | None = None
 
 
 @dataclass(frozen=True)
@@ -256,6 +268,9 @@ class Pulse:
     kept_frames: int
     state: str
     counters: Mapping[str, int] = field(default_factory=dict)
+    processes: Mapping[str, Plain] = field(default_factory=dict)
+    """Of each node that runs apart (``map/node`` within a mapped pipeline) how its process fares:
+    ``restarts``, whether it is ``starting`` just now, and ``why`` the last one ended."""
     beside: Plain | None = None
     """Of the variant that runs in what time is left: ``variant``, ``frames`` it answered, how many
     ``passed`` it by, ``same_outcomes``, ``differences`` (field -> mean and most), ``median_us`` and

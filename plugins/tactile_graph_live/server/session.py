@@ -30,6 +30,7 @@ from tactile_graph_live.server.messages import Level, encoded
 from tactile_graph_live.server.osc import OscSender
 from tactile_graph_live.server.programs import Programs
 from tactile_graph_live.server.recorder import LONGEST_LABEL, Recorder
+from tactile_graph_live.server.restarts import Restarts
 from tactile_graph_live.server.viewers import Asked, Picture, Viewer, Viewers
 from tactile_graph_live.server.vitals import Vitals
 from tactile_graph_live.server.watching import FileSense
@@ -86,7 +87,9 @@ class Session:
         self._osc = OscSender(setup.osc) if setup.osc else None
         self._device = is_device(setup.pipeline)
         self._vitals = Vitals()
+        self._restarts = Restarts()
         self._taking: _Recording | None = None
+        self._recording_changes = asyncio.Lock()
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -99,6 +102,7 @@ class Session:
             swap=self._send,
             changed=self._changed,
             wrong=self.viewers.tell,
+            say=self._tell,
         )
         look = lambda: self._editor.now.lookback  # noqa: E731 -- the one of the moment
         self._gaze = Gaze(self._send, self.viewers, look, self._later, not self._device)
@@ -166,6 +170,7 @@ class Session:
             self._fail("the process that runs the pipeline died again and again")
             return
         self._tell("the process that runs the pipeline died; it is started anew", "error")
+        self._editor.bench_died()
         self._start_bench()
 
     def _fail(self, why: str) -> None:
@@ -181,6 +186,8 @@ class Session:
             self._publish(message)
         elif isinstance(message, wire.Summary):
             self._vitals.add(message)
+            for news in self._restarts.news(message.processes):
+                self._tell(news, "warning")
         elif isinstance(message, wire.Taken):
             if self._taking is not None:
                 self._taking.take(message)
@@ -267,7 +274,7 @@ class Session:
             "scrub": gaze.scrub,
             "tare": lambda: self._send(wire.Tare(True)),
             "untare": lambda: self._send(wire.Tare(False)),
-            "record": self._record,
+            "record": lambda on, label: self._later(self._record(on, label)),
             "set": lambda node, setting, value: self._later(self._editor.set(node, setting, value)),
             "unset": lambda node, setting: self._later(self._editor.unset(node, setting)),
             "save": lambda name: self._later(self._save(name)),
@@ -319,15 +326,16 @@ class Session:
         rows = bool(len(self.programs)) or self._osc is not None
         self._send(wire.Want(rows, self._taking is not None and not self._taking.ending))
 
-    def _record(self, on: bool, label: str) -> None:
-        """Begin or end a recording, or go on with it under another label."""
+    async def _record(self, on: bool, label: str) -> None:
+        """Begin or end a recording, or go on with it under another label; one after the other."""
         label = visible(label)[:LONGEST_LABEL]
-        if self._taking is not None and on:
-            self._taking.recorder.label = label
-        elif on:
-            self._later(self._start_recording(label))
-        elif self._taking is not None:
-            self._later(self._stop_recording())
+        async with self._recording_changes:
+            if self._taking is not None and on:
+                self._taking.recorder.label = label
+            elif on:
+                await self._start_recording(label)
+            else:
+                await self._stop_recording()
 
     async def _start_recording(self, label: str) -> None:
         pipeline = self._editor.now.draft.pipeline
@@ -337,9 +345,6 @@ class Session:
         recorder = await asyncio.to_thread(
             Recorder, self._setup.folder, pipeline.name, label, about, failed
         )
-        if self._taking is not None:  # two asked at once
-            await asyncio.to_thread(recorder.close)
-            return
         self._taking = _Recording(recorder)
         self._tell_wants()
         self._tell(f"recording to {recorder.path}")

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import time
 from collections import deque
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.foreign_text import visible
 from tactile_graph.inspect import without_nan
+from tactile_graph.live import ProcessState
 from tactile_graph_live.bench.wire import Summary
-from tactile_graph_live.server.messages import Pulse, Quantiles, Recording
+from tactile_graph_live.server.messages import Plain, Pulse, Quantiles, Recording
 
 WINDOW_S = 4.0
 RATE_S = 1.0
@@ -67,8 +70,16 @@ class Vitals:
             kept_frames=its.kept_frames,
             state=its.state,
             counters=its.counters,
+            processes=_told(its.processes),
             beside=None if its.beside is None else without_nan(its.beside),
         )
+
+
+def _told(processes: Mapping[str, ProcessState]) -> dict[str, Plain]:
+    return {
+        node: {"restarts": s.n_restarts, "starting": s.starting, "why": visible(s.why)}
+        for node, s in processes.items()
+    }
 
 
 def _quantiles(gathered: deque[tuple[float, Times]]) -> Quantiles:

@@ -180,6 +180,54 @@ def test_time_is_kept_for_what_comes_in_any_case() -> None:
     assert [*RAN] == ["shared", "middle", "long"]
 
 
+def test_one_that_takes_its_place_knows_the_times_of_what_computes_the_same() -> None:
+    """After a change nothing is tried anew that is still there, under whatever name."""
+    timed = Timed(LADDER)
+    for _ in range(3):
+        timed(10 * MS)
+    changed = LADDER.replace("best", "finest", 1).replace("[best,", "[finest,")
+    changed = changed.replace("with: {tag: middle}", "with: {tag: other}")
+    COSTS["other"] = COSTS["middle"]
+    RAN.clear()
+    before = timed.deadline
+    timed.deadline = Deadline(TIME, before)
+    timed.runner = pipeline(changed).runner(decider=timed.deadline, after=timed.runner)
+    assert timed.deadline.allowed_risk == before.allowed_risk
+    result = timed(MS // 2)
+    assert result.decisions == ("finest",)  # 1 ms, as is known; the other is tried
+    assert [*RAN] == ["shared", "other"]
+    forgetful = Timed(changed)
+    assert forgetful(MS // 2).decisions == ()
+
+
+def test_where_a_choice_needs_more_than_before_its_time_is_found_out_anew() -> None:
+    """What was shared with all frames is now run by the choice alone."""
+    shared = LADDER.replace("outputs: [answer]", "outputs: [answer, shared]")
+    alone = LADDER.replace("cheap: {step: after, in: shared", "cheap: {step: work, in: frame")
+    timed = Timed(shared.replace("[best, middle, cheap]", "[best, cheap]"))
+    for _ in range(3):
+        timed(10 * MS)
+    after = Deadline(TIME, timed.deadline)
+    text = alone.replace("[best, middle, cheap]", "[best, cheap]")
+    pipeline(text).runner(decider=after, after=timed.runner)
+    assert len(after._works) == 2
+    assert [e.usual(0) for e in after._expected] == [None, None]
+
+
+def test_equal_choices_of_two_ladders_do_not_share_their_times_by_mistake() -> None:
+    text = LADDER.replace(
+        "outputs: [answer]",
+        "  again: {step: after, in: shared, with: {tag: best}}\n"
+        "  twice: {first_of: [again, cheap]}\noutputs: [answer, twice]",
+    )
+    timed = Timed(text)
+    timed(100 * MS)
+    after = Deadline(TIME, timed.deadline)
+    pipeline(text).runner(decider=after, after=timed.runner)
+    assert after._expected == timed.deadline._expected
+    assert len({id(e) for e in after._expected}) == len(after._expected)
+
+
 def test_a_node_outside_ladders_that_would_not_fit_is_skipped_and_what_needs_it() -> None:
     COSTS["slow"] = lambda _: 5 * MS
     timed = Timed(

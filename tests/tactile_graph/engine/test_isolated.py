@@ -12,8 +12,10 @@ from typing import Any
 import pytest
 
 import helpers_isolated as steps
+import helpers_isolated_kernels as kernel_steps
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Image, Pipeline, hookimpl, loads
+from tactile_graph.compiled import mode
 from tactile_graph.engine.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
@@ -24,6 +26,7 @@ OWN = {
     "moody": steps.moody,
     "counting": steps.Counting,
     "elsewhere": steps.elsewhere,
+    "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
 }
 
@@ -78,6 +81,14 @@ def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
     assert isinstance(outcome, Failed)
     assert "ended its process by SIGKILL: a new one starts" in outcome.reason
     assert run_until_back(runner, 7)[-1]["risky"] == 7
+
+
+def test_no_call_waits_for_a_compiler_which_would_count_for_its_time() -> None:
+    """It is imported before the first call, and plain code answers while it works."""
+    runner = pipeline("step: readiness, in: frame, isolated: true").runner()
+    imported, n_answering = runner(frame(0))["risky"]
+    assert imported
+    assert n_answering == ((os.cpu_count() or 1) > 1 and mode() == "auto")
 
 
 def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixture[str]) -> None:
@@ -233,6 +244,42 @@ def test_a_runner_that_takes_anothers_place_takes_its_processes_too() -> None:
     then = marked("elsewhere").runner(after=first)
     assert processes(then(frame(0)))[:2] == [one, two]
     assert then.anew == ()
+
+
+def test_a_runner_tells_how_the_processes_fare() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    assert runner.processes == {"risky": ("", 0, False, "")}
+    runner(frame(steps.CRASHES))
+    state = runner.processes["risky"]
+    assert (state.n_restarts, state.starting) == (1, True)
+    assert state.why == "ended its process by SIGKILL"
+    end = time.monotonic() + 60
+    while runner.processes["risky"].starting:  # without a frame that asks for it
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    assert runner(frame(7))["risky"] == 7
+    assert runner.processes["risky"].n_restarts == 1
+
+
+def test_one_that_takes_its_place_tells_on_and_under_the_new_names() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    runner(frame(steps.CRASHES))
+    text = "pipeline: p\nnodes: {dared: {step: moody, in: frame, isolated: true}}\noutputs: [dared]"
+    then = loads(text, "p.yaml", registry({**STEPS, **OWN})).runner(after=runner)
+    assert {n: s.n_restarts for n, s in then.processes.items()} == {"dared": 1}
+
+
+def test_processes_within_a_pipeline_that_is_mapped_are_told_of(tmp_path: Path) -> None:
+    inner = "pipeline: i\nnodes: {a: {step: elsewhere, in: frame, isolated: true}}\noutputs: [a]"
+    (tmp_path / "i.yaml").write_text(inner)
+    text = (
+        "pipeline: p\nnodes:\n  pair: {step: pair, in: frame}\n"
+        "  used: {use: i.yaml, in: pair, each: true}\noutputs: [used]"
+    )
+    own = registry({**STEPS, **OWN, "pair": steps.pair})
+    runner = loads(text, str(tmp_path / "p.yaml"), own).runner()
+    assert list(runner.processes) == ["used/a"]
+    assert len(runner(frame(3))["used"]) == 2
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
+import itertools
+from collections.abc import Callable, Iterator
 from threading import Event
 from typing import Any
 
@@ -169,8 +170,7 @@ def test_it_ends_when_it_is_stopped() -> None:
     assert len(taken) == 5
 
 
-def test_a_deadline_can_be_set_changed_and_taken_away_while_it_runs() -> None:
-    text = """
+LADDER = """
 pipeline: ladder
 nodes:
   best: {step: read, in: frame}
@@ -178,13 +178,28 @@ nodes:
   answer: {first_of: [best, cheap]}
 outputs: [answer]
 """
-    now = [0]
 
-    def clock() -> int:
-        now[0] += 1_000_000
-        return now[0]
 
-    run = LiveRun(pipeline(text), [frame(7, i) for i in range(9)], clock=clock, deadline_us=1e9)
+def each_ms() -> Callable[[], int]:
+    """Return a clock that a millisecond goes by on whenever it is looked at."""
+    ticks = itertools.count(1)
+    return lambda: 1_000_000 * next(ticks)
+
+
+def test_what_is_known_of_times_is_known_to_the_pipeline_that_takes_over() -> None:
+    text = LADDER.replace("best", "finest")
+    run = LiveRun(pipeline(LADDER), [frame(7, i) for i in range(4)], clock=each_ms(), deadline_us=1)
+    decisions = []
+    for live in run:
+        decisions.append(live.decisions)
+        if len(decisions) == 2:
+            run.swap(pipeline(text))
+    assert decisions == [(), ("best",), ("finest",), ("finest",)]  # tried once, and no more
+
+
+def test_a_deadline_can_be_set_changed_and_taken_away_while_it_runs() -> None:
+    given = [frame(7, i) for i in range(9)]
+    run = LiveRun(pipeline(LADDER), given, clock=each_ms(), deadline_us=1e9)
     values = []
     for live in run:
         values.append((live.result["answer"], live.decisions))

@@ -206,6 +206,19 @@ def test_a_recording_holds_every_frame_with_its_label(command: Command, folder: 
     assert frames[0].truth is not None
 
 
+def test_a_recording_that_is_ended_before_it_has_begun_ends(command: Command, folder: Path) -> None:
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        for on in (True, False, True, True, False):
+            page.ask("record", on=on, label="cup")
+        page.told("recorded")
+        page.told("recorded")
+        while page.until("pulse")["recording"]["on"]:
+            pass
+    assert not list(folder.glob(".*.writer"))
+
+
 def test_ctrl_c_closes_the_recording_and_leaves_no_process(command: Command, folder: Path) -> None:
     pytest.importorskip("zarr", reason="the zarr extra is not installed")
     with Page(command) as page:

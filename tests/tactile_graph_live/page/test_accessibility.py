@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, graph, pulse, served
+from helpers_live_page import Double, frame, graph, pulse, served, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -27,6 +27,47 @@ HEAR = """() => {
     }
 }"""
 CANVASES = "() => [...document.querySelectorAll('canvas[role=img]')].filter((e) => e.checkVisibility()).map((e) => e.getAttribute('aria-label'))"
+
+
+CONTRAST = """() => {
+    const paint = (text) => {
+        const canvas = document.createElement("canvas").getContext("2d");
+        canvas.fillStyle = text;
+        canvas.fillRect(0, 0, 1, 1);
+        return [...canvas.getImageData(0, 0, 1, 1).data];
+    };
+    const bright = (rgb) => {
+        const [r, g, b] = rgb.map((c) => (c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const behind = (e) => {
+        for (; e; e = e.parentElement) {
+            const found = paint(getComputedStyle(e).backgroundColor);
+            if (found[3] === 255) return found;
+        }
+        return paint(getComputedStyle(document.documentElement).backgroundColor);
+    };
+    const faint = (e) => Boolean(e.closest(":disabled, .gone, .unseen, .skip")) || (() => {
+        for (; e; e = e.parentElement) if (Number(getComputedStyle(e).opacity) < 1) return true;
+    })();
+    const found = [];
+    const take = (e, style, text) => {
+        const [one, two] = [bright(paint(style.color).slice(0, 3)), bright(behind(e).slice(0, 3))];
+        const ratio = (Math.max(one, two) + 0.05) / (Math.min(one, two) + 0.05);
+        const large = parseFloat(style.fontSize) >= 24;
+        found.push([Number(ratio.toFixed(2)), large ? 3 : 4.5, text]);
+    };
+    for (const e of document.querySelectorAll("body *")) {
+        if (!e.checkVisibility() || faint(e)) continue;
+        const own = [...e.childNodes].filter((n) => n.nodeType === 3).map((n) => n.nodeValue.trim()).join(" ").trim();
+        if (own) take(e, getComputedStyle(e), `${e.tagName} ${e.className}: ${own.slice(0, 40)}`);
+        for (const pseudo of ["::before", "::after"]) {
+            const style = getComputedStyle(e, pseudo);
+            if (/^"[^"]*\\w/.test(style.content)) take(e, style, `${e.tagName} ${e.className}${pseudo}: ${style.content}`);
+        }
+    }
+    return found;
+}"""
 
 
 @pytest.fixture
@@ -82,13 +123,43 @@ def test_the_help_is_a_dialog_with_a_name_and_the_rest_is_out_of_reach(page: Any
 
 def test_pictures_and_charts_are_told_in_words(page: Any, double: Double) -> None:
     double.say(pulse(lost=3), frame(1))
-    page.wait_for_timeout(2300)
+    wait_for(lambda: any("answered 500" in t for t in page.evaluate(CANVASES)), "charts are told")
     told = page.evaluate(CANVASES)
     assert all(told)
     (latency,) = [t for t in told if t.startswith("Latency")]
     assert latency.startswith("Latency over the last minute: 99 % of results 1.90 ms to 1.90 ms")
     (rate,) = [t for t in told if t.startswith("Frames a second")]
     assert "answered 500 to 500, lost 0 to " in rate
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_from_what_is_behind_it(window: Any, double: Double, scheme: str) -> None:
+    """As WCAG has it for level AA: 4.5 to 1, and 3 to 1 for large letters."""
+    page = window(color_scheme=scheme).page
+    page.goto(double.address)
+    page.wait_for_selector("#result-rows tr")
+    message = graph(2)
+    message["yaml"] = message["yaml"].replace("0.02", "0.03") + "# more\n"
+    message["nodes"][0]["settings"][0]["changed"] = True
+    message["nodes"][1]["apart"] = {"process": "hull", "time_limit_s": None}
+    fares = {"restarts": 1, "starting": True, "why": "took long"}
+    errors = [{"line": 3, "column": 9, "text": "must be > 0"}]
+    fates = {"footprint": ("skipped", "touched is false"), "boundary": ("failed", "too little"),
+             "circle": ("skipped", "deadline")}  # fmt: skip
+    nodes = {n: {"outcome": o, "reason": r, "us": 1.0} for n, (o, r) in fates.items()}
+    double.say(
+        message, pulse(lost=3, missed=2, processes={"boundary": fares}),
+        {"type": "trouble", "version": 2, "errors": errors},
+        *({"type": "told", "level": level, "text": "told"} for level in ("note", "warning", "error")),
+        frame(1, version=2, nodes=nodes),
+    )  # fmt: skip
+    page.locator("#yaml li.added").first.wait_for()
+    page.locator(".apart.starting").wait_for()
+    page.locator("#nodes [data-name=circle]").click()
+    page.wait_for_timeout(500)  # what appears is there
+    found = page.evaluate(CONTRAST)
+    assert len(found) > 80
+    assert [one for one in found if one[0] < one[1]] == []
 
 
 @pytest.mark.parametrize("width", [1440, 1000, 390])

@@ -29,8 +29,8 @@ def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> 
     assert page.locator("#link-text").inner_text() in ("connection lost", "connecting")
     page.keyboard.press("t")
     assert "There is no connection" in page.locator("#told").inner_text()
-    page.wait_for_timeout(2500)
-    assert "tries so far" in page.locator("#lost-text").inner_text()
+    told = page.locator("#lost-text")
+    wait_for(lambda: "tries so far" in told.inner_text(), "it tries again and again", 20)
     with served(Double(), port) as second:
         page.locator("#link:is([data-state=connected], [data-state=running])").wait_for(
             timeout=20_000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -245,6 +246,43 @@ def test_what_runs_beside_is_told(page: Any, double: Double) -> None:
         "radius_cm 0.1000 apart, 0.7500 at most"
     )
     assert page.locator("#missed").inner_text() == "7"
+
+
+def test_nodes_that_run_apart_are_marked_and_how_their_process_fares(
+    page: Any, double: Double
+) -> None:
+    message = graph(2, ("footprint", "boundary", "each_one", "circle"))
+    message["nodes"][1]["apart"] = {"process": "hull", "time_limit_s": None}
+    message["nodes"][3]["apart"] = {"process": "", "time_limit_s": 0.5}
+    within = {**message["nodes"][1], "name": "each_one/hull"}
+    double.say({**message, "nodes": [*message["nodes"], within]})
+    marks = page.locator("#nodes .apart:visible")
+    wait_for(lambda: marks.count() == 3, "three nodes are marked")
+    row = page.get_by_role("option", name=re.compile("boundary_step apart: Runs in a process sha"))
+    shared = row.locator(".apart")
+    assert shared.get_attribute("title") == "Runs in a process shared as hull."
+    other = page.locator("#nodes [data-name=each_one] .apart")
+    assert other.get_attribute("title") == "hull runs in a process shared as hull."
+    fares = {"restarts": 2, "starting": True, "why": "took longer than its 0.5 s"}
+    double.say(pulse(processes={"circle": fares}))
+    own = page.locator("#nodes [data-name=circle] .apart")
+    own.and_(page.locator(".starting")).wait_for()
+    assert own.locator("[aria-hidden]").inner_text() == "restarting"
+    told = (
+        "Runs in a process of its own, ended there after 0.5 s. It is being started anew. "
+        "Started anew 2 times; the last took longer than its 0.5 s."
+    )
+    assert own.get_attribute("title") == told
+    assert shared.get_attribute("title") == "Runs in a process shared as hull."
+    page.locator("#nodes [data-name=circle]").click()
+    assert page.locator("#node-apart").inner_text() == told
+    double.say(pulse(processes={"circle": {**fares, "starting": False}}))
+    wait_for(lambda: "apart, restarted 2×: " in own.inner_text(), "it is there again")
+    assert "It is being" not in page.locator("#node-apart").inner_text()
+    page.locator("#nodes [data-name=footprint]").click()
+    assert page.locator("#node-apart").inner_text() == ""
+    double.say(graph(3))
+    wait_for(lambda: marks.count() == 0, "none is marked any more")
 
 
 def test_a_wrong_file_says_where_and_that_the_old_graph_runs(page: Any, double: Double) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, drawn, frame, graph, hello, pulse, served, setting
+from helpers_live_page import Double, drawn, frame, graph, hello, pulse, served, setting, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -144,6 +144,7 @@ def test_the_policy_keeps_out_what_were_smuggled_in(window: Any) -> None:
             image.src = "http://example.invalid/x.png";
             document.body.append(script, image);
         }""")
-        opened.page.wait_for_timeout(300)
+        refused = lambda: sum("policy: " in c for c in opened.complaints())  # noqa: E731
+        wait_for(lambda: refused() >= 2, "both are refused")
         assert opened.page.evaluate("window.ran") is None
-        assert sum("policy: " in c for c in opened.complaints()) == 2
+        assert refused() == 2

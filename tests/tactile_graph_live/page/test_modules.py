@@ -119,6 +119,17 @@ def test_times_in_the_unit_that_suits_them(call: Any, us: Any, text: str) -> Non
     assert call("numbers", "duration", us) == text
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("50.0 ms", "50 ms"), ("1.50 ms", "1.5 ms"), ("100 ms", "100 ms"), ("0.1000", "0.1"),
+     ("2.0 s", "2 s"), ("20", "20"), ("1.05 ms", "1.05 ms")],
+)  # fmt: skip
+def test_beside_an_axis_decimals_that_say_nothing_are_left_out(
+    call: Any, text: str, told: str
+) -> None:
+    assert call("numbers", "short", text) == told
+
+
 def test_ticks_are_round_and_within(call: Any) -> None:
     assert call("numbers", "ticks", 0, 20.8, 5) == [0, 5, 10, 15, 20]
     assert call("numbers", "ticks", 0, 3, 6) == [0, 0.5, 1, 1.5, 2, 2.5, 3]

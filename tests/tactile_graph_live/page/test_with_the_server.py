@@ -51,6 +51,17 @@ def opened(window: Any, command: Command) -> Any:
     return found
 
 
+def standing(page: Any) -> str:
+    """Return which frame is shown, once no other follows."""
+    shown = ["", page.locator("#when").inner_text()]
+    for _ in range(40):
+        page.wait_for_timeout(300)
+        shown.append(page.locator("#when").inner_text())
+        if shown[-1] == shown[-2]:
+            return str(shown[-1])
+    raise AssertionError(f"frames go on: {shown}")
+
+
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "mine.yaml"
@@ -169,17 +180,34 @@ def test_a_setting_within_a_pipeline_that_is_used_and_what_begins_anew(
         assert found.complaints() == []
 
 
+def test_a_step_that_is_ended_again_and_again_is_told_and_the_others_go_on(
+    window: Any, file: Path
+) -> None:
+    limited = PIPELINE.replace("in: boundary}", "in: boundary, time_limit_s: 0.000001}")
+    file.write_text(limited.replace("outputs: [circle]", "outputs: [circle, boundary]"))
+    with running(file.parent, file.name, "--rate", "20") as command:
+        found = opened(window, command)
+        page = found.page
+        mark = page.locator("#nodes [data-name=circle] .apart")
+        wait_for(lambda: "restart" in mark.inner_text(), "it is told at the node", 30)
+        page.locator(".say.warning", has_text="node 'circle' took longer than its 1e-06 s: its "
+                     "process is started anew").wait_for()  # fmt: skip
+        page.locator("#nodes [data-name=boundary] .badge[data-fate=ran]").wait_for()
+        assert page.locator("#nodes .apart:visible").count() == 1
+        save(file, PIPELINE)
+        wait_for(lambda: not mark.is_visible(), "it runs with the others again", 20)
+        page.locator("#nodes [data-name=circle] .badge[data-fate=ran]").wait_for()
+        assert found.complaints() == []
+
+
 def test_pause_step_scrub_and_live(window: Any, file: Path) -> None:
     with running(file.parent, file.name, "--rate", "40") as command:
         found = opened(window, command)
         page = found.page
-        page.wait_for_timeout(2000)
+        page.wait_for_timeout(2000)  # that there is something to scrub over
         page.keyboard.press("Space")
         page.locator("#link[data-state=paused]").wait_for()
-        page.wait_for_timeout(300)
-        still = page.locator("#when").inner_text()
-        page.wait_for_timeout(300)
-        assert page.locator("#when").inner_text() == still
+        still = standing(page)
         number = int(still.split(" · ")[0].removeprefix("frame "))
         page.keyboard.press(".")
         drawn(page, f"frame {number + 1}")

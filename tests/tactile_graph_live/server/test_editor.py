@@ -17,6 +17,7 @@ import tactile_graph as tg
 from tactile_graph.cli.watch import files_read, stamp
 from tactile_graph.errors import PipelineError
 from tactile_graph_live.bench.wire import Swap, Swapped
+from tactile_graph_live.server import editor as module
 from tactile_graph_live.server.draft import Draft
 from tactile_graph_live.server.editor import Edited, Editor
 from tactile_graph_live.server.messages import Trouble
@@ -41,10 +42,12 @@ class Desk:
         self.swaps: list[Swap] = []
         self.changes: list[Edited] = []
         self.troubles: list[Trouble] = []
+        self.said: list[str] = []
         self.answer: Callable[[Swap], Swapped | None] = lambda swap: Swapped(swap.version)
         self.editor = Editor(
             Draft.of(tg.load(path)), 0, FileSense(stamp, files_read),
             swap=self._swap, changed=self.changes.append, wrong=self.troubles.append,
+            say=self.said.append,
         )  # fmt: skip
 
     def _swap(self, swap: Swap) -> None:
@@ -113,6 +116,32 @@ def test_an_answer_to_an_older_change_is_not_taken_for_this_ones(desk: Desk) -> 
 
     desk.play(change)
     assert desk.changes == []
+
+
+def test_one_that_takes_long_is_told_of_and_runs_when_it_is_ready(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where it took too long to wait for, what the bench runs in the end is still what is shown."""
+    monkeypatch.setattr(module, "SLOW_S", 0.01)
+    monkeypatch.setattr(module, "SWAP_S", 0.05)
+    desk.answer = lambda swap: None
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    assert desk.said == ["the new graph is being made ready; until then the old one runs"]
+    assert "not ready after 0.05 s" in desk.troubles[-1].errors[0].text
+    assert desk.changes == []
+    desk.editor.swapped(Swapped(desk.swaps[-1].version))
+    assert desk.level_v() == 0.02
+    assert [edited.graph.version for edited in desk.changes] == [2]
+    assert desk.troubles[-1].errors == ()
+    desk.editor.swapped(Swapped(desk.swaps[-1].version))
+    assert len(desk.changes) == 1
+
+
+def test_a_bench_that_dies_of_a_change_is_not_waited_for(desk: Desk) -> None:
+    desk.answer = lambda swap: asyncio.get_running_loop().call_soon(desk.editor.bench_died)
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    assert "died of this change" in desk.troubles[-1].errors[0].text
+    assert desk.level_v() == 0.01
 
 
 def test_of_values_that_come_fast_the_newest_is_tried(desk: Desk) -> None:

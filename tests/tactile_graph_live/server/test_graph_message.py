@@ -11,7 +11,7 @@ from annotated_types import Ge, Gt, Le
 import tactile_graph as tg
 from tactile_graph.steps.signature import Setting
 from tactile_graph_live.server.graph_message import graph_message, setting_message
-from tactile_graph_live.server.messages import encoded
+from tactile_graph_live.server.messages import Apart, encoded
 
 
 def told(annotation: Any, value: Any, name: str = "level_v") -> Any:
@@ -80,6 +80,28 @@ outputs: [cheap, each_one]
     for name in ("cheap/footprint", "each_one/footprint"):
         assert "level_v" in [s.name for s in nodes[name].settings]
         pipeline.with_settings({f"{name}.level_v": 0.03})
+
+
+def test_nodes_that_run_apart_are_marked_whoever_asked_for_it() -> None:
+    pipeline = tg.loads("""
+pipeline: careful
+isolated: [hull.*]
+nodes:
+  print: {step: threshold, in: frame, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: print}
+  free: {step: boundary_scan, in: print, isolated: false}
+  circle: {step: fit_circle, in: boundary, time_limit_s: 0.5}
+  areas: {step: split_contacts, in: [frame, print]}
+  each_one: {use: circle-2, in: areas.contacts, each: true}
+outputs: [circle, free, each_one]
+""")
+    message = graph_message(pipeline, 1, ("", ""), {})
+    apart = {n.name: n.apart for n in message.nodes}
+    assert apart["boundary"] == apart["each_one/boundary"] == Apart("hull", None)
+    assert apart["circle"] == Apart("", 0.5)
+    assert [apart[n] for n in ("print", "free", "each_one")] == [None] * 3
+    told = {n["name"]: n["apart"] for n in json.loads(encoded(message))["nodes"]}
+    assert told["circle"] == {"process": "", "time_limit_s": 0.5}
 
 
 @pytest.mark.slow

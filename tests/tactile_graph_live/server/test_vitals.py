@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tactile_graph.live import ProcessState
 from tactile_graph_live.bench.wire import Summary
 from tactile_graph_live.server import vitals as module
-from tactile_graph_live.server.messages import Recording
+from tactile_graph_live.server.messages import Recording, encoded
 from tactile_graph_live.server.vitals import Vitals
 
 
@@ -57,6 +60,16 @@ def test_latencies_of_all_frames_of_the_last_seconds_are_told(clock: Clock) -> N
     assert (pulse.lost, pulse.shed, pulse.missed) == (2, 3, 1)
     clock.now += 5.0
     assert vitals.pulse(0, Recording(), paused=False).latency_us.median is None
+
+
+def test_how_processes_fare_goes_to_the_page_as_json() -> None:
+    vitals = Vitals()
+    processes = {"hull": ProcessState("hull", 2, True, "took longer than its \x1b 0.5 s")}
+    vitals.add(replace(summary(1, []), processes=processes))
+    told = json.loads(encoded(vitals.pulse(1, Recording(), paused=False)))["processes"]
+    assert told["hull"]["restarts"] == 2
+    assert told["hull"]["starting"] is True
+    assert "\x1b" not in told["hull"]["why"]
 
 
 def test_what_a_page_took_is_told_apart(clock: Clock) -> None:
