@@ -276,6 +276,7 @@ class ManyRun:
     # -- the end -------------------------------------------------------------------------------
 
     def _close(self) -> int:
+        self.feed.end(self.low)
         if self.tally.n or self.error is None:
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
@@ -301,8 +302,7 @@ class ManyRun:
 
     def _provenance(self) -> None:
         asked = self.asked
-        if self.feed.in_place:
-            self.report.counts["frames"] += self.low
+        self.feed.end(self.low)
         units = None
         if asked.output.exporter.holds == "numbers":
             table = make_table(asked.pipeline, asked.outputs, asked.output.long)

@@ -13,8 +13,8 @@ from tactile_graph.engine.gathering import flat
 from tactile_graph.steps import Report
 from tactile_graph.steps.ranges import Irregular, Ranges
 from tactile_graph.wires.frame_stack import FrameStack
+from tactile_graph_sources.readers.in_ranges import ranges_of_recordings
 from tactile_graph_sources.recording import recording, recording_stacked
-from tactile_graph_sources.stores.in_ranges import ranges_of_stores
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -40,7 +40,7 @@ def store(path: Path, n: int, garbage: tuple[int, ...] = (), pause: int | None =
 
 
 def ranges(path: Path | list[Path], **told: Any) -> Ranges:
-    found = ranges_of_stores(path, **told)
+    found = ranges_of_recordings(path, **told)
     assert found is not None
     return found
 
@@ -116,7 +116,7 @@ def test_a_setting_that_the_frames_contradict_is_left_to_who_reads_from_the_star
 
 
 def test_settings_that_leave_frames_out_anywhere_have_no_ranges(tmp_path: Path) -> None:
-    assert ranges_of_stores(store(tmp_path / "a.zarr", 5), sensor="left") is None
+    assert ranges_of_recordings(store(tmp_path / "a.zarr", 5), sensor="left") is None
 
 
 def test_frames_that_are_left_out_make_it_irregular(tmp_path: Path) -> None:
@@ -138,5 +138,5 @@ def test_lost_frames_make_it_irregular(tmp_path: Path) -> None:
 
 def test_other_files_have_no_ranges(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("1,2\n")
-    assert ranges_of_stores(tmp_path / "a.csv") is None
-    assert ranges_of_stores([store(tmp_path / "b.zarr", 5), tmp_path / "a.csv"]) is None
+    assert ranges_of_recordings(tmp_path / "a.csv") is None
+    assert ranges_of_recordings([store(tmp_path / "b.zarr", 5), tmp_path / "a.csv"]) is None
