@@ -63,6 +63,8 @@ class Feed:
     ----------
     size : PortionSize
         Of the next portion.
+    irregular : str
+        Why frames that could be read in place are sent; "" if none is.
     """
 
     def __init__(
@@ -85,6 +87,7 @@ class Feed:
         self._begun: Iterator[Portion] | None = None
         self._said = Report()
         self._is_ended = False
+        self.irregular = ""
         if ranges is not None:
             n = ranges.n_frames
             self._stop = n if high is None else min(high, n)
@@ -101,8 +104,8 @@ class Feed:
         if self._ranges is not None and self._ranges.tell is not None:
             try:
                 self._ranges.tell(self._said)
-            except Irregular:
-                self.send()
+            except Irregular as why:
+                self.send(str(why))
         if self._ranges is None:
             portions = self._sent(low)
             first = next(portions, None)
@@ -115,9 +118,9 @@ class Feed:
         begun, self._begun = self._begun, None
         return self._sent(low) if begun is None else begun
 
-    def send(self) -> None:
+    def send(self, why: str) -> None:
         """Send frames from now on: they cannot be read in any order."""
-        self._ranges = None
+        self._ranges, self.irregular = None, why
         self._report.n_expected = None  # the source will say so itself
 
     def end(self, n_frames: int) -> None:
