@@ -53,7 +53,7 @@ def laid_in(
         Told what is assumed of the grid.
     values : ndarray, shape (n, rows, columns)
     times_s : ndarray, shape (n,), optional
-    factor, grid
+    factor, **grid
         As of `Reading.frames`.
 
     Returns
