@@ -94,7 +94,7 @@ def _opened(path: Path, told: Told, label: str) -> _InRanges | None:
             return None
         report = Report()
         laid = found.laid(Reading(head, told, report, 0, label))
-    except (DataError, OSError):  # who reads it from the start says so
+    except Exception:  # a plugin's format may raise anything: who reads it from the start says so
         return None
     return laid and _InRanges(laid, path, told, label, found.name, report)
 
