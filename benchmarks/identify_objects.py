@@ -2,6 +2,7 @@
 
     python benchmarks/identify_objects.py                     # three pads, three catalogues each
     python benchmarks/identify_objects.py --pads resistive --seeds 1 2 3 --curve
+    python benchmarks/identify_objects.py --workers 4         # catalogues shared among processes
 
 Objects and pads are those of `pressed_objects`, which shares no code with the project's own. In
 five sessions each of 22 objects is pressed five times and learned; in five later sessions, zeros
@@ -32,11 +33,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
+from by_workers import add_workers, in_order
 from numpy.typing import NDArray
 from pressed_objects import INSTRUMENTS, Pad, Thing, catalogue
 
@@ -239,6 +242,20 @@ def oracle(all_of: Readings) -> NDArray[np.float64]:
     return found
 
 
+class Catalogue(NamedTuple):
+    """What each way made of a pad's readings, and the oracle, if it was asked."""
+
+    found: dict[str, list[Distances]]
+    bound: NDArray[np.float64] | None
+
+
+def catalogue_of(args: argparse.Namespace, item: tuple[str, int]) -> Catalogue:
+    """Return what comes of a pad and a catalogue."""
+    readings = readings_of(*item)
+    found = {way: tried(WAYS[way], readings) for way in args.ways}
+    return Catalogue(found, oracle(readings) if args.curve else None)
+
+
 def joined(parts: Sequence[Distances]) -> Distances:
     """Return several catalogues' readings together."""
     return Distances(*(np.concatenate(some) for some in zip(*parts, strict=True)))
@@ -250,24 +267,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seeds", nargs="*", type=int, default=[11, 12, 13])
     parser.add_argument("--ways", nargs="*", choices=WAYS, default=[*WAYS])
     parser.add_argument("--curve", action="store_true")
+    add_workers(parser)
     args = parser.parse_args(arguments)
     head = f"{'%':<31}" + "".join(f"{t:>10}" for t in ("right", "nearest", "lost", "strangers",
                                                         "foreign"))  # fmt: skip
     every: dict[str, list[Distances]] = {}
     bounds: list[NDArray[np.float64]] = []
+    items = [(pad, seed) for pad in args.pads for seed in args.seeds]
+    came = in_order(partial(catalogue_of, args), items, args.workers)
     for pad in args.pads:
-        sets = [readings_of(pad, seed) for seed in args.seeds]
         print(f"\n{pad}, catalogues {args.seeds}\n{head}")
+        its = [next(came) for _ in args.seeds]
         here: dict[str, list[Distances]] = {}
         for way in args.ways:
-            found = [tried(WAYS[way], one) for one in sets]
+            found = [one.found[way] for one in its]
             for row, some in zip(WAYS[way].rows(way), zip(*found, strict=True), strict=True):
                 here[row] = list(some)
                 print(f"{row:<31} {joined(some).line()}", flush=True)
                 every.setdefault(row, []).extend(some)
         if args.curve:
-            bounds += [oracle(one) for one in sets]
-            curve(here, bounds[-len(sets) :])
+            bounds += [one.bound for one in its if one.bound is not None]
+            curve(here, bounds[-len(its) :])
     print(f"\nall of them\n{head}")
     for row, distances in every.items():
         print(f"{row:<31} {joined(distances).line()}")

@@ -2,8 +2,9 @@
 
 Run with ``python benchmarks/unknown_pads.py``; ``--shape rectangle`` takes rectangles instead of
 discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--markdown FILE``
-writes the tables. All pipelines are told the thesis' pad; what lies on the bench is one of the
-kinds of `second_simulator`, which shares no code with the project's own pads.
+writes the tables, ``--workers N`` shares the kinds among processes (times: measure with one). All
+pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
+`second_simulator`, which shares no code with the project's own pads.
 
 The first table has each localiser's mean error of the centre and of the size (the radius; of a
 rectangle the mean of both sides), of a rectangle also of the angle, its frames that are flagged
@@ -23,10 +24,12 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from by_workers import add_workers, in_order
 from second_simulator import KINDS, MORE_KINDS, Bench, Outline
 
 from tactile_graph import Circle, Frame, Pipeline, Rectangle, load
@@ -126,7 +129,7 @@ def frames_of(kind: str, asked: Asked) -> list[Frame]:
     return [frame.with_index(i) for i, frame in enumerate(frames[: asked.n_scenes])]
 
 
-def scores(kind: str, pipelines: Sequence[Pipeline], asked: Asked) -> dict[str, Score]:
+def scores(pipelines: Sequence[Pipeline], asked: Asked, kind: str) -> dict[str, Score]:
     """Return each localiser's score on a kind of pad."""
     frames = frames_of(kind, asked)
     true: list[Any] = [t.shape for f in frames for t in f.truth or ()]
@@ -210,18 +213,20 @@ def main() -> None:
         "--kinds", nargs="*", choices=[*KINDS, *MORE_KINDS], default=[*KINDS], metavar="KIND"
     )
     parser.add_argument("--markdown", type=Path)
+    add_workers(parser)
     args = parser.parse_args()
     asked = Asked(args.shape, args.scenes, args.seed)
     pipelines = [load(name) for name in PIPELINES[asked.shape]]
     warm_up()
-    scores(args.kinds[0], pipelines, asked)
+    scores_of = partial(scores, pipelines, asked)
+    scores_of(args.kinds[0])
     names = [CENTROID, *PIPELINES[asked.shape]]
     head = ["pad", *(f"{name}{what}" for name in names for what in (", off", ", flagged"))]
     print(table(head, []))
     every: dict[str, dict[str, Score]] = {}
     first: list[list[str]] = []
-    for kind in args.kinds:
-        found = every[kind] = scores(kind, pipelines, asked)
+    for kind, found in zip(args.kinds, in_order(scores_of, args.kinds, args.workers), strict=True):
+        every[kind] = found
         first.append([kind, *(cell for name in names for cell in found[name].cells())])
         print("| " + " | ".join(first[-1]) + " |", flush=True)
     ours = names[-1]

@@ -1,11 +1,12 @@
 """Which shape lies on a pad that nobody described, how far off it is and what that takes.
 
 Run with ``python benchmarks/unknown_shapes.py``; ``--scenes N`` takes so many of a kind and shape,
-``--kinds`` some of the kinds only. ``locate`` chooses among disc, ellipse and rectangle; discs and
-rectangles lie on the kinds of pads of `second_simulator`. Each line has, of discs and of
-rectangles, how often the right name is given, the mean error of the centre, the mean difference of
-the square roots of both areas (a size that every shape has), how often ``fits`` is False, and
-median and 99 % of the processor's time a frame. The last line is over all kinds.
+``--kinds`` some of the kinds only; ``--workers N`` shares the kinds among processes (times: measure
+with one). ``locate`` chooses among disc, ellipse and rectangle; discs and rectangles lie on the
+kinds of pads of `second_simulator`. Each line has, of discs and of rectangles, how often the right
+name is given, the mean error of the centre, the mean difference of the square roots of both areas
+(a size that every shape has), how often ``fits`` is False, and median and 99 % of the processor's
+time a frame. The last line is over all kinds.
 
 Settings were tuned with seed 1; what is reported is of others.
 """
@@ -15,9 +16,11 @@ from __future__ import annotations
 import argparse
 import math
 import time
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from by_workers import add_workers, in_order
 from second_simulator import KINDS
 from unknown_pads import Asked, frames_of
 
@@ -56,6 +59,11 @@ def rows(pipeline: Pipeline, kind: str, asked: Asked) -> list[Row]:
     return found
 
 
+def by_shape(pipeline: Pipeline, args: argparse.Namespace, kind: str) -> dict[str, list[Row]]:
+    """Return the rows of a kind of pad, by shape."""
+    return {s: rows(pipeline, kind, Asked(s, args.scenes, args.seed)) for s in SHAPES}
+
+
 def cells(found: list[Row]) -> str:
     """Return a shape's part of a line."""
     named, centre_cm, size_cm, flagged, _ = np.nanmean(found, axis=0)
@@ -72,6 +80,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=36)
     parser.add_argument("--seed", type=int, default=57)
     parser.add_argument("--kinds", nargs="*", choices=[*KINDS], default=[*KINDS], metavar="KIND")
+    add_workers(parser)
     args = parser.parse_args()
     pipeline = load("locate")
     warm_up()
@@ -80,8 +89,8 @@ def main() -> None:
     head = f"{'named':>8}{'centre':>8}{'size':>8}{'flagged':>8}{'ms':>7}{'99 %':>7}"
     print(f"{'':18}{''.join(f'{shape:>46}' for shape in SHAPES)}\n{'pad':18}{head}{head}")
     every: dict[str, list[Row]] = {shape: [] for shape in SHAPES}
-    for kind in args.kinds:
-        found = {s: rows(pipeline, kind, Asked(s, args.scenes, args.seed)) for s in SHAPES}
+    of_kinds = in_order(partial(by_shape, pipeline, args), args.kinds, args.workers)
+    for kind, found in zip(args.kinds, of_kinds, strict=True):
         for shape, its in found.items():
             every[shape] += its
         print(f"{kind:18}" + "".join(cells(its) for its in found.values()), flush=True)

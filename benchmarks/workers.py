@@ -63,9 +63,9 @@ def lines_of(store: str, pipeline: str, low: int) -> str:
     """Return the lines of a range of frames: what joblib and Dask are given to do."""
     from tactile_graph import load
     from tactile_graph.cli.output.writers import JsonLines
-    from tactile_graph_sources.stores.in_ranges import ranges_of_stores
+    from tactile_graph_sources.readers.in_ranges import ranges_of_recordings
 
-    ranges = ranges_of_stores(Path(store))
+    ranges = ranges_of_recordings(Path(store))
     assert ranges is not None
     frames = ranges.read(low, min(low + PORTION, ranges.n_frames))
     lines = JsonLines()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import signal
 import stat
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -114,6 +116,30 @@ def said(name: Name) -> Iterator[None]:
     except OSError as error:
         why = error.strerror or error
         raise UsageError(f"{os.fspath(name)}: cannot be written: {why}") from error
+
+
+SETTLED_S = 2.0
+"""From the last change of a file on, after which another would show in its time of change."""
+_known: dict[tuple[int, ...], str] = {}
+
+
+def sha256_of(name: Name) -> str:
+    """Return the SHA-256 of a file's content; one that has not changed since is not read again.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    """
+    with Path(name).open("rb") as file:
+        now = os.fstat(file.fileno())
+        of_file = (now.st_dev, now.st_ino, now.st_size, now.st_mtime_ns)
+        found = _known.get(of_file)
+        if found is None:
+            found = hashlib.file_digest(file, "sha256").hexdigest()
+            if time.time() - now.st_mtime > SETTLED_S:
+                _known[of_file] = found
+        return found
 
 
 def is_plain(name: Name) -> bool:

@@ -3,10 +3,11 @@
     python benchmarks/attacks/workers.py                   # 20 kills of each kind
     python benchmarks/attacks/workers.py --tries 400       # 200 of each
 
-A run of `circle-1` with two workers over a store gets SIGKILL at a moment drawn at random, until it
-ends by itself: after each kill no process of it may be left, the output must not stand under its
-name, and `--resume` goes on. Or one of its workers gets SIGKILL, again and again, and the run must
-end by itself. The file must be, to the byte, the one that one process writes.
+A run of `circle-1` with two workers over a store, or over an unpacked `.npz`, gets SIGKILL at a
+moment drawn at random, until it ends by itself: after each kill no process of it may be left, the
+output must not stand under its name, and `--resume` goes on. Or one of its workers gets SIGKILL,
+again and again, and the run must end by itself. The file must be, to the byte, the one that one
+process writes.
 """
 
 from __future__ import annotations
@@ -22,7 +23,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 from attempts import Attempt, parser_of, told
+
+from tactile_graph import load
 
 FRAMES = 4000
 LONGEST_S = 3.0
@@ -30,7 +34,7 @@ MOST_KILLS = 5
 """Of one run; then it is let end."""
 GONE_S = 10.0
 NAME = "out.csv"
-RUN = ("run", "circle-1", "frames.zarr")
+RECORDINGS = ("frames.zarr", "frames.npz")
 
 
 def begun(folder: Path, *words: str) -> subprocess.Popen[bytes]:
@@ -67,22 +71,42 @@ def left_of(run: int) -> list[int]:
     return list(processes(run))
 
 
+def write_array(store: Path, array: Path) -> None:
+    """Write the frames of a store as an array, unpacked and without their truth."""
+    frames = [*load("circle-1").with_source("recording", path=store).frames()]
+    values, image = np.stack([frame.image.values for frame in frames]), frames[0].image
+    np.savez(
+        array, values=values, pitch_cm=image.pitch_cm, origin_cm=image.origin_cm,
+        quantity=image.quantity,
+    )  # fmt: skip
+
+
 class Killing:
-    """A folder with a store, and the file that one process makes of it."""
+    """A folder with a store and an array, and the files that one process makes of them."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._let_end("convert", "frames.zarr", "--source", "simulate", "--with",
                       f"frames={FRAMES}")  # fmt: skip
-        self._let_end(*RUN, "-o", "one.csv")
-        self.whole = (folder / "one.csv").read_bytes()
+        write_array(folder / "frames.zarr", folder / "frames.npz")
+        self.wholes = {}
+        for recording in RECORDINGS:
+            self._let_end("run", "circle-1", recording, "-o", "one.csv")
+            self.wholes[recording] = (folder / "one.csv").read_bytes()
+        self.over("frames.zarr")
+
+    def over(self, recording: str) -> None:
+        """Take a recording for the runs that come."""
+        self.recording, self.whole = recording, self.wholes[recording]
 
     def _let_end(self, *words: str) -> None:
         if begun(self.folder, *words).wait():
             raise RuntimeError(f"{' '.join(words)} fails even when it is let end")
 
     def _begun(self, *more: str) -> subprocess.Popen[bytes]:
-        return begun(self.folder, *RUN, "--workers", "2", "-o", NAME, *more)
+        return begun(
+            self.folder, "run", "circle-1", self.recording, "--workers", "2", "-o", NAME, *more
+        )
 
     def the_whole(self, rng: random.Random) -> tuple[str, str]:
         """Kill a run, and those that resume it; return what came of it, and what is wrong."""
@@ -133,7 +157,9 @@ def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
     with tempfile.TemporaryDirectory() as folder:
         killing = Killing(Path(folder))
         for i in range(n_tries):
-            what = "a worker" if i % 2 else "the whole"
+            recording = RECORDINGS[i // 2 % 2]
+            killing.over(recording)
+            what = f"{'a worker' if i % 2 else 'the whole'}, {recording.partition('.')[2]}"
             since = time.monotonic()
             came, why = (killing.a_worker if i % 2 else killing.the_whole)(rng)
             yield Attempt(what, came, why, time.monotonic() - since)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, Points
 from tactile_graph.wires.stacks import MaskStack, PointsStack
-from tactile_graph_hull.packed import scanned_words
+from tactile_graph_hull.packed import centres_of, first_met, scanned_words
 from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
@@ -37,6 +37,8 @@ def boundary_scan(mask: Mask) -> Points:
     values = mask.values
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)
+    if values.shape[1] <= MaskStack.WIDEST:
+        return Points(scanned_rows.call(values, *mask.pitch_cm, *mask.origin_cm))
     return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
 
 
@@ -121,6 +123,24 @@ def scanned_centres(
                 right = right_next[right]
             following = min(left, right)
             r = last if r < last < following else following
+    return centres[:n]
+
+
+@compiled_twin_of(_scanned_centres)
+def scanned_rows(
+    mask: NDArray[np.bool_], pitch_x: float, pitch_y: float, x0: float, y0: float
+) -> NDArray[np.float64]:
+    """Do the same to a mask of at most 64 columns, each row packed into a machine word."""
+    rows, columns = mask.shape
+    words, seen = np.empty(rows, np.uint64), np.empty(rows, np.uint64)
+    for r in range(rows):
+        row, word = mask[r], np.uint64(0)
+        for c in range(columns):
+            word |= np.uint64(row[c]) << np.uint64(c)
+        words[r] = word
+    first_met(words, seen)
+    place, centres = np.empty(columns + 1, np.int64), np.empty((2 * (rows + columns), 2))
+    n = centres_of(seen, pitch_x, pitch_y, x0, y0, place, centres, 0)
     return centres[:n]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
@@ -12,6 +11,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.files import sha256_of
 from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
@@ -19,13 +19,13 @@ from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
 from tactile_graph_sources.readers.garbage import stacks_without_garbage, without_garbage
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.in_ranges import ranges_of_recordings
 from tactile_graph_sources.readers.labels import labels_of
 from tactile_graph_sources.readers.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.names import ColumnsTold
 from tactile_graph_sources.readers.told import Told
-from tactile_graph_sources.stores.in_ranges import ranges_of_stores
 
 Length = Annotated[float, Gt(0)]
 
@@ -147,7 +147,7 @@ def recording_stacked(
 
 
 recording.stacked = recording_stacked  # type: ignore[attr-defined]
-recording.ranges = ranges_of_stores  # type: ignore[attr-defined]
+recording.ranges = ranges_of_recordings  # type: ignore[attr-defined]
 
 
 def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
@@ -205,8 +205,7 @@ def _recognised(path: Path, told: Told, report: Report) -> tuple[Head, Recording
         if found is None:
             raise _no_recording(path)
         return Head(path, b"", told), found
-    with path.open("rb") as file:
-        report.digest(str(path), hashlib.file_digest(file, "sha256").hexdigest())
+    report.digest(str(path), sha256_of(path))
     head = Head.of(path, told)
     return head, format_of(head)
 

@@ -14,7 +14,7 @@ from tactile_graph.many.portion import Portion
 from tactile_graph.many.sent import PortionSize, sent
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
-from tactile_graph.steps.ranges import Ranges
+from tactile_graph.steps.ranges import Irregular, Ranges
 
 MOST_READ = 16_384
 """Frames of a portion that a worker reads itself: so many lines are sent back at once."""
@@ -63,6 +63,8 @@ class Feed:
     ----------
     size : PortionSize
         Of the next portion.
+    irregular : str
+        Why frames that could be read in place are sent; "" if none is.
     """
 
     def __init__(
@@ -83,6 +85,9 @@ class Feed:
         self._stop = high
         self.size = PortionSize() if ranges is None else PortionSize(MOST_READ)
         self._begun: Iterator[Portion] | None = None
+        self._said = Report()
+        self._is_ended = False
+        self.irregular = ""
         if ranges is not None:
             n = ranges.n_frames
             self._stop = n if high is None else min(high, n)
@@ -94,7 +99,13 @@ class Feed:
         return self._ranges is not None
 
     def begin(self, low: int) -> None:
-        """Read the first portion where frames are sent: the source then says how many there are."""
+        """Look through recordings that are read in place; read the first portion where frames are
+        sent: the source then says how many there are."""
+        if self._ranges is not None and self._ranges.tell is not None:
+            try:
+                self._ranges.tell(self._said)
+            except Irregular as why:
+                self.send(str(why))
         if self._ranges is None:
             portions = self._sent(low)
             first = next(portions, None)
@@ -107,10 +118,18 @@ class Feed:
         begun, self._begun = self._begun, None
         return self._sent(low) if begun is None else begun
 
-    def send(self) -> None:
+    def send(self, why: str) -> None:
         """Send frames from now on: they cannot be read in any order."""
-        self._ranges = None
+        self._ranges, self.irregular = None, why
         self._report.n_expected = None  # the source will say so itself
+
+    def end(self, n_frames: int) -> None:
+        """Report, once, what recordings read in place have to say, and how many frames came."""
+        if self._ranges is not None and not self._is_ended:
+            self._is_ended = True
+            self._report.counts.update(self._said.counts)
+            self._report.counts["frames"] += n_frames
+            self._report.digests.update(self._said.digests)
 
     def _read(self, low: int, n_workers: int, ranges: Ranges) -> Iterator[Portion]:
         stop = ranges.n_frames if self._stop is None else self._stop

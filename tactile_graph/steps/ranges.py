@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 
@@ -31,12 +32,16 @@ class Ranges(NamedTuple):
         How many frames are best read together: those of a chunk.
     read_in_stacks : callable, optional
         As ``read``; it may yield a `FrameStack` for many frames.
+    tell : callable, optional
+        ``tell(report)`` tells a `Report` what the source would tell of its recordings as a whole,
+        and looks through them once for all who read them: it raises `Irregular` if one is damaged.
     """
 
     recordings: tuple[int, ...]
     read: Callable[[int, int], Iterator[Frame]]
     together: int = 1
     read_in_stacks: Callable[[int, int], Iterator[Frame | FrameStack]] | None = None
+    tell: Callable[[Report], None] | None = None
 
     @property
     def n_frames(self) -> int:

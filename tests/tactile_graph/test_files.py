@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import resource
 import signal
@@ -13,7 +14,14 @@ from pathlib import Path
 import pytest
 
 from tactile_graph.errors import UsageError
-from tactile_graph.files import check_target, is_plain, uninterrupted, whole_file, write_whole
+from tactile_graph.files import (
+    check_target,
+    is_plain,
+    sha256_of,
+    uninterrupted,
+    whole_file,
+    write_whole,
+)
 
 
 @contextmanager
@@ -155,3 +163,27 @@ def test_in_another_thread_nothing_waits() -> None:
     thread.start()
     thread.join()
     assert done == [signal.getsignal(signal.SIGINT)]
+
+
+def test_a_digest_is_of_what_the_file_holds_now(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"first")
+    long_ago = path.stat().st_mtime - 3600.0
+    os.utime(path, (long_ago, long_ago))
+    assert sha256_of(path) == sha256_of(path) == hashlib.sha256(b"first").hexdigest()
+    path.write_bytes(b"other")  # as long as before
+    assert sha256_of(path) == hashlib.sha256(b"other").hexdigest()
+    path.write_bytes(b"third")  # at once: the time of change may be the same
+    assert sha256_of(path) == hashlib.sha256(b"third").hexdigest()
+
+
+def test_a_file_that_has_not_changed_is_not_read_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"first")
+    long_ago = path.stat().st_mtime - 3600.0
+    os.utime(path, (long_ago, long_ago))
+    known = sha256_of(path)
+    monkeypatch.delattr(hashlib, "file_digest")
+    assert sha256_of(path) == known

@@ -58,8 +58,15 @@ def _directory_size(file: BinaryIO) -> int:
     return size
 
 
-def mapped(path: str, member: zipfile.ZipInfo) -> NDArray[np.uint8]:
+def mapped(path: str, member: zipfile.ZipInfo, check: bool = True) -> NDArray[np.uint8]:
     """Return the bytes of a member that is stored as it is, mapped, not read.
+
+    Parameters
+    ----------
+    path : str
+    member : ZipInfo
+    check : bool
+        Whether all of them are held against the archive's checksum.
 
     Raises
     ------
@@ -71,6 +78,6 @@ def mapped(path: str, member: zipfile.ZipInfo) -> NDArray[np.uint8]:
         n_name, n_extra = struct.unpack_from("<HH", file.read(_LOCAL_HEAD), _LOCAL_HEAD - 4)
     begin = member.header_offset + _LOCAL_HEAD + n_name + n_extra
     held = np.asarray(np.memmap(path, np.uint8, "r", begin, (member.file_size,)))
-    if zlib.crc32(held.data) != member.CRC:
+    if check and zlib.crc32(held.data) != member.CRC:
         raise zipfile.BadZipFile(f"Bad CRC-32 for file {member.filename!r}")
     return held

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph_sources.readers.choice import SeveralSensorsError
+from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.stack import stack_of
 from tactile_graph_sources.readers.tables.layout import unit_of
@@ -49,6 +50,21 @@ class Held(NamedTuple):
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
     """Yield the matrices of a stack; times that are not as many as the frames are left out."""
+    frames, times_s, said = _timed(reading, held)
+    reading.report.expect(len(frames))
+    yield from reading.frames(frames, times_s, **said)
+
+
+def laid_of(reading: Reading, held: Held) -> Laid | None:
+    """Return how the matrices of a stack are read, any without those before them."""
+    frames, times_s, said = _timed(reading, held)
+    return laid_in(reading, frames, times_s, **said)
+
+
+def _timed(
+    reading: Reading, held: Held
+) -> tuple[NDArray[Any], NDArray[np.float64] | None, dict[str, Any]]:
+    """Return matrices, their times, and what the file says of all of them."""
     _refuse_lone_matrix(reading, held)
     frames = stack_of(reading, held.values, held.what)
     times, factor = held.times, 1.0
@@ -56,12 +72,10 @@ def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
         times = None
     if times is not None:
         factor = _factor(reading, held.times_name, times)
-    reading.report.expect(len(frames))
     said = held.said
     times_s = None if times is None else times.astype(np.float64) * factor
-    yield from reading.frames(
-        frames, times_s, factor=said.factor, pitch_cm=said.pitch_cm, quantity=said.quantity
-    )
+    told = {"factor": said.factor, "pitch_cm": said.pitch_cm, "quantity": said.quantity}
+    return frames, times_s, told
 
 
 def _refuse_lone_matrix(reading: Reading, held: Held) -> None:

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.stack import stack_of
@@ -39,6 +41,12 @@ def read(reading: Reading) -> Iterator[Any]:
     DataError
         If the array is damaged, holds objects, or has the wrong number of axes.
     """
+    values = _stack(reading)
+    reading.report.expect(len(values))
+    yield from reading.frames(values)
+
+
+def _stack(reading: Reading) -> NDArray[Any]:
     try:
         # Mapped, not read: a long recording never stands in memory as a whole; no pickle, ever.
         array = np.load(reading.path, mmap_mode="r", allow_pickle=False)
@@ -52,9 +60,12 @@ def read(reading: Reading) -> Iterator[Any]:
             f"its array has fields ({fields}); save the one with the cells alone: "
             f"numpy.save('out.npy', array[{name!r}])",
         )
-    values = stack_of(reading, array, "its array")
-    reading.report.expect(len(values))
-    yield from reading.frames(values)
+    return stack_of(reading, array, "its array")
 
 
-FORMAT = RecordingFormat("NumPy .npy", recognises, read)
+def laid(reading: Reading) -> Laid | None:
+    """Return how matrices are read without those before them; raises as `read` does."""
+    return laid_in(reading, np.asarray(_stack(reading)))
+
+
+FORMAT = RecordingFormat("NumPy .npy", recognises, read, laid=laid)

@@ -7,7 +7,8 @@ import os
 import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import IO, Any
+from functools import partial
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +22,12 @@ from tactile_graph_sources.readers.datasets import (
     Held,
     frames_of,
     is_stack,
+    laid_of,
     numbered,
     time_among,
 )
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.others import document_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -62,16 +65,66 @@ def read(reading: Reading) -> Iterator[Any]:
             arrays.check_sizes(("cap", "ftir"))
             yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
         elif "values" in arrays.names:
-            yield from _ours(reading, arrays)
+            ours = _ours(reading, arrays)
+            reading.report.expect(len(ours.values))
+            yield from _frames_alone(ours, reading, 0, len(ours.values))
         else:
             yield from frames_of(reading, _foreign(reading, arrays))
 
 
-class Archive:
-    """The arrays of an archive by name; each is read when it is asked for, never unpickled."""
+def laid(reading: Reading) -> Laid | None:
+    """Return how frames are read where they lie in the archive, without those before them.
 
-    def __init__(self, where: str, file: zipfile.ZipFile) -> None:
+    None where an array is packed, as nobody then reads a part of it alone; where the stack is put
+    together of several arrays; and where a truth stands beside the frames, of which each reader
+    would need all.
+    """
+    with opened(reading.path) as file:
+        arrays = Archive(str(reading.path), file, check=False)
+        if not _is_in_place(reading, arrays):
+            return None
+        if "values" not in arrays.names:
+            found = laid_of(reading, _foreign(reading, arrays))
+        elif reading.told.sensor:
+            return None
+        else:
+            ours = _ours(reading, arrays)
+            found = laid_in(reading, ours.values, ours.times, **ours.grid)
+            found = found and found._replace(frames=partial(_frames_alone, ours))
+
+    def check() -> None:
+        with opened(reading.path) as file:
+            again = Archive(str(reading.path), file)
+            for name in arrays.unchecked:
+                again.load(name)
+
+    return found and found._replace(check=check)
+
+
+def _is_in_place(reading: Reading, arrays: Archive) -> bool:
+    names = arrays.names.keys()
+    several = sum(len(arrays.outline(name)[0]) > 1 for name in names) > 1
+    if several and not ("values" in names or reading.told.sensor):
+        return False
+    return all(map(arrays.is_stored, names)) and not ({"cap", "ftir"} <= names or "truth" in names)
+
+
+class Archive:
+    """The arrays of an archive by name; each is read when it is asked for, never unpickled.
+
+    Parameters
+    ----------
+    where : str
+    file : ZipFile
+    check : bool
+        Whether what is mapped is held against its checksum; else somebody does so once for all.
+    """
+
+    def __init__(self, where: str, file: zipfile.ZipFile, check: bool = True) -> None:
         self.where = where
+        self._check = check
+        self.unchecked: list[str] = []
+        """Arrays that were mapped and not held against their checksums."""
         self._file = file
         self._size = os.path.getsize(where)
         members = file.infolist()
@@ -124,9 +177,10 @@ class Archive:
         self.check_sizes([name])
         try:
             info = self.names[name]
-            stored = info.compress_type == zipfile.ZIP_STORED and info.file_size <= self._size
+            stored = self._is_stored(info)
             found = self._mapped(info) if stored and info.file_size > WORTH_MAPPING else None
             if found is not None:
+                self.unchecked += [] if self._check else [name]
                 return found
             if info.file_size > SMALL and not stored:
                 # What is damaged is refused before it fills the memory.
@@ -141,6 +195,13 @@ class Archive:
         except Exception as error:
             raise DataError(self.where, f"array {name!r} cannot be read: {error}") from error
 
+    def is_stored(self, name: str) -> bool:
+        """Return whether an array lies in the file as it is, unpacked."""
+        return self._is_stored(self.names[name])
+
+    def _is_stored(self, info: zipfile.ZipInfo) -> bool:
+        return info.compress_type == zipfile.ZIP_STORED and info.file_size <= self._size
+
     def _mapped(self, info: zipfile.ZipInfo) -> NDArray[Any] | None:
         """Return a stored array as it lies in the file; None where its size is not as it says."""
         with self._file.open(info) as member:
@@ -148,7 +209,7 @@ class Archive:
             begin = member.tell()
         if dtype.hasobject or math.prod(shape) * dtype.itemsize != info.file_size - begin:
             return None
-        held = mapped(self.where, info)
+        held = mapped(self.where, info, self._check)
         return np.ndarray(shape, dtype, held, begin, order="F" if by_column else "C")
 
     def optional(self, name: str, shape: tuple[int, ...], kinds: str) -> NDArray[Any] | None:
@@ -247,8 +308,27 @@ def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | 
     return x, y
 
 
-def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
-    """Yield the frames of a recording of ours; all but ``values`` is optional in it."""
+class _Ours(NamedTuple):
+    """A recording of ours; None for what is said of none of its frames."""
+
+    values: NDArray[Any]
+    times: NDArray[Any] | None
+    grid: dict[str, Any]
+    valid: NDArray[Any] | None
+    device_times: NDArray[Any] | None
+    gaps: NDArray[Any] | None
+    doubtful: NDArray[Any] | None
+    labels: NDArray[Any] | None
+    truths: list[Truth] | None
+
+    @property
+    def says_more(self) -> bool:
+        """Whether anything is to be said of single frames."""
+        return any(one is not None for one in self[3:])
+
+
+def _ours(reading: Reading, arrays: Archive) -> _Ours:
+    """Return a recording of ours; all but ``values`` is optional in it."""
     reading.is_own = True
     arrays.check_sizes([name for name in OURS if name in arrays.names])
     values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
@@ -264,28 +344,30 @@ def _ours(reading: Reading, arrays: Archive) -> Iterator[Any]:
         raise DataError(arrays.where, unknown)
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
-    reading.report.expect(n)
-    told = (valid, device_times, gaps, doubtful, labels, truths)
-    if all(one is None for one in told):  # nothing is to be said of single frames
-        times_s = None if times is None else times.astype(np.float64)
+    grid = {"pitch_cm": pitch, "origin_cm": origin, "quantity": quantity}
+    return _Ours(values, times, grid, valid, device_times, gaps, doubtful, labels, truths)
+
+
+def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterator[Any]:
+    """Yield some frames of a recording of ours."""
+    reading.is_own = True
+    if not ours.says_more:
+        times_s = None if ours.times is None else ours.times[low:high].astype(np.float64)
         if reading.wants(""):
-            yield from reading.frames(
-                values, times_s, pitch_cm=pitch, origin_cm=origin, quantity=quantity
-            )
+            yield from reading.frames(ours.values[low:high], times_s, **ours.grid)
         return
-    for k in range(n):
+    gaps, doubtful, labels = ours.gaps, ours.doubtful, ours.labels
+    for k in range(low, high):
         sensor = "" if labels is None else str(labels[k])
         if reading.wants(sensor):
             frame = reading.frame(
-                values[k],
-                pitch_cm=pitch,
-                origin_cm=origin,
-                quantity=quantity,
-                time_s=_time(times, k),
+                ours.values[k],
+                **ours.grid,
+                time_s=_time(ours.times, k),
                 sensor=sensor,
-                valid=None if valid is None else valid[k],
-                truth=None if truths is None else truths[k],
-                device_time_s=_time(device_times, k),
+                valid=None if ours.valid is None else ours.valid[k],
+                truth=None if ours.truths is None else ours.truths[k],
+                device_time_s=_time(ours.device_times, k),
                 gap=gaps is not None and bool(gaps[k]),
             )
             unsure = doubtful is not None and bool(doubtful[k])
@@ -312,5 +394,5 @@ def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth] | None:
 
 
 FORMAT = RecordingFormat(
-    "NumPy .npz (ours, CapContact, or one stack of matrices)", recognises, read
+    "NumPy .npz (ours, CapContact, or one stack of matrices)", recognises, read, laid=laid
 )

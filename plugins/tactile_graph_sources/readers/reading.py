@@ -170,9 +170,7 @@ class Reading:
         values, mask = self._turned(values, mask, truth)
         image = Image(
             values,
-            self._pitch(pitch_cm),
-            self._origin(origin_cm),
-            self._quantity(quantity),
+            *self.grid(pitch_cm, origin_cm, quantity),
             mask,
         )
         gap = gap or not self._gaps.isdisjoint(("", sensor))
@@ -213,6 +211,21 @@ class Reading:
                 time_s = float(times[k]) if times is not None and timed else None
                 yield self.frame(matrix, factor=factor, time_s=time_s, **same)
 
+    def grid(
+        self,
+        pitch_cm: tuple[float, float] | None = None,
+        origin_cm: tuple[float, float] | None = None,
+        quantity: str = "raw",
+    ) -> tuple[tuple[float, float], tuple[float, float], str]:
+        """Return pitch, origin and quantity of frames: the settings', or what the file says.
+
+        Raises
+        ------
+        DataError
+            If they cannot be true, or the two disagree.
+        """
+        return self._pitch(pitch_cm), self._origin(origin_cm), self._quantity(quantity)
+
     def _stack(
         self,
         values: NDArray[Any],
@@ -233,8 +246,7 @@ class Reading:
                 values *= factor
         if not -LARGEST <= values.min() <= values.max() <= LARGEST:  # no NaN is
             return None
-        grid = (self._pitch(same.get("pitch_cm")), self._origin(same.get("origin_cm")))
-        images = ImageStack(values, *grid, self._quantity(same.get("quantity", "raw")))
+        images = ImageStack(values, *self.grid(**same))
         index = np.arange(self.index, self.index + len(values))
         self.index += len(values)
         return FrameStack(images, index, times_s)

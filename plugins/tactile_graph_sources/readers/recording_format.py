@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.laid import Laid
 from tactile_graph_sources.readers.reading import Reading
 
 
@@ -27,6 +28,10 @@ class RecordingFormat(NamedTuple):
         it is asked after all that have.
     of_folders : bool
         Whether such a recording is a folder.
+    laid : callable, optional
+        Returns how any frames of a file are read without those before them, so that several
+        processes share its frames; None where they cannot be. Raises `DataError` where ``read``
+        would. What it tells the reading's report is what ``read`` tells of the file as a whole.
     """
 
     name: str
@@ -34,3 +39,4 @@ class RecordingFormat(NamedTuple):
     read: Callable[[Reading], Iterator[Frame]]
     plain: bool = False
     of_folders: bool = False
+    laid: Callable[[Reading], Laid | None] | None = None

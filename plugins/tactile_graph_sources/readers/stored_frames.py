@@ -6,17 +6,22 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tactile_graph.steps.ranges import Irregular
 from tactile_graph.wires import Frame
 from tactile_graph.wires.frame_stack import MOST_FRAMES, FrameStack
+from tactile_graph_sources.readers.laid import Laid
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.store import read_store, read_store_in_stacks
 from tactile_graph_sources.stores.layout import JOURNAL, METADATA, is_store
+from tactile_graph_sources.stores.stored import Lost, Stored, open_stored
+
+BY_FILES = f"by the files in it, {METADATA} or {JOURNAL}"
 
 
 def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of a store as far as it is whole; raises what `read_store` raises."""
-    reading.recognised(f"by the files in it, {METADATA} or {JOURNAL}")
+    reading.recognised(BY_FILES)
     frames = read_store_in_stacks if reading.in_stacks else read_store
     yield from as_told(reading, frames(reading.path, reading.report))
 
@@ -92,6 +97,30 @@ def _stack_as_told(reading: Reading, stored: FrameStack) -> Iterator[Frame | Fra
     )
 
 
+def laid(reading: Reading) -> Laid | None:
+    """Return how the chunks of a store are read in any order; None where something is damaged."""
+    stored = open_stored(reading.path)
+    if reading.told.sensor or stored.troubles or not stored.sure:
+        return None
+    reading.recognised(BY_FILES)
+
+    def frames(reading: Reading, low: int, high: int) -> Iterator[Frame | FrameStack]:
+        yield from as_told(reading, _pieces(stored, low, high, reading.in_stacks))
+
+    return Laid(stored.n_frames, frames, together=stored.chunk)
+
+
+def _pieces(stored: Stored, low: int, high: int, in_stacks: bool) -> Iterator[Frame | FrameStack]:
+    for piece in stored.pieces:
+        if piece.high <= low or piece.low >= high:
+            continue
+        try:
+            read = stored.given if in_stacks else stored.frames
+            yield from read(piece, low, high)
+        except Lost as why:
+            raise Irregular(f"{stored.path}: {piece.words}: lost: {why}") from why
+
+
 STORE = RecordingFormat(
-    "Zarr store of ours", lambda head: is_store(head.path), read, of_folders=True
+    "Zarr store of ours", lambda head: is_store(head.path), read, of_folders=True, laid=laid
 )

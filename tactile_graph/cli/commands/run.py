@@ -190,7 +190,7 @@ class _Run:
 
     def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
         """Let workers run it, and leave the command; say why if they cannot."""
-        from tactile_graph.cli.many.many_run import Asked, ManyRun, division_for
+        from tactile_graph.cli.many.many_run import Asked, InOneRow, ManyRun, division_for
         from tactile_graph.cli.terminal import console
         from tactile_graph.many.executor_kind import place_of
 
@@ -207,7 +207,12 @@ class _Run:
         if division.by_recording:
             text = "each recording by one worker: state starts anew with each"
             say.print(text, style="yellow", soft_wrap=True)
-        click.get_current_context().exit(ManyRun(asked, division, ranges).go())
+        try:
+            code = ManyRun(asked, division, ranges).go()
+        except InOneRow as why:
+            say.print(f"in one process: {why}", style="yellow", soft_wrap=True)
+            return
+        click.get_current_context().exit(code)
 
     def go(self) -> None:
         from tactile_graph.cli.interrupt import Interrupts

@@ -85,8 +85,8 @@ class Done(NamedTuple):
         How long it took.
     error : Exception or None
         What ended it early.
-    irregular : bool
-        Whether the frames could not be read on their own.
+    irregular : str
+        Why the frames could not be read on their own; "" if they could.
     """
 
     n_frames: int = 0
@@ -95,7 +95,7 @@ class Done(NamedTuple):
     quantity: str = ""
     seconds: float = 0.0
     error: Exception | None = None
-    irregular: bool = False
+    irregular: str = ""
 
 
 def done(given: bytes, portion: Portion) -> Done:
@@ -149,8 +149,8 @@ class _Bench:
                     raise
                 except Exception as error:  # what was done before is kept
                     ended.append(for_the_way(error))
-        except Irregular:
-            return Done(irregular=True)
+        except Irregular as why:
+            return Done(irregular=str(why) or "frames that cannot be read on their own")
         tally.outputs = []  # columns hold functions, and who asked knows them
         return Done(tally.n, part[0], tally, quantity, error=ended[0] if ended else None)
 

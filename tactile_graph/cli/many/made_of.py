@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.files import sha256_of
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.plugins.registry import installed
 from tactile_graph.provenance import used_plugins
@@ -87,8 +88,7 @@ def _content(path: Path) -> str:
         files = sorted(path.glob(JOURNALS)) or sorted(p for p in path.rglob("*") if p.is_file())
     whole = hashlib.sha256()
     for file in files:
-        with file.open("rb") as opened:
-            of_file = hashlib.file_digest(opened, "sha256").digest()
+        of_file = bytes.fromhex(sha256_of(file))
         whole.update(f"{file.relative_to(path)}\n".encode() + of_file)
     return whole.hexdigest()
 

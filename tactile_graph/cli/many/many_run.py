@@ -22,7 +22,7 @@ from tactile_graph.cli.terminal import console
 from tactile_graph.engine.columns import columns_of
 from tactile_graph.engine.gathering import is_long
 from tactile_graph.engine.table import make_table, units_of
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
 from tactile_graph.many.division import Division, division_of
 from tactile_graph.many.executor_kind import Place
@@ -33,6 +33,10 @@ from tactile_graph.many.sharing import KILLER
 from tactile_graph.provenance import provenance, sidecar, write_provenance
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
+
+
+class InOneRow(Exception):  # noqa: N818 -- what the frames are
+    """Frames whose state hangs on all before them cannot be divided after all, and why."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,14 @@ class ManyRun:
     quantity: str = "raw"
 
     def go(self) -> int:
-        """Run, say what came of it, and return the exit code."""
+        """Run, say what came of it, and return the exit code.
+
+        Raises
+        ------
+        InOneRow
+            If frames can be read only after those before them, and so does state: nothing of what
+            was done is kept.
+        """
         asked = self.asked
         self.report = Report()
         span = (asked.span.start, asked.span.stop)
@@ -189,7 +200,9 @@ class ManyRun:
         asked = self.asked
         try:
             self.feed.begin(self.low)
-        except UsageError:
+            if self.feed.irregular:
+                self._refuse_state()
+        except (UsageError, InOneRow):
             raise
         except Exception as error:  # a source may raise anything
             self.error = error
@@ -201,7 +214,8 @@ class ManyRun:
                 again = False
                 for portion, came in self._done(workers):
                     if came.irregular:
-                        self.feed.send()
+                        self.feed.send(came.irregular)
+                        self._refuse_state()
                         workers.drop()
                         again = True
                         break
@@ -213,6 +227,24 @@ class ManyRun:
                         return
         if self.low == asked.span.start and self.error is None:
             yield self._without_frames(given, held)
+
+    def _refuse_state(self) -> None:
+        """Refuse to go on with frames that must be read from the start, where steps keep state.
+
+        Raises
+        ------
+        InOneRow
+        DataError
+            If some of what was done is with others already.
+        """
+        if not (self.division.memory or self.division.by_recording):
+            return
+        begun = self.low > self.asked.span.start
+        self.low = self.asked.span.start
+        if begun and self.unfinished is None:
+            told = f"{self.feed.irregular}; steps keep state: give -o FILE, or no --workers"
+            raise DataError("workers", told)
+        raise InOneRow(f"steps keep state, and {self.feed.irregular}")
 
     def _without_frames(self, given: bytes, held: Any) -> bytes:
         """Return what the output is where no frame came."""
@@ -276,6 +308,7 @@ class ManyRun:
     # -- the end -------------------------------------------------------------------------------
 
     def _close(self) -> int:
+        self.feed.end(self.low)
         if self.tally.n or self.error is None:
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
@@ -301,8 +334,7 @@ class ManyRun:
 
     def _provenance(self) -> None:
         asked = self.asked
-        if self.feed.in_place:
-            self.report.counts["frames"] += self.low
+        self.feed.end(self.low)
         units = None
         if asked.output.exporter.holds == "numbers":
             table = make_table(asked.pipeline, asked.outputs, asked.output.long)

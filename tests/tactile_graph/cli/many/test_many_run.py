@@ -17,6 +17,7 @@ import pytest
 from click.testing import CliRunner
 
 from helpers_many import command, ran, surroundings, write_plugin
+from tactile_graph import load
 from tactile_graph.cli import cli
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -52,7 +53,23 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name, seed in (("a.zarr", "1"), ("b.zarr", "2")):
         got = ran(path, "convert", name, *DISCS, "--with", "frames=700", "--seed", seed)
         assert got.returncode == 0, got.stderr
+    write_arrays(path)
     return path
+
+
+def write_arrays(folder: Path) -> None:
+    """Write the frames of a store as arrays, as they are and with one of garbage."""
+    frames = [*load("circle-1").with_source("recording", path=folder / "a.zarr").frames()]
+    values = np.stack([frame.image.values for frame in frames])
+    image = frames[0].image
+    grid = {"pitch_cm": image.pitch_cm, "origin_cm": image.origin_cm, "quantity": image.quantity}
+    np.savez(folder / "a.npz", values=values, **grid)  # type: ignore[arg-type]
+    np.save(folder / "a.npy", values.astype(np.float32))
+    raw = bytearray((folder / "a.npz").read_bytes())
+    raw[len(raw) // 2] ^= 1
+    (folder / "damaged.npz").write_bytes(raw)
+    values[350] = 5.0 * np.random.default_rng(0).random(values.shape[1:])
+    np.savez(folder / "garbage.npz", values=values, **grid)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +94,13 @@ def written(folder: Path, name: str, *words: str) -> tuple[bytes, str]:
     ("circle-1", *DISCS, "--frames", "300"),
     ("circle-1", "a.zarr", "--frames", "90:501"),
     ("lately.yaml", "a.zarr", "b.zarr", "--frames", "3:1200"),
-], ids=["in place", "sent", "a span", "few remembered"])  # fmt: skip
+    ("circle-1", "a.npz"),
+    ("circle-1", "a.npy", "--with", "quantity=volt"),
+    ("lately.yaml", "a.npz", "--frames", "3:600"),
+    ("circle-1", "garbage.npz"),
+    ("lately.yaml", "garbage.npz"),
+], ids=["in place", "sent", "a span", "few remembered", "npz", "npy", "few remembered of npz",
+        "garbage", "few remembered and garbage"])  # fmt: skip
 @pytest.mark.parametrize("ending", [".csv", ".jsonl"])
 def test_two_workers_write_what_one_process_does(
     folder: Path, words: tuple[str, ...], ending: str
@@ -87,7 +110,10 @@ def test_two_workers_write_what_one_process_does(
     assert one == two
     meta = [json.loads((folder / f"{n}{ending}.meta.json").read_text()) for n in ("one", "two")]
     assert meta[0]["result"] == meta[1]["result"]
-    assert meta[0]["source"]["counts"]["frames"] == meta[1]["source"]["counts"]["frames"]
+    counts = [m["source"]["counts"] for m in meta]
+    in_store = "a.zarr" in words  # a span of it ends before the last frame is asked for
+    assert counts[0]["frames"] == counts[1]["frames"] if in_store else counts[0] == counts[1]
+    assert meta[0]["source"]["sha256"] == meta[1]["source"]["sha256"]
 
 
 @pytest.fixture(scope="module")
@@ -155,6 +181,26 @@ def test_endless_state_goes_by_recording_or_in_one_process_and_is_told(folder: P
     assert counts == [*range(1, 701), *range(1, 701)]
 
 
+@pytest.mark.slow
+def test_state_and_garbage_go_in_one_process_and_are_told(folder: Path) -> None:
+    """Where frames are left out, those behind have other places, and so has what is remembered."""
+    words = ("lately.yaml", "garbage.npz")
+    one, _ = written(folder, "g1.csv", *words)
+    two, said = written(folder, "g2.csv", *words, "--workers", "2")
+    assert one == two
+    assert "in one process: steps keep state" in said
+    assert "garbage.npz: frames of garbage left out\n" in said
+
+
+@pytest.mark.slow
+def test_a_damaged_archive_is_refused_as_by_one_process(folder: Path) -> None:
+    words = ("run", "circle-1", "damaged.npz", "-o", "x.csv")
+    one, two = ran(folder, *words), ran(folder, *words, "--workers", "2")
+    assert "Bad CRC-32" in one.stderr
+    assert (two.returncode, two.stderr) == (one.returncode, one.stderr)
+    assert not [*folder.glob("*x.csv*")]
+
+
 # -- what is refused ---------------------------------------------------------------------------
 
 
@@ -177,9 +223,9 @@ def test_what_workers_have_no_place_for_is_refused(words: tuple[str, ...], told:
 class Running:
     """A run in a process of its own."""
 
-    def __init__(self, folder: Path, name: str, *more: str) -> None:
+    def __init__(self, folder: Path, name: str, *more: str, recording: str = "a.zarr") -> None:
         self.folder, self.name = folder, name
-        self.words = ("run", "deadly.yaml", "a.zarr", "--workers", "2", "-o", name, *more)
+        self.words = ("run", "deadly.yaml", recording, "--workers", "2", "-o", name, *more)
         self.process = subprocess.Popen(
             command(*self.words), cwd=folder, env=surroundings(folder), stderr=subprocess.PIPE,
             text=True, start_new_session=True,
@@ -226,11 +272,13 @@ class Running:
 
 
 @pytest.mark.slow
-def test_a_deadly_frame_is_told_and_left_out(folder: Path, whole: bytes) -> None:
-    got = ran(folder, "run", "deadly.yaml", "a.zarr", "--frames", "200", "--workers", "2",
+@pytest.mark.parametrize("recording", ["a.zarr", "a.npz"])
+def test_a_deadly_frame_is_told_and_left_out(folder: Path, recording: str) -> None:
+    got = ran(folder, "run", "deadly.yaml", recording, "--frames", "200", "--workers", "2",
               "--set", "image.at=[150]", "-o", "d.csv")  # fmt: skip
     assert got.returncode == 1
     assert "frame 150: workers died of it each time: left out" in got.stderr
+    whole, _ = written(folder, "whole-d.csv", "deadly.yaml", recording)
     rows = whole.splitlines(keepends=True)[:201]
     assert (folder / "d.csv").read_bytes() == b"".join(rows[:151] + rows[152:])
 
@@ -250,12 +298,16 @@ def test_killed_workers_lose_nothing(folder: Path, whole: bytes) -> None:
 
 @pytest.mark.slow
 @unlike_windows
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("number", "recording"), [
+    (signal.SIGKILL, "a.zarr"), (signal.SIGINT, "a.zarr"), (signal.SIGTERM, "a.zarr"),
+    (signal.SIGKILL, "a.npz"),
+])  # fmt: skip
 def test_an_ended_run_ends_its_workers_and_goes_on_with_resume(
-    folder: Path, whole: bytes, number: signal.Signals
+    folder: Path, number: signal.Signals, recording: str
 ) -> None:
-    name = f"{number.name}.csv"
-    running = Running(folder, name, "--set", "image.slow_s=0.005")
+    name = f"{number.name}-{recording}.csv"
+    whole, _ = written(folder, f"whole-{name}", "deadly.yaml", recording)
+    running = Running(folder, name, "--set", "image.slow_s=0.005", recording=recording)
     running.wait_until(running.keeps_something)
     running.process.send_signal(number)
     said = running.end()
