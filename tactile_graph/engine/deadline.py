@@ -1,10 +1,11 @@
 """``Deadline``: what of a frame still fits into its time, told from how long such things took.
 
 For each option the usual time is followed for frames of about the same footprint, and beside it by
-what factors single times have strayed from the usual. From these follows the risk that an option
-takes longer than what is left when the spared ones are paid for. It is begun where the risk is no
-more than what is allowed; and what is allowed is raised while frames are on time and lowered with
-each that is late, so that in the long run the promised share of frames is on time whatever the
+what factors single times have strayed from the usual, apart for footprints of another order: on an
+empty pad a rare frame may take two hundred times the usual. From these follows the risk that an
+option takes longer than what is left when the spared ones are paid for. It is begun where the risk
+is no more than what is allowed; and what is allowed is raised while frames are on time and lowered
+with each that is late, so that in the long run the promised share of frames is on time whatever the
 times are distributed like (adaptive conformal inference; Gibbs and Candes, NeurIPS 2021).
 """
 
@@ -12,10 +13,10 @@ from __future__ import annotations
 
 from bisect import bisect_right, insort
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import exp, log, log2
 from time import perf_counter_ns
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -23,10 +24,15 @@ from tactile_graph.engine.options import Option, Options
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.wires.frame import Frame
 
-LATE_SHARE = 0.001
-"""Of frames: what is promised is that so few are late."""
+Known = TypeVar("Known", float, "Strayed")
+
+LATE_SHARE = 0.0005
+"""Of frames: what is aimed at, half of what is promised. How many frames of a run are late scatters
+around it, and those that wait behind a late one may be late too."""
 WINDOW = 1000
-"""How many last times tell how far single ones stray."""
+"""How many last times, of an order of footprints, tell how far single ones stray."""
+KINDS_ALIKE = 4
+"""Kinds of frames whose times stray alike: footprints within a factor of two."""
 FOLLOWS = 0.1
 """Share of the way that the usual time goes towards each new one."""
 FADES = 0.03
@@ -38,28 +44,51 @@ RESERVE_RISK = 0.01
 """Share of times that may exceed what is kept for what must be done: not for any rare stall."""
 MUCH = log(3.0)
 """A last choice is not spared where one before it is quicker by more than this factor."""
-LEAST_RISK, FIRST_RISK, MOST_RISK = 0.002, 0.01, 0.3
+FIRST_RISK, MOST_RISK = 0.01, 0.3
+
+
+class Strayed:
+    """By what factors the last times have strayed from the usual one, as logarithms."""
+
+    __slots__ = ("_in_order", "_last")
+
+    def __init__(self) -> None:
+        self._last: deque[float] = deque()
+        self._in_order: list[float] = []
+
+    def add(self, strayed: float) -> None:
+        """Add one; of more than `WINDOW` the oldest is forgotten."""
+        self._last.append(strayed)
+        insort(self._in_order, strayed)
+        if len(self._last) > WINDOW:
+            del self._in_order[bisect_right(self._in_order, self._last.popleft()) - 1]
+
+    def beyond(self, most: float) -> float:
+        """Return the share that exceeds what is at most allowed."""
+        n = len(self._in_order)
+        return (n - bisect_right(self._in_order, most)) / n
+
+    def high(self, risk: float) -> float:
+        """Return what is exceeded by a share of them."""
+        n = len(self._in_order)
+        return self._in_order[min(int((1.0 - risk) * n), n - 1)]
 
 
 class Expected:
     """How long an option takes, as it has taken so far."""
 
-    __slots__ = ("_faded", "_strayed", "_strayed_in_order", "_usual", "answers_in")
+    __slots__ = ("_faded", "_strayed", "_usual", "answers_in")
 
     def __init__(self) -> None:
         self.answers_in: float | None = None
         """Logarithm of the usual time, of frames of any kind, where it came out with a value."""
         self._usual: dict[int, float] = {}
-        self._strayed: deque[float] = deque()
-        self._strayed_in_order: list[float] = []
+        self._strayed: dict[int, Strayed] = {}
         self._faded = 0.0
 
     def usual(self, kind: int) -> float | None:
         """Return the logarithm of the usual time, that of the most similar kind known."""
-        known = self._usual
-        if kind in known or not known:
-            return known.get(kind)
-        return known[min(known, key=lambda other: abs(other - kind))]
+        return nearest(self._usual, kind)
 
     def risk(self, kind: int, left_ns: float) -> float:
         """Return the share of times, on frames of a kind, that exceed what is left."""
@@ -68,17 +97,19 @@ class Expected:
             return 0.0
         if left_ns <= 0:
             return 1.0
-        strayed = self._strayed_in_order
-        most = log(left_ns) - usual + self._faded
-        return (len(strayed) - bisect_right(strayed, most)) / len(strayed)
+        return self._strayed_of(kind).beyond(log(left_ns) - usual + self._faded)
 
     def high_ns(self, kind: int, risk: float) -> float:
         """Return the time that is exceeded with a risk; 0 where nothing is known."""
         usual = self.usual(kind)
         if usual is None:
             return 0.0
-        strayed = self._strayed_in_order
-        return exp(usual + strayed[min(int((1.0 - risk) * len(strayed)), len(strayed) - 1)])
+        return exp(usual + self._strayed_of(kind).high(risk))
+
+    def _strayed_of(self, kind: int) -> Strayed:
+        found = nearest(self._strayed, kind // KINDS_ALIKE)
+        assert found is not None  # there is one since a first time was taken
+        return found
 
     def took(self, kind: int, ns: float, has_value: bool) -> None:
         """Take a time into account, and whether a value came of it."""
@@ -91,11 +122,7 @@ class Expected:
         follows = max(FOLLOWS, 1.0 - exp(-self._faded))
         self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
         self._faded = 0.0
-        self._strayed.append(strayed)
-        insort(self._strayed_in_order, strayed)
-        if len(self._strayed) > WINDOW:
-            gone = self._strayed.popleft()
-            del self._strayed_in_order[bisect_right(self._strayed_in_order, gone) - 1]
+        self._strayed.setdefault(kind // KINDS_ALIKE, Strayed()).add(strayed)
 
     def refused(self) -> None:
         """Hold it for a little shorter, since nobody has seen what it would have taken."""
@@ -170,7 +197,15 @@ class Deadline:
         """Allow more or less, by whether the frame was on time."""
         late = self._clock() > self.due_ns
         risk = self.allowed_risk + PACE * (LATE_SHARE - late)
-        self.allowed_risk = min(max(risk, LEAST_RISK), MOST_RISK)
+        self.allowed_risk = min(max(risk, 0.0), MOST_RISK)
+
+
+def nearest(known: Mapping[int, Known], kind: int) -> Known | None:
+    """Return what is known of a kind, or of the one most similar to it; None where nothing is."""
+    found = known.get(kind)
+    if found is None and known:
+        return known[min(known, key=lambda other: abs(other - kind))]
+    return found
 
 
 def kind_of(frame: Frame) -> int:

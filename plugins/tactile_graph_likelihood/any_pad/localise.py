@@ -62,6 +62,10 @@ PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
+UNSURER = 1.3
+"""Times the variance of a normal distribution around an outline with an angle that a sample of it
+would come to: between two rows of elements nothing holds its sides."""
+
 PATTERN = 3.0
 """Pattern left over from which on an outline is not taken to press evenly where no pressure is
 looked at: on a large pad, and where a quick answer will do."""
@@ -88,9 +92,10 @@ class AnyPad:
     law : float
         As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
     quick : bool
-        Whether no fit is sampled: each stands for itself as a normal distribution, an even face's
-        with the law's exponent, and other pressures are looked at where the pattern is clear. A
-        fainter one widens the posterior. On small pads only.
+        Whether no fit is sampled, but one with an angle that reaches over the pad's edge: each
+        stands for itself as a normal distribution, an even face's with the law's exponent, and
+        other pressures are looked at where the pattern is clear. A fainter one widens the
+        posterior. On small pads only.
 
     Notes
     -----
@@ -272,6 +277,8 @@ class AnyPad:
             its = replace(its, pressures={best: 1.0})
         total = sum(shares.values())
         pressed = 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
+        if self.quick and self.told.kind != DISC:
+            pressed *= UNSURER
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops))
         return self._on_any_pad(its, readings, evidence, pressed, hidden)
@@ -318,7 +325,8 @@ class AnyPad:
         taken whose points are worth fewer than there are unknowns, as where strays explain all
         there is, unless it promises less than a normal distribution around the top.
         """
-        if not self.quick and (part == EVEN or self.told.kind == DISC):
+        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
+        if (hidden or not self.quick) and (part == EVEN or self.told.kind == DISC):
             try:
                 found = self._sampled(part, readings, top)
             except Degenerate:

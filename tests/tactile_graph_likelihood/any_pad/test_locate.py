@@ -107,6 +107,8 @@ def test_on_a_large_pad_a_quick_disc_is_the_disc():
     image = Image(values, (1.3, 1.3), (-0.15, -0.15), "gram")
     one, other = (LocateDisc(quick=quick)(image) for quick in (False, True))
     assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
+    one, other = (Locate(shapes=["disc"], quick=quick)(image).shape for quick in (False, True))
+    assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
 
 
 @pytest.mark.slow
@@ -135,6 +137,49 @@ def test_a_rectangle_is_found_on_a_pad_that_nobody_described():
         off, _, held, _ = looked_at(KINDS[kind], step=LocateRectangle(), shape="rectangle")
         assert off < 0.3
         assert held >= 0.7
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_rectangle_is_as_good_and_no_surer_than_it_may_be():
+    quick = LocateRectangle(quick=True)
+    for kind, centre_cm in (("noise 3 mV", 0.3), ("law 1/F", 0.3)):
+        off, _, held, _ = looked_at(KINDS[kind], step=quick, shape="rectangle")
+        assert off < centre_cm
+        assert held >= 0.8
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_rectangle_over_the_edge_says_how_little_is_known():
+    _, _, held, fits = looked_at(
+        KINDS["over the edge"], step=LocateRectangle(quick=True), shape="rectangle"
+    )
+    assert held >= 0.6
+    assert fits <= 0.6
+
+
+@plain
+def test_a_quick_choice_has_no_sample():
+    (frame,) = Bench(KINDS["noise 1 mV"], np.random.default_rng(3)).frames(1)
+    (true,) = frame.truth
+    full, quick = (Locate(quick=quick)(frame.image) for quick in (False, True))
+    assert quick.name == full.name == "disc"
+    assert math.hypot(quick.shape.x_cm - full.shape.x_cm, quick.shape.y_cm - full.shape.y_cm) < 0.1
+    assert math.hypot(quick.shape.x_cm - true.shape.x_cm, quick.shape.y_cm - true.shape.y_cm) < 0.3
+    assert np.ptp(quick.shape.posterior.weights) == 0.0
+    assert np.ptp(full.shape.posterior.weights) > 0.0
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_choice_names_as_many_shapes():
+    right = dict.fromkeys((False, True), 0)
+    for quick in right:
+        step, bench = Locate(quick=quick), Bench(KINDS["noise 3 mV"], np.random.default_rng(1))
+        for shape in ("disc", "rectangle"):
+            right[quick] += sum(step(f.image).name == shape for f in bench.frames(6, shape))
+    assert right[True] >= right[False] - 1
 
 
 @many
