@@ -48,11 +48,11 @@ def line(name: str, table: Table, came: Came, deadline_ns: int, best_cm: float) 
     return error_cm
 
 
-def compared(table: Table, deadline_ns: int) -> None:
+def compared(table: Table, deadline_ns: int, about: str = "") -> None:
     """Print every schedule for one deadline."""
     names = "".join(f"{name:>8}" for name in table.choices)
     units = f"{'%':>8}" * (len(table.choices) - 1)
-    print(f"\ndeadline {deadline_ns / 1e6:g} ms")
+    print(f"\ndeadline {deadline_ns / 1e6:g} ms{about}", flush=True)
     print(
         f"  {'schedule':<26}{'on time':>8}{names}{'error':>10}{'against':>8}\n"
         f"  {'':<26}{'%':>8}{'%':>8}{units}{'cm':>10}{'best':>8}"
@@ -72,6 +72,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=20_000)
     parser.add_argument("--seed", type=int, default=100)
     parser.add_argument("--deadlines", default="1.5,2,3,5,10", help="in ms")
+    parser.add_argument("--without", nargs="*", default=[], help="choices to leave out as well")
     parser.add_argument("--real", action="store_true", help="on the real clock")
     asked = parser.parse_args()
     deadlines_ns = [int(1e6 * float(d)) for d in asked.deadlines.split(",")]
@@ -89,8 +90,11 @@ def main() -> None:
             f"  {name:<8} {median:7.0f} us (1 % {low:.0f}, 99 % {high:.0f}, most {most:.0f}); "
             f"error {np.nanmean(error):.4f} cm"
         )
-    for deadline_ns in deadlines_ns:
-        compared(table, deadline_ns)
+    for table_of, about in [(table, "")] + [
+        (table.without(name), f", without {name}") for name in asked.without
+    ]:
+        for deadline_ns in deadlines_ns:
+            compared(table_of, deadline_ns, about)
 
 
 if __name__ == "__main__":

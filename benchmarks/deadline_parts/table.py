@@ -39,6 +39,16 @@ class Table(NamedTuple):
     error_cm: Array
     answers: list[list[Any]]
 
+    def without(self, choice: str) -> Table:
+        """Return the table of the ladder that has not this choice."""
+        kept = [k for k, name in enumerate(self.choices) if name != choice]
+        return self._replace(
+            choices=tuple(self.choices[k] for k in kept),
+            took_ns=self.took_ns[kept],
+            error_cm=self.error_cm[kept],
+            answers=[self.answers[k] for k in kept],
+        )
+
     @property
     def loaded(self) -> NDArray[np.bool_]:
         """Which frames have something to find, shape (frames,)."""

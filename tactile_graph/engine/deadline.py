@@ -14,7 +14,7 @@ from __future__ import annotations
 from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable, Mapping
-from math import exp, log, log2
+from math import exp, inf, log, log2
 from time import perf_counter_ns
 from typing import Any, TypeVar
 
@@ -42,6 +42,12 @@ PACE = 0.02
 """How fast the allowed risk follows what becomes of frames."""
 RESERVE_RISK = 0.01
 """Share of times that may exceed what is kept for what must be done: not for any rare stall."""
+NEXT_RISK = 0.003
+"""Share of times that may exceed what is kept for the next frame's second choice."""
+PERIOD_FOLLOWS = 0.1
+"""Share of the way that the time between frames goes towards each new one."""
+ANSWERS_FOLLOW = 0.02
+"""Share of the way that the share of frames with a value goes towards each new one."""
 MUCH = log(3.0)
 """A last choice is not spared where one before it is quicker by more than this factor."""
 FIRST_RISK, MOST_RISK = 0.01, 0.3
@@ -77,11 +83,12 @@ class Strayed:
 class Expected:
     """How long an option takes, as it has taken so far."""
 
-    __slots__ = ("_faded", "_strayed", "_usual", "answers_in")
+    __slots__ = ("_answers", "_faded", "_strayed", "_usual", "answers_in")
 
     def __init__(self) -> None:
         self.answers_in: float | None = None
         """Logarithm of the usual time, of frames of any kind, where it came out with a value."""
+        self._answers: dict[int, float] = {}
         self._usual: dict[int, float] = {}
         self._strayed: dict[int, Strayed] = {}
         self._faded = 0.0
@@ -111,6 +118,11 @@ class Expected:
         assert found is not None  # there is one since a first time was taken
         return found
 
+    def answers(self, kind: int) -> float:
+        """Return the share of frames of about a kind of which it comes out with a value."""
+        found = nearest(self._answers, kind // KINDS_ALIKE)
+        return 1.0 if found is None else found
+
     def took(self, kind: int, ns: float, has_value: bool) -> None:
         """Take a time into account, and whether a value came of it."""
         time, usual = log(max(ns, 1.0)), self.usual(kind)
@@ -122,7 +134,10 @@ class Expected:
         follows = max(FOLLOWS, 1.0 - exp(-self._faded))
         self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
         self._faded = 0.0
-        self._strayed.setdefault(kind // KINDS_ALIKE, Strayed()).add(strayed)
+        order = kind // KINDS_ALIKE
+        self._strayed.setdefault(order, Strayed()).add(strayed)
+        share = self._answers.get(order, float(has_value))
+        self._answers[order] = share + ANSWERS_FOLLOW * (has_value - share)
 
     def refused(self) -> None:
         """Hold it for a little shorter, since nobody has seen what it would have taken."""
@@ -146,26 +161,38 @@ class Deadline:
         self._clock = clock
         self._expected: list[Expected] = []
         self._spared: list[Option] = []
+        self._next: dict[int, Option] = {}
         self._kind = 0
+        self._last_due_ns: int | None = None
+        self._period_ns = inf
         self._begun: list[int] = []
 
     def prepare(self, options: Options) -> None:
         """Take note of what there is to decide about."""
         self._expected = [Expected() for _ in options]
         self._spared = [o for o in options if o.spared and o.always]
+        for (ladder, place), option in options.choices.items():
+            below = options.choices.get((ladder, place + 1))
+            if below is not None and not below.spared:
+                self._next[option.number] = below
 
     def begin(self, frame: Frame) -> None:
         """Begin a frame: what it is like tells how long it takes."""
         self._kind = kind_of(frame)
         self._begun.clear()  # an interrupted frame may have left some
+        if (last := self._last_due_ns) is not None:
+            passed, period = self.due_ns - last, self._period_ns
+            known = period < inf
+            self._period_ns = period + PERIOD_FOLLOWS * (passed - period) if known else passed
+        self._last_due_ns = self.due_ns
 
     def allows(self, option: Option, state: list[Any]) -> bool:
         """Return whether the option is done in time, with no more than the allowed risk."""
         now = self._clock()
         if not self._is_spared(option):
-            left_ns = self.due_ns - now - self._least_ns(option, state)
-            expected = self._expected[option.number]
-            if expected.risk(self._kind, left_ns) > self.allowed_risk:
+            left_ns = self.due_ns - now - self._least_ns(option, state) - self._next_ns(option)
+            expected, kind = self._expected[option.number], self._kind
+            if expected.risk(kind, left_ns) > self.allowed_risk * expected.answers(kind):
                 expected.refused()
                 return False
         self._begun.append(now)
@@ -186,6 +213,14 @@ class Deadline:
             for spared in self._spared
             if spared is not option and state[spared.settles] is None and self._is_spared(spared)
         )
+
+    def _next_ns(self, option: Option) -> float:
+        """Return how long the next frame must not wait, to have time for the choice below this."""
+        below = self._next.get(option.number)
+        if below is None:
+            return 0.0
+        its_ns = self._expected[below.number].high_ns(self._kind, NEXT_RISK)
+        return max(its_ns - self._period_ns, 0.0)
 
     def ended(self, option: Option, state: list[Any]) -> None:
         """Take into account how long the option has taken."""

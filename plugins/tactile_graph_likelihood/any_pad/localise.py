@@ -77,6 +77,10 @@ FEW, LOOSE = 20, 0.3
 """Touched elements of an outline so small that a void looks like its rim, and the deviation in
 pitches that is added to where its posterior is first looked for."""
 
+FAINT_TOUCH, SPARSE, FEW_POINTS = 5, 8.0, 64
+"""Touched elements, and how many times as many an outline around them covers, where they are rather
+noise: its posterior, as wide as the pad, is looked at in so many points."""
+
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
 
@@ -345,7 +349,10 @@ class AnyPad:
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
-            return self._with(noise, "contrast").posterior_near(readings, begin, loose)
+            model = self._with(noise, "contrast")
+            if is_scattered(self.told.kind, readings, point):
+                model = replace(model, most_points=FEW_POINTS)
+            return model.posterior_near(readings, begin, loose)
         model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
         p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
         mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
@@ -382,6 +389,14 @@ def hidden_by(pattern: float, readings: Readings) -> float:
     """
     share = min(max(pattern / PATTERN, 0.0), 1.0)
     return (share * HIDDEN * float(readings.grid[2])) ** 2
+
+
+def is_scattered(kind: int, readings: Readings, p: Values) -> bool:
+    """Return whether a few touched elements lie far apart in an outline, as where noise shows."""
+    if readings.touched > FAINT_TOUCH:
+        return False
+    a, b = (p[2], p[2]) if kind == DISC else (p[2], p[3])
+    return bool(4.0 * a * b >= SPARSE * readings.touched * readings.grid[2] ** 2)
 
 
 def looseness(readings: Readings) -> float:

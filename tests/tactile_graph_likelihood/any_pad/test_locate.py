@@ -12,8 +12,12 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
+from tactile_graph_likelihood.any_pad.localise import is_scattered
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_pads.pad import load_pad
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import BASE, KINDS, Bench
@@ -169,6 +173,16 @@ def test_a_quick_choice_has_no_sample():
     assert math.hypot(quick.shape.x_cm - true.shape.x_cm, quick.shape.y_cm - true.shape.y_cm) < 0.3
     assert np.ptp(quick.shape.posterior.weights) == 0.0
     assert np.ptp(full.shape.posterior.weights) > 0.0
+
+
+def test_scattered_noise_is_not_looked_at_for_long():
+    cells = np.zeros((16, 16))
+    cells[[2, 3, 11, 13], [3, 12, 5, 14]] = 1.0
+    readings = observed(Image(cells, (1.3, 1.3), (-0.15, -0.15), "counts"), load_pad("thesis"))
+    wide = np.array([10.0, 10.0, 9.0, 0.0])
+    assert is_scattered(DISC, readings, wide)
+    assert not is_scattered(DISC, readings, np.array([10.0, 10.0, 1.5, 0.0]))
+    assert not is_scattered(DISC, readings._replace(touched=6), wide)
 
 
 @many
