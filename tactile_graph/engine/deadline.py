@@ -166,6 +166,8 @@ class Deadline:
         self._last_due_ns: int | None = None
         self._period_ns = inf
         self._begun: list[int] = []
+        self._ventured = False
+        self._blamed = False
 
     def prepare(self, options: Options) -> None:
         """Take note of what there is to decide about."""
@@ -180,6 +182,7 @@ class Deadline:
         """Begin a frame: what it is like tells how long it takes."""
         self._kind = kind_of(frame)
         self._begun.clear()  # an interrupted frame may have left some
+        self._ventured = False
         if (last := self._last_due_ns) is not None:
             passed, period = self.due_ns - last, self._period_ns
             known = period < inf
@@ -195,6 +198,7 @@ class Deadline:
             if expected.risk(kind, left_ns) > self.allowed_risk * expected.answers(kind):
                 expected.refused()
                 return False
+            self._ventured = True
         self._begun.append(now)
         return True
 
@@ -229,9 +233,14 @@ class Deadline:
         self._expected[option.number].took(self._kind, took_ns, has_value)
 
     def end(self) -> None:
-        """Allow more or less, by whether the frame was on time."""
+        """Allow more or less, by whether the frame was on time.
+
+        A late frame in which nothing was begun that might not have been, and that did not wait
+        behind a late one in which something was, would have been late in any case.
+        """
         late = self._clock() > self.due_ns
-        risk = self.allowed_risk + PACE * (LATE_SHARE - late)
+        self._blamed = late and (self._ventured or self._blamed)
+        risk = self.allowed_risk + PACE * (LATE_SHARE - self._blamed)
         self.allowed_risk = min(max(risk, 0.0), MOST_RISK)
 
 

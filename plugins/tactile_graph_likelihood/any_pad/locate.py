@@ -38,9 +38,9 @@ class Located:
     Parameters
     ----------
     quick : bool
-        Whether the most likely outline will do, with a normal distribution around it: less than
-        half of the time on pads of up to 1024 elements. Pressures other than an even one are looked
-        at where its pattern is clear; a fainter one widens the distribution.
+        Whether the most likely outline will do, with a normal distribution around it: about half
+        of the time on pads of up to 1024 elements. Pressures other than an even one are looked at
+        where its pattern is clear; a fainter one widens the distribution.
     settings : FootprintSettings
     """
 

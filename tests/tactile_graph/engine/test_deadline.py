@@ -237,6 +237,18 @@ def test_the_next_frame_is_left_time_for_its_second_choice() -> None:
     assert timed.coming(100, 20 * MS, 4 * MS + 200_000)[-1] == ()
 
 
+def test_what_would_have_been_late_in_any_case_lowers_no_risk() -> None:
+    timed = Arriving(LADDER)
+    timed.coming(5, 20 * MS, -1)  # everything is begun once
+    timed.coming(5, 20 * MS, 5 * MS)
+    allowed = timed.deadline.allowed_risk = 0.01
+    timed.coming(5, 20 * MS, -1)  # nothing but the last choice is begun
+    assert timed.deadline.allowed_risk > allowed
+    COSTS["best"] = lambda _: 9 * MS
+    timed.coming(1, 20 * MS, 5 * MS)
+    assert timed.deadline.allowed_risk < allowed
+
+
 @pytest.mark.parametrize("has_value", [True, False])
 def test_where_hardly_anything_comes_out_little_is_risked(has_value: bool) -> None:
     """A rare frame of 50 ms is no reason to refuse a choice, unless it has no value anyway."""
