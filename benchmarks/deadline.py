@@ -2,12 +2,13 @@
 
 Run with ``python benchmarks/deadline.py``. Discs are put down one after the other, small and large,
 with empty pads between; each lies for 20 to 150 frames. What each choice takes on each frame is
-measured once (processor time, the least of two); on these times every schedule is then run by a
-virtual clock, the engine's own with its real decisions. The best schedule knows all times
-beforehand and what each choice is worth on the whole, and has every frame on time; no schedule can
-know which answer will be lucky. ``--real`` runs the real ladder on the real clock instead, frames
-coming by a thread of their own, and replays what was decided. The settings of the engine's
-scheduler were chosen on the stream of seed 5.
+measured (processor time, the least of two, or of ``--rounds``); on these times every schedule is
+then run by a virtual clock, the engine's own with its real decisions. The best schedule knows all
+times beforehand and what each choice is worth on the whole, and has every frame on time; no
+schedule can know which answer will be lucky. ``--without`` runs the ladder also without some of its
+choices, on the same times. ``--real`` runs the real ladder on the real clock instead, frames coming
+by a thread of their own, and replays what was decided. The settings of the engine's scheduler were
+chosen on the stream of seed 5.
 """
 
 from __future__ import annotations
@@ -73,6 +74,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=100)
     parser.add_argument("--deadlines", default="1.5,2,3,5,10", help="in ms")
     parser.add_argument("--without", nargs="*", default=[], help="choices to leave out as well")
+    parser.add_argument("--rounds", type=int, default=2, help="of which each time is the least")
     parser.add_argument("--real", action="store_true", help="on the real clock")
     asked = parser.parse_args()
     deadlines_ns = [int(1e6 * float(d)) for d in asked.deadlines.split(",")]
@@ -82,7 +84,7 @@ def main() -> None:
         for deadline_ns in deadlines_ns:
             real_run(pipeline, frames, PERIOD_NS, deadline_ns)
         return
-    table = measured(pipeline, frames)
+    table = measured(pipeline, frames, asked.rounds)
     print(f"{asked.ladder}: {len(frames)} frames, one each ms; seed {asked.seed}")
     for name, took, error in zip(table.choices, table.took_ns / 1e3, table.error_cm, strict=True):
         low, median, high, most = np.percentile(took[table.loaded], [1, 50, 99, 100])
