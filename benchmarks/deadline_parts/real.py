@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 
-from deadline_parts.table import ANSWER, CHOICES
+from deadline_parts.table import ANSWER, choices_of
 from tactile_graph import Frame, Pipeline
 from tactile_graph.live import LiveRun, Recorded, paced
 
@@ -16,8 +16,9 @@ SWITCH_S = 1e-4
 
 def real_run(pipeline: Pipeline, frames: list[Frame], period_ns: int, deadline_ns: int) -> None:
     """Print what came of a run, and whether its decisions give the same answers again."""
-    for k in range(len(CHOICES)):  # what there is to compile is compiled
-        runner = pipeline.runner(decider=Recorded(CHOICES[:k]))
+    choices = choices_of(pipeline)
+    for k in range(len(choices)):  # what there is to compile is compiled
+        runner = pipeline.runner(decider=Recorded(choices[:k]))
         for frame in frames[:300]:
             runner(frame)
     sys.setswitchinterval(SWITCH_S)
@@ -25,12 +26,14 @@ def real_run(pipeline: Pipeline, frames: list[Frame], period_ns: int, deadline_n
     lives = list(run)
     latency_us = np.array([live.latency_us for live in lives])
     late = np.mean(latency_us > deadline_ns / 1e3)
-    shares = np.bincount([len(live.decisions) for live in lives], minlength=3) / len(lives)
+    shares = np.bincount([len(live.decisions) for live in lives], minlength=len(choices)) / len(
+        lives
+    )
     median, p99, p999, most = np.percentile(latency_us, [50, 99, 99.9, 100])
     print(
         f"deadline {deadline_ns / 1e6:g} ms, real clock: {100 * (1 - late):.2f} % of {len(lives)} "
         f"frames on time, {run.n_shed} shed; latency median {median:.0f} us, 99 % {p99:.0f}, "
-        f"99.9 % {p999:.0f}, most {most:.0f}; best, middle, cheap "
+        f"99.9 % {p999:.0f}, most {most:.0f}; {', '.join(choices)} "
         + ", ".join(f"{100 * share:.1f} %" for share in shares)
     )
     recorded = Recorded()

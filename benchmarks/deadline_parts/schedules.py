@@ -38,9 +38,10 @@ def fixed(table: Table, choice: int, period_ns: int) -> Came:
 
 
 def best_schedule(table: Table, values: Array, period_ns: int, deadline_ns: int) -> Came:
-    """Return the schedule of least sum of values that has every frame on time.
+    """Return the schedule of least sum of values that has every frame on time that can be.
 
-    It knows beforehand how long every choice will take on every frame. Backlogs are rounded up to
+    It knows beforehand how long every choice will take on every frame. Where none can be on time,
+    as in a stall of the machine, the quickest is taken. Backlogs are rounded up to
     5 us, so that what it finds can be kept.
 
     Parameters
@@ -66,6 +67,9 @@ def best_schedule(table: Table, values: Array, period_ns: int, deadline_ns: int)
             better = charged < after[at[sources]]
             after[at[sources[better]]] = charged[better]
             came[i, at[sources[better]]] = sources[better] * n_choices + k
+        if not np.isfinite(after).any():
+            source, k = int(cost.argmin()), int(table.took_ns[:, i].argmin())
+            after[-1], came[i, -1] = cost[source] + values[k, i], source * n_choices + k
         cost = after
     return _traced(table, came, int(cost.argmin()), period_ns)
 

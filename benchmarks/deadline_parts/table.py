@@ -12,7 +12,6 @@ from tactile_graph import Frame, Pipeline
 from tactile_graph.compiled import warm_up
 from tactile_graph.live import Recorded
 
-CHOICES = ("best", "middle", "cheap")
 ANSWER = "circle"
 Array = NDArray[np.float64]
 
@@ -22,6 +21,8 @@ class Table(NamedTuple):
 
     Attributes
     ----------
+    choices : tuple of str
+        Names, from the best to the cheapest.
     frames : list of Frame
     took_ns : ndarray, shape (choices, frames)
         Processor time where the frame begins with that choice; where it has no value (an empty
@@ -32,10 +33,21 @@ class Table(NamedTuple):
         By choice and frame; None where it has no value.
     """
 
+    choices: tuple[str, ...]
     frames: list[Frame]
     took_ns: Array
     error_cm: Array
     answers: list[list[Any]]
+
+    def without(self, choice: str) -> Table:
+        """Return the table of the ladder that has not this choice."""
+        kept = [k for k, name in enumerate(self.choices) if name != choice]
+        return self._replace(
+            choices=tuple(self.choices[k] for k in kept),
+            took_ns=self.took_ns[kept],
+            error_cm=self.error_cm[kept],
+            answers=[self.answers[k] for k in kept],
+        )
 
     @property
     def loaded(self) -> NDArray[np.bool_]:
@@ -43,13 +55,19 @@ class Table(NamedTuple):
         return np.array([bool(f.truth) for f in self.frames])
 
 
+def choices_of(pipeline: Pipeline) -> tuple[str, ...]:
+    """Return the names of a ladder's choices, from the best to the cheapest."""
+    return tuple(ref.node for ref in pipeline.nodes[ANSWER].choices)
+
+
 def measured(pipeline: Pipeline, frames: list[Frame], rounds: int = 2) -> Table:
     """Return what each choice takes, the least of some rounds: other programs then cost least."""
-    took = np.full((len(CHOICES), len(frames)), np.inf)
-    error = np.full((len(CHOICES), len(frames)), np.nan)
+    choices = choices_of(pipeline)
+    took = np.full((len(choices), len(frames)), np.inf)
+    error = np.full((len(choices), len(frames)), np.nan)
     answers: list[list[Any]] = []
-    for k in range(len(CHOICES)):
-        runner = pipeline.runner(decider=Recorded(CHOICES[:k]))
+    for k in range(len(choices)):
+        runner = pipeline.runner(decider=Recorded(choices[:k]))
         for frame in frames[:300]:
             runner(frame)
         warm_up()
@@ -61,7 +79,7 @@ def measured(pipeline: Pipeline, frames: list[Frame], rounds: int = 2) -> Table:
                 took[k, i] = min(took[k, i], time.thread_time_ns() - start)
         answers.append([r.get(ANSWER) for r in results])
         error[k] = [_error(a, f) for a, f in zip(answers[k], frames, strict=True)]
-    return Table(frames, took, error, answers)
+    return Table(choices, frames, took, error, answers)
 
 
 def _error(answer: Any, frame: Frame) -> float:

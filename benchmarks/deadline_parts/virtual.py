@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from deadline_parts.schedules import Came
-from deadline_parts.table import ANSWER, CHOICES, Table
+from deadline_parts.table import ANSWER, Table
 from tactile_graph import Circle, Frame, Pipeline, Skip, hookimpl, loads
 from tactile_graph.live import Deadline, Recorded
 from tactile_graph.plugins.registry import Registry
@@ -17,10 +17,8 @@ from tactile_graph.plugins.registry import Registry
 LADDER = """
 pipeline: stand-ins
 nodes:
-  best: {step: best, in: frame}
-  middle: {step: middle, in: frame}
-  cheap: {step: cheap, in: frame}
-  circle: {first_of: [best, middle, cheap]}
+{nodes}
+  circle: {{first_of: [{names}]}}
 outputs: [circle]
 """
 
@@ -52,9 +50,10 @@ def stand_ins(table: Table, clock: Clock) -> Pipeline:
 
         return step
 
-    return loads(
-        LADDER, "stand-ins.yaml", _registry({n: step_of(CHOICES.index(n)) for n in CHOICES})
-    )
+    nodes = "\n".join(f"  {name}: {{step: {name}, in: frame}}" for name in table.choices)
+    text = LADDER.format(nodes=nodes, names=", ".join(table.choices))
+    steps = {name: step_of(k) for k, name in enumerate(table.choices)}
+    return loads(text, "stand-ins.yaml", _registry(steps))
 
 
 def _registry(steps: Mapping[str, Any]) -> Registry:

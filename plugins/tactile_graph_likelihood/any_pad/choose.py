@@ -18,6 +18,7 @@ from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import Likeliest
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
 Name = Literal["disc", "ellipse", "rectangle"]
@@ -41,6 +42,9 @@ class Locate:
     ----------
     shapes : list
         The shapes to choose from, equally likely beforehand.
+    quick : bool
+        Whether the most likely outlines will do, with a normal distribution around the likeliest.
+        On pads of up to 1024 elements; see `locate_disc`.
     settings : FootprintSettings
 
     Notes
@@ -55,12 +59,15 @@ class Locate:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
+        quick: bool = False,
         settings: AnyPadSettings = QUICK,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._placing = Placing(self._pad)
-        self._every: dict[str, AnyPad] = {
-            name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)
+        kinds: dict[str, int] = {name: KINDS[name] for name in dict.fromkeys(shapes)}
+        self._every = {name: AnyPad.of(settings, kind) for name, kind in kinds.items()}
+        self._quick = {
+            name: AnyPad.of(settings, kind, quick=True) for name, kind in kinds.items() if quick
         }
 
     def __call__(self, image: Image) -> Located:
@@ -94,11 +101,13 @@ class Locate:
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""
-        tops = tops_of_each(self._every, readings)
+        small = readings.states.size <= LARGE_PAD
+        every = self._quick if small and self._quick else self._every
+        tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
-        shape = likely(self._every[best].around(readings, tops[best]))
+        shape = likely(every[best].around(readings, tops[best]))
         return Located(
             shape, best, chance[best], shares["disc"], shares["ellipse"], shares["rectangle"]
         )

@@ -62,6 +62,10 @@ PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
+UNSURER = 1.3
+"""Times the variance of a normal distribution around an outline with an angle that a sample of it
+would come to: between two rows of elements nothing holds its sides."""
+
 PATTERN = 3.0
 """Pattern left over from which on an outline is not taken to press evenly where no pressure is
 looked at: on a large pad, and where a quick answer will do."""
@@ -72,6 +76,10 @@ MANY = 8.0
 FEW, LOOSE = 20, 0.3
 """Touched elements of an outline so small that a void looks like its rim, and the deviation in
 pitches that is added to where its posterior is first looked for."""
+
+FAINT_TOUCH, SPARSE, FEW_POINTS = 5, 8.0, 64
+"""Touched elements, and how many times as many an outline around them covers, where they are rather
+noise: its posterior, as wide as the pad, is looked at in so many points."""
 
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
@@ -88,9 +96,10 @@ class AnyPad:
     law : float
         As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
     quick : bool
-        Whether no fit is sampled: each stands for itself as a normal distribution, an even face's
-        with the law's exponent, and other pressures are looked at where the pattern is clear. A
-        fainter one widens the posterior. On small pads only.
+        Whether no fit is sampled, but one with an angle that reaches over the pad's edge: each
+        stands for itself as a normal distribution, an even face's with the law's exponent, and
+        other pressures are looked at where the pattern is clear. A fainter one widens the
+        posterior. On small pads only.
 
     Notes
     -----
@@ -272,6 +281,8 @@ class AnyPad:
             its = replace(its, pressures={best: 1.0})
         total = sum(shares.values())
         pressed = 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
+        if self.quick and self.told.kind != DISC:
+            pressed *= UNSURER
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops))
         return self._on_any_pad(its, readings, evidence, pressed, hidden)
@@ -318,7 +329,8 @@ class AnyPad:
         taken whose points are worth fewer than there are unknowns, as where strays explain all
         there is, unless it promises less than a normal distribution around the top.
         """
-        if not self.quick and (part == EVEN or self.told.kind == DISC):
+        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
+        if (hidden or not self.quick) and (part == EVEN or self.told.kind == DISC):
             try:
                 found = self._sampled(part, readings, top)
             except Degenerate:
@@ -337,7 +349,10 @@ class AnyPad:
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
-            return self._with(noise, "contrast").posterior_near(readings, begin, loose)
+            model = self._with(noise, "contrast")
+            if is_scattered(self.told.kind, readings, point):
+                model = replace(model, most_points=FEW_POINTS)
+            return model.posterior_near(readings, begin, loose)
         model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
         p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
         mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
@@ -374,6 +389,14 @@ def hidden_by(pattern: float, readings: Readings) -> float:
     """
     share = min(max(pattern / PATTERN, 0.0), 1.0)
     return (share * HIDDEN * float(readings.grid[2])) ** 2
+
+
+def is_scattered(kind: int, readings: Readings, p: Values) -> bool:
+    """Return whether a few touched elements lie far apart in an outline, as where noise shows."""
+    if readings.touched > FAINT_TOUCH:
+        return False
+    a, b = (p[2], p[2]) if kind == DISC else (p[2], p[3])
+    return bool(4.0 * a * b >= SPARSE * readings.touched * readings.grid[2] ** 2)
 
 
 def looseness(readings: Readings) -> float:

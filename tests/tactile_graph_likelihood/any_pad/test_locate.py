@@ -12,8 +12,12 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
+from tactile_graph_likelihood.any_pad.localise import is_scattered
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_pads.pad import load_pad
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import BASE, KINDS, Bench
@@ -107,6 +111,8 @@ def test_on_a_large_pad_a_quick_disc_is_the_disc():
     image = Image(values, (1.3, 1.3), (-0.15, -0.15), "gram")
     one, other = (LocateDisc(quick=quick)(image) for quick in (False, True))
     assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
+    one, other = (Locate(shapes=["disc"], quick=quick)(image).shape for quick in (False, True))
+    assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
 
 
 @pytest.mark.slow
@@ -135,6 +141,59 @@ def test_a_rectangle_is_found_on_a_pad_that_nobody_described():
         off, _, held, _ = looked_at(KINDS[kind], step=LocateRectangle(), shape="rectangle")
         assert off < 0.3
         assert held >= 0.7
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_rectangle_is_as_good_and_no_surer_than_it_may_be():
+    quick = LocateRectangle(quick=True)
+    for kind, centre_cm in (("noise 3 mV", 0.3), ("law 1/F", 0.3)):
+        off, _, held, _ = looked_at(KINDS[kind], step=quick, shape="rectangle")
+        assert off < centre_cm
+        assert held >= 0.8
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_rectangle_over_the_edge_says_how_little_is_known():
+    _, _, held, fits = looked_at(
+        KINDS["over the edge"], step=LocateRectangle(quick=True), shape="rectangle"
+    )
+    assert held >= 0.6
+    assert fits <= 0.6
+
+
+@plain
+def test_a_quick_choice_has_no_sample():
+    (frame,) = Bench(KINDS["noise 1 mV"], np.random.default_rng(3)).frames(1)
+    (true,) = frame.truth
+    full, quick = (Locate(quick=quick)(frame.image) for quick in (False, True))
+    assert quick.name == full.name == "disc"
+    assert math.hypot(quick.shape.x_cm - full.shape.x_cm, quick.shape.y_cm - full.shape.y_cm) < 0.1
+    assert math.hypot(quick.shape.x_cm - true.shape.x_cm, quick.shape.y_cm - true.shape.y_cm) < 0.3
+    assert np.ptp(quick.shape.posterior.weights) == 0.0
+    assert np.ptp(full.shape.posterior.weights) > 0.0
+
+
+def test_scattered_noise_is_not_looked_at_for_long():
+    cells = np.zeros((16, 16))
+    cells[[2, 3, 11, 13], [3, 12, 5, 14]] = 1.0
+    readings = observed(Image(cells, (1.3, 1.3), (-0.15, -0.15), "counts"), load_pad("thesis"))
+    wide = np.array([10.0, 10.0, 9.0, 0.0])
+    assert is_scattered(DISC, readings, wide)
+    assert not is_scattered(DISC, readings, np.array([10.0, 10.0, 1.5, 0.0]))
+    assert not is_scattered(DISC, readings._replace(touched=6), wide)
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_choice_names_as_many_shapes():
+    right = dict.fromkeys((False, True), 0)
+    for quick in right:
+        step, bench = Locate(quick=quick), Bench(KINDS["noise 3 mV"], np.random.default_rng(1))
+        for shape in ("disc", "rectangle"):
+            right[quick] += sum(step(f.image).name == shape for f in bench.frames(6, shape))
+    assert right[True] >= right[False] - 1
 
 
 @many
