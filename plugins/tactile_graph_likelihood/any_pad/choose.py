@@ -94,7 +94,7 @@ class Locate:
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""
-        tops = tops_of_each(self._every, readings)
+        readings, tops = tops_of_each(self._every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance

@@ -19,12 +19,14 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.posterior import (
     HIDDEN,
     on_any_pad,
     stretched,
 )
+from tactile_graph_likelihood.any_pad.turn_on import AS_TOLD, edge_of, unbent
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
@@ -163,12 +165,31 @@ class AnyPad:
         Degenerate
             If no outline of this kind is possible.
         """
-        return self.around(readings, self.tops(readings, start))
+        readings, even = self.first(readings, start)
+        return self.around(readings, self.completed(readings, even, start is None))
 
-    def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
-        """Return the most likely outlines by pressure, the even face's first."""
-        even = self._fit(EVEN).likeliest(readings, start=start)
-        return self.completed(readings, even, start is None)
+    def first(self, readings: Readings, start: Start = None) -> tuple[Readings, Likeliest]:
+        """Return the even face's most likely outline by one attempt, and readings as it has them.
+
+        See `cleared`.
+        """
+        return self.cleared(readings, self._fit(EVEN).likeliest(readings, start=start))
+
+    def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+        """Return readings free of a bend that the law has not, and of a hollow; the outline anew.
+
+        Only on pads of up to 1024 elements.
+        """
+        if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
+            return readings, even
+        if (bare := unbent(readings)) is not None:
+            straight, denser = bare
+            other = self.near(straight, self.told.point_of(even))
+            if other.mode.height + denser > even.mode.height + AS_TOLD:
+                readings, even = straight, other
+        p = self.told.point_of(even)
+        rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
+        return (readings, even) if rim is None else (rim, self.near(rim, p))
 
     def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
@@ -333,7 +354,9 @@ class AnyPad:
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, point[-2:], readings.touched, strays, self.law)
+        noise = learned(
+            self.told.noise, point[-2:], readings.touched, strays, self.law, edge_of(readings)
+        )
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)

@@ -1,0 +1,135 @@
+"""Where readings begin: what that says of a law's turn-on and exponent."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.readings import Readings
+
+FEW = 2
+"""Readings below the told turn-on, for the law there to be in question."""
+
+AS_TOLD = 0.5
+"""Nats by which a law that is no steeper below its turn-on must explain readings better."""
+
+SPACED, GAPS = 4, 2.0
+"""Least readings whose mean spacing is taken, and how many spacings a turn-on lies below them at
+most."""
+
+LEAST_STD = 0.1
+"""Of ln load: no turn-on is known better."""
+
+SEEN_SIGMA = 0.08
+"""Deviation of ln sigma as some eighty readings tell it."""
+
+OTHER = 0.2
+"""Probability that exponent, gains or turn-on are quite other than told, each for itself."""
+
+AS_IS, AS_ELSE = (0.1, 0.1, 0.1), (0.3, 0.4, 1.0)
+"""Deviations of the logarithms of exponent, sigma and turn-on that are as told, and of others."""
+
+
+class Edge(NamedTuple):
+    """How far above the told turn-on readings begin, and its deviation, both of ln load.
+
+    ``arm`` is how far that turn-on lies below the load by which the law is known.
+    """
+
+    off: float
+    std: float
+    arm: float
+
+
+def unbent(readings: Readings) -> tuple[Readings, float] | None:
+    """Return readings as by a law that is no steeper below its turn-on.
+
+    Returns
+    -------
+    (Readings, float) or None
+        And the log of how much denser these readings lie by that law than by the told one. None
+        where the told law is no steeper there, or hardly anything reads less than its turn-on.
+    """
+    turn_on = readings.turn_on
+    if turn_on is None or turn_on.bend <= 0.0:
+        return None
+    below = np.minimum(readings.logs - turn_on.log_load, 0.0)
+    low = below[(readings.states == ON) & (below < 0.0)]
+    if len(low) < FEW:
+        return None
+    least_log = readings.least_log
+    if least_log is not None:
+        least_log -= turn_on.bend * min(least_log - turn_on.log_load, 0.0) ** 2
+    hidden = turn_on.hidden - turn_on.bend * min(turn_on.hidden - turn_on.log_load, 0.0) ** 2
+    its = readings._replace(
+        logs=readings.logs - turn_on.bend * below * below,
+        least_log=least_log,
+        turn_on=turn_on._replace(bend=0.0, hidden=hidden),
+    )
+    return its, float(np.log1p(-2.0 * turn_on.bend * low).sum())
+
+
+def edge_of(readings: Readings) -> Edge | None:
+    """Return where readings begin, None where noise or the law's own turn-on hides it."""
+    turn_on = readings.turn_on
+    logs: Values = readings.logs[readings.states == ON]
+    m = min(SPACED, len(logs) - 1)
+    if turn_on is None or m < 1:
+        return None
+    lowest = np.sort(np.partition(logs, m)[: m + 1]) - turn_on.log_load
+    if turn_on.bend > 0.0 and lowest[FEW - 1] < 0.0:
+        return None
+    bottom, spacing = float(lowest[0]), float(lowest[-1] - lowest[0]) / m
+    if bottom - GAPS * spacing <= turn_on.hidden - turn_on.log_load:
+        return None
+    if bottom <= GAPS * spacing:
+        return Edge(min(bottom, 0.0), LEAST_STD, turn_on.arm)
+    return Edge(bottom - spacing, max(spacing, LEAST_STD), turn_on.arm)
+
+
+def contrast_by(scatter: float, edge: Edge) -> float:
+    """Return the law's exponent over the told one.
+
+    Parameters
+    ----------
+    scatter : float
+        Ln of sigma over the told one.
+    edge : Edge
+
+    Notes
+    -----
+    With x the logarithm of the exponent over the told one, g that of the gains' sigma and t that of
+    the turn-on, readings scatter by x + g and begin at t - arm x. Each of the three is about as
+    told or, less probably, quite other; the mean of x follows by Bayes' rule.
+    """
+    total = mean = 0.0
+    for weight, exponent, gains, begin in WORLDS:
+        gains, begin = gains + SEEN_SIGMA**2, begin + edge.std**2
+        first, both = exponent + gains, -edge.arm * exponent
+        second = edge.arm * edge.arm * exponent + begin
+        determinant = first * second - both * both
+        by_first = (second * scatter - both * edge.off) / determinant
+        by_second = (first * edge.off - both * scatter) / determinant
+        chance = weight * math.exp(-0.5 * (scatter * by_first + edge.off * by_second))
+        chance /= math.sqrt(determinant)
+        total += chance
+        mean += chance * (exponent * by_first + both * by_second)
+    return math.exp(mean / total) if total > 0.0 else 1.0
+
+
+def _worlds() -> tuple[tuple[float, float, float, float], ...]:
+    """Return probability and variances of what is as told and what is not, in all ways."""
+    found = []
+    for other in product((False, True), repeat=3):
+        weight = math.prod(OTHER if its else 1.0 - OTHER for its in other)
+        stds = [AS_ELSE[k] if its else AS_IS[k] for k, its in enumerate(other)]
+        found.append((weight, stds[0] ** 2, stds[1] ** 2, stds[2] ** 2))
+    return tuple(found)
+
+
+WORLDS = _worlds()
