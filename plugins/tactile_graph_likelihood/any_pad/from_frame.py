@@ -74,7 +74,7 @@ def learned(
     other = math.log(sigma / told.sigma)
     contrast = 1.0 + law * other
     if law > 0.0 and edge is not None:
-        contrast = contrast_by(other, edge)
+        contrast = contrast_by(other, edge, touched)
     return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
 

@@ -25,14 +25,15 @@ most."""
 LEAST_STD = 0.1
 """Of ln load: no turn-on is known better."""
 
-SEEN_SIGMA = 0.08
-"""Deviation of ln sigma as some eighty readings tell it."""
-
 OTHER = 0.2
 """Probability that exponent, gains or turn-on are quite other than told, each for itself."""
 
 AS_IS, AS_ELSE = (0.1, 0.1, 0.1), (0.3, 0.4, 1.0)
-"""Deviations of the logarithms of exponent, sigma and turn-on that are as told, and of others."""
+"""Deviations of the logarithms of exponent, sigma and turn-on as told, and of others."""
+
+
+LEAST_REACH = 0.1
+"""Of the told distance of the turn-on below the load by which the law is known."""
 
 
 class Edge(NamedTuple):
@@ -85,14 +86,14 @@ def edge_of(readings: Readings) -> Edge | None:
     if turn_on.bend > 0.0 and lowest[FEW - 1] < 0.0:
         return None
     bottom, spacing = float(lowest[0]), float(lowest[-1] - lowest[0]) / m
-    if bottom - GAPS * spacing <= turn_on.hidden - turn_on.log_load:
+    if bottom - max(GAPS * spacing, LEAST_STD) <= turn_on.hidden - turn_on.log_load:
         return None
     if bottom <= GAPS * spacing:
         return Edge(min(bottom, 0.0), LEAST_STD, turn_on.arm)
     return Edge(bottom - spacing, max(spacing, LEAST_STD), turn_on.arm)
 
 
-def contrast_by(scatter: float, edge: Edge) -> float:
+def contrast_by(scatter: float, edge: Edge, touched: int) -> float:
     """Return the law's exponent over the told one.
 
     Parameters
@@ -100,25 +101,29 @@ def contrast_by(scatter: float, edge: Edge) -> float:
     scatter : float
         Ln of sigma over the told one.
     edge : Edge
+    touched : int
+        Readings that tell sigma.
 
     Notes
     -----
     With x the logarithm of the exponent over the told one, g that of the gains' sigma and t that of
-    the turn-on, readings scatter by x + g and begin at t - arm x. Each of the three is about as
-    told or, less probably, quite other; the mean of x follows by Bayes' rule.
+    how far the turn-on lies below the load by which the law is known, all over what is told,
+    readings scatter by x + g, and how far they reach below that load grows by x + t. Each of the
+    three is about as told or, less probably, quite other; the mean of x follows by Bayes' rule.
     """
+    reach = max(edge.arm - edge.off, LEAST_REACH * edge.arm)
+    longer, its_variance = math.log(reach / edge.arm), (edge.std / reach) ** 2
     total = mean = 0.0
     for weight, exponent, gains, begin in WORLDS:
-        gains, begin = gains + SEEN_SIGMA**2, begin + edge.std**2
-        first, both = exponent + gains, -edge.arm * exponent
-        second = edge.arm * edge.arm * exponent + begin
-        determinant = first * second - both * both
-        by_first = (second * scatter - both * edge.off) / determinant
-        by_second = (first * edge.off - both * scatter) / determinant
-        chance = weight * math.exp(-0.5 * (scatter * by_first + edge.off * by_second))
+        first = exponent + gains + 0.5 / touched
+        second = exponent + begin / edge.arm**2 + its_variance
+        determinant = first * second - exponent * exponent
+        by_first = (second * scatter - exponent * longer) / determinant
+        by_second = (first * longer - exponent * scatter) / determinant
+        chance = weight * math.exp(-0.5 * (scatter * by_first + longer * by_second))
         chance /= math.sqrt(determinant)
         total += chance
-        mean += chance * (exponent * by_first + both * by_second)
+        mean += chance * exponent * (by_first + by_second)
     return math.exp(mean / total) if total > 0.0 else 1.0
 
 
