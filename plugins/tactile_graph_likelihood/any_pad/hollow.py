@@ -13,6 +13,9 @@ from tactile_graph_likelihood.single.readings import Readings
 MANY_VOIDS = -1.1
 """Log odds of a void, as fitted, below which nothing can be hollow."""
 
+MIDDLE = 0.25
+"""Of the shorter half size: elements so near the middle are looked at first, as they are few."""
+
 INSIDE = 0.6
 """Sides of an element by which its middle lies within the outline, to be counted."""
 
@@ -47,11 +50,11 @@ def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Re
     Elements partly over a hollow bear less. Taken for elements of poor gain they draw the load of
     covered ones down, and the rim outwards.
     """
-    if voids < MANY_VOIDS:
+    size = float(p[2]) if kind == DISC else min(float(p[2]), float(p[3]))
+    if voids < MANY_VOIDS or _bears_in_the_middle(readings, p, MIDDLE * size):
         return None
     inwards = _depth_cm(kind, readings, p)
     side, states = float(readings.grid[3]), readings.states
-    size = float(p[2]) if kind == DISC else min(float(p[2]), float(p[3]))
     inside = (inwards < size - INSIDE * side) & (states != UNKNOWN)
     far, its = inwards[inside], states[inside]
     n = len(far)
@@ -71,6 +74,21 @@ def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Re
     states = np.where(inwards < rim_cm + MARGIN * side, np.uint8(UNKNOWN), states)
     touched = int(np.count_nonzero((states == ON) | (states == OVER)))
     return readings._replace(states=states, touched=touched) if touched >= FEWEST else None
+
+
+def _bears_in_the_middle(readings: Readings, p: Values, reach_cm: float) -> bool:
+    """Return whether elements so far around an outline's middle read too often for a hollow."""
+    left, top, pitch, side = readings.grid[:4].tolist()
+    rows, columns = (
+        slice(
+            max(math.ceil((at - start - reach_cm - 0.5 * side) / pitch), 0),
+            max(math.floor((at - start + reach_cm - 0.5 * side) / pitch) + 1, 0),
+        )
+        for at, start in ((float(p[1]), top), (float(p[0]), left))
+    )
+    states = readings.states[rows, columns]
+    shown = np.count_nonzero((states == ON) | (states == OVER))
+    return bool(shown > max(1.0, SOME * states.size))
 
 
 def _explained(shown: np.ndarray, of: np.ndarray) -> Values:

@@ -93,7 +93,10 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     logs = np.log(np.where(shows, np.maximum(loads, LEAST), 1.0))
     lawful = image.quantity in LAWFUL and pad.law.turn_on_g > 0.0
     edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if lawful else -math.inf)
-    turn_on = _turn_on(pad, float(np.median(least_loads))) if lawful else None
+    turn_on = None
+    if lawful:
+        hidden = np.sort(least_loads, axis=None)
+        turn_on = _turn_on(pad, float(hidden[len(hidden) // 2]))
     logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, LEAST)), edge))
     states = np.where(shows, np.uint8(ON), np.uint8(UNDER))
     states[~known] = UNKNOWN

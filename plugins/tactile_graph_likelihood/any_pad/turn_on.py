@@ -59,6 +59,8 @@ def unbent(readings: Readings) -> tuple[Readings, float] | None:
     turn_on = readings.turn_on
     if turn_on is None or turn_on.bend <= 0.0:
         return None
+    if readings.least_log is not None and readings.least_log >= turn_on.log_load:
+        return None
     below = np.minimum(readings.logs - turn_on.log_load, 0.0)
     low = below[(readings.states == ON) & (below < 0.0)]
     if len(low) < FEW:
