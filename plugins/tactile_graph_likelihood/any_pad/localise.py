@@ -26,7 +26,13 @@ from tactile_graph_likelihood.any_pad.posterior import (
     on_any_pad,
     stretched,
 )
-from tactile_graph_likelihood.any_pad.turn_on import AS_TOLD, edge_of, unbent
+from tactile_graph_likelihood.any_pad.turn_on import (
+    SURE,
+    chance_of_a_bend,
+    edge_of,
+    straightened,
+    unbent,
+)
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
@@ -176,20 +182,33 @@ class AnyPad:
         return self.cleared(readings, self._fit(EVEN).likeliest(readings, start=start))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
-        """Return readings free of a bend that the law has not, and of a hollow; the outline anew.
+        """Return readings free of a law's improbable bend and of a hollow, and the outline anew.
 
         Only on pads of up to 1024 elements.
         """
         if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
             return readings, even
         if (bare := unbent(readings)) is not None:
-            straight, denser = bare
-            other = self.near(straight, self.told.point_of(even))
-            if other.mode.height + denser > even.mode.height + AS_TOLD:
-                readings, even = straight, other
+            readings, even = self._by_law(readings, even, *bare)
         p = self.told.point_of(even)
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
         return (readings, even) if rim is None else (rim, self.near(rim, p))
+
+    def _by_law(
+        self, readings: Readings, even: Likeliest, straight: Readings, denser: float
+    ) -> tuple[Readings, Likeliest]:
+        """Return readings with as much of the told law's bend as is probable, and their outline.
+
+        Sizes go with the bend evenly: it is the mean over both laws, at the price of one.
+        """
+        other = self.near(straight, self.told.point_of(even))
+        bend = chance_of_a_bend(other.mode.height + denser - even.mode.height)
+        if bend > 1.0 - SURE:
+            return readings, even
+        if bend < SURE:
+            return straight, other
+        partly = straightened(readings, 1.0 - bend)
+        return partly, self.near(partly, self.told.point_of(even if bend > 0.5 else other))
 
     def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""

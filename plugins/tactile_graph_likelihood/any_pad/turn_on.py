@@ -15,8 +15,12 @@ from tactile_graph_likelihood.single.readings import Readings
 FEW = 2
 """Readings below the told turn-on, for the law there to be in question."""
 
-AS_TOLD = 0.5
-"""Nats by which a law that is no steeper below its turn-on must explain readings better."""
+AS_TOLD = 2.5
+"""Nats by which a law that is no steeper below its turn-on must explain readings better, to be as
+probable as the told one."""
+
+SURE = 0.02
+"""Probability below which one of the two is none."""
 
 SPACED, GAPS = 4, 2.0
 """Least readings whose mean spacing is taken, and how many spacings a turn-on lies below them at
@@ -61,20 +65,39 @@ def unbent(readings: Readings) -> tuple[Readings, float] | None:
         return None
     if readings.least_log is not None and readings.least_log >= turn_on.log_load:
         return None
-    below = np.minimum(readings.logs - turn_on.log_load, 0.0)
-    low = below[(readings.states == ON) & (below < 0.0)]
+    low = readings.logs[readings.states == ON] - turn_on.log_load
+    low = low[low < 0.0]
     if len(low) < FEW:
         return None
-    least_log = readings.least_log
+    return straightened(readings, 1.0), float(np.log1p(-2.0 * turn_on.bend * low).sum())
+
+
+def straightened(readings: Readings, share: float) -> Readings:
+    """Return readings as by a law with so much less of a told bend below its turn-on."""
+    turn_on = readings.turn_on
+    if turn_on is None:
+        return readings
+    less, first = share * turn_on.bend, turn_on.log_load
+    least_log, hidden = readings.least_log, turn_on.hidden
     if least_log is not None:
-        least_log -= turn_on.bend * min(least_log - turn_on.log_load, 0.0) ** 2
-    hidden = turn_on.hidden - turn_on.bend * min(turn_on.hidden - turn_on.log_load, 0.0) ** 2
-    its = readings._replace(
-        logs=readings.logs - turn_on.bend * below * below,
+        least_log -= less * min(least_log - first, 0.0) ** 2
+    hidden -= less * min(hidden - first, 0.0) ** 2
+    return readings._replace(
+        logs=readings.logs - less * np.minimum(readings.logs - first, 0.0) ** 2,
         least_log=least_log,
-        turn_on=turn_on._replace(bend=0.0, hidden=hidden),
+        turn_on=turn_on._replace(bend=turn_on.bend - less, hidden=hidden),
     )
-    return its, float(np.log1p(-2.0 * turn_on.bend * low).sum())
+
+
+def chance_of_a_bend(gain: float) -> float:
+    """Return the probability of the told law's bend.
+
+    Parameters
+    ----------
+    gain : float
+        Nats by which the law without it explains readings better.
+    """
+    return 1.0 / (1.0 + math.exp(min(max(gain - AS_TOLD, -50.0), 50.0)))
 
 
 def edge_of(readings: Readings) -> Edge | None:

@@ -8,7 +8,14 @@ import pytest
 
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.observed import observed
-from tactile_graph_likelihood.any_pad.turn_on import Edge, contrast_by, edge_of, unbent
+from tactile_graph_likelihood.any_pad.turn_on import (
+    Edge,
+    chance_of_a_bend,
+    contrast_by,
+    edge_of,
+    straightened,
+    unbent,
+)
 from tactile_graph_likelihood.single.element_terms import ON, UNDER
 from tactile_graph_pads.pad import Pad, load_pad
 
@@ -49,6 +56,23 @@ def test_density_is_by_how_much_the_bend_draws_loads_together() -> None:
     slope = (moved - its.logs)[low] / step
     assert denser == pytest.approx(float(np.log(slope).sum()), rel=1e-4)
     assert denser > 1.0
+
+
+def test_the_told_law_is_left_where_another_explains_far_more() -> None:
+    assert chance_of_a_bend(-3.0) > 0.98
+    assert chance_of_a_bend(2.5) == pytest.approx(0.5)
+    assert chance_of_a_bend(9.0) < 0.02 < chance_of_a_bend(6.0)
+    assert chance_of_a_bend(1e9) < 1e-20
+
+
+def test_half_a_bend_lies_between() -> None:
+    bent = observed(frame(3.0), PAD)
+    half, straight = straightened(bent, 0.5), straightened(bent, 1.0)
+    np.testing.assert_allclose(half.logs, 0.5 * (bent.logs + straight.logs))
+    low = (bent.states == ON) & (bent.logs < ARM)
+    assert (half.logs[low] < bent.logs[low]).all()
+    assert edge_of(half) is None
+    assert edge_of(straight) is not None
 
 
 def test_where_nothing_reads_less_than_the_turn_on_the_law_is_as_told() -> None:
