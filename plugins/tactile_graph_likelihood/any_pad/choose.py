@@ -103,7 +103,7 @@ class Locate:
         """Return the choice by some readings; errors as of a call."""
         small = readings.states.size <= LARGE_PAD
         every = self._quick if small and self._quick else self._every
-        tops = tops_of_each(every, readings)
+        readings, tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance

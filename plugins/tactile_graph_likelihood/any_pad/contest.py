@@ -30,8 +30,10 @@ LOST = -5.0
 Tops = dict[str, Likeliest]
 
 
-def tops_of_each(every: Mapping[str, AnyPad], readings: Readings) -> dict[str, Tops]:
-    """Return the most likely outlines of each kind, by pressure.
+def tops_of_each(
+    every: Mapping[str, AnyPad], readings: Readings
+) -> tuple[Readings, dict[str, Tops]]:
+    """Return the most likely outlines of each kind, by pressure, and readings as they have them.
 
     Parameters
     ----------
@@ -41,6 +43,8 @@ def tops_of_each(every: Mapping[str, AnyPad], readings: Readings) -> dict[str, T
 
     Returns
     -------
+    Readings
+        As of `AnyPad.cleared`.
     dict of str to dict
         Of a kind that is hopelessly behind, the even face's alone, roughly; a kind of which no
         outline is possible is left out.
@@ -52,14 +56,15 @@ def tops_of_each(every: Mapping[str, AnyPad], readings: Readings) -> dict[str, T
     """
     found: dict[str, Likeliest] = {}
     if readings.states.size <= LARGE_PAD and len(every) > 1:
-        every, found = _first_look(every, readings)
+        readings, every, found = _first_look(every, readings)
     best = max(found.values(), key=lambda its: its.evidence, default=None)
     tops: dict[str, Tops] = {}
     reason = Degenerate("none of the shapes explains what is touched")
     for name, any_pad in every.items():
         try:
             if best is None:
-                tops[name] = any_pad.tops(readings)
+                readings, even = any_pad.first(readings)
+                tops[name] = any_pad.completed(readings, even)
             elif _may_win(any_pad, found[name], best, readings.touched):
                 tops[name] = any_pad.completed(readings, found[name])
             else:
@@ -68,24 +73,26 @@ def tops_of_each(every: Mapping[str, AnyPad], readings: Readings) -> dict[str, T
             reason = why
     if not tops:
         raise reason
-    return tops
+    return readings, tops
 
 
 def _first_look(
     every: Mapping[str, AnyPad], readings: Readings
-) -> tuple[Mapping[str, AnyPad], dict[str, Likeliest]]:
+) -> tuple[Readings, Mapping[str, AnyPad], dict[str, Likeliest]]:
     """Return what attempts find of each kind that may win, and roughly of the others.
 
-    Where there are strays, with the fits that know of them: they compare where all know of as many.
+    Before it readings as of `AnyPad.cleared`, by the kind that is looked at first. Where there are
+    strays, with the fits that know of them: they compare where all know of as many.
     """
     kinds = {any_pad.told.kind: name for name, any_pad in every.items()}
     first = kinds.get(DISC if _is_round(readings) else RECTANGLE, next(iter(every)))
     lead = every[first].searched(readings)
     if lead.mode.height == -math.inf:
-        return every, {}
+        return readings, every, {}
     if strays := every[first].strays(readings, lead):
         every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
         lead = every[first].again(readings, lead)
+    readings, lead = every[first].cleared(readings, lead)
     found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
     for name, any_pad in every.items():
         if name == first:
@@ -96,7 +103,7 @@ def _first_look(
         if (its.unsure or not grown) and _may_win(any_pad, its, best, readings.touched):
             its = any_pad.searched(readings, its)
         found[name] = its
-    return every, found
+    return readings, every, found
 
 
 def _may_win(any_pad: AnyPad, its: Likeliest, best: Likeliest, touched: int) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactile_graph_likelihood.any_pad.turn_on import Edge, contrast_by
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
@@ -40,7 +41,14 @@ LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
 """Correlation of neighbours below which it is none, and to which it is held."""
 
 
-def learned(told: Noise, scatter: Values, touched: int, strays: float, law: float = LAW) -> Noise:
+def learned(
+    told: Noise,
+    scatter: Values,
+    touched: int,
+    strays: float,
+    law: float = LAW,
+    edge: Edge | None = None,
+) -> Noise:
     """Return the noise that a fit has found.
 
     Parameters
@@ -53,15 +61,20 @@ def learned(told: Noise, scatter: Values, touched: int, strays: float, law: floa
     strays : float
     law : float
         Of ln sigma that is not as told, the share that is the law's exponent, not the gains'.
+    edge : Edge, optional
+        Where readings begin, which tells more of that.
 
     Notes
     -----
     Readings that scatter more or less than told may do so since gains do, or since the law's
-    exponent is another: that share of it is the contrast's.
+    exponent is another: that share of it is the contrast's, or what `contrast_by` finds.
     """
     sigma = math.exp(scatter[0]) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
     voids = 1.0 / (1.0 + math.exp(-scatter[1]))
-    contrast = 1.0 + law * math.log(sigma / told.sigma)
+    other = math.log(sigma / told.sigma)
+    contrast = 1.0 + law * other
+    if law > 0.0 and edge is not None:
+        contrast = contrast_by(other, edge, touched)
     return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
 

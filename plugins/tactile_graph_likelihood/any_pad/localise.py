@@ -19,11 +19,19 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.posterior import (
     HIDDEN,
     on_any_pad,
     stretched,
+)
+from tactile_graph_likelihood.any_pad.turn_on import (
+    SURE,
+    chance_of_a_bend,
+    edge_of,
+    straightened,
+    unbent,
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
@@ -172,12 +180,44 @@ class AnyPad:
         Degenerate
             If no outline of this kind is possible.
         """
-        return self.around(readings, self.tops(readings, start))
+        readings, even = self.first(readings, start)
+        return self.around(readings, self.completed(readings, even, start is None))
 
-    def tops(self, readings: Readings, start: Start = None) -> dict[str, Likeliest]:
-        """Return the most likely outlines by pressure, the even face's first."""
-        even = self._fit(EVEN).likeliest(readings, start=start)
-        return self.completed(readings, even, start is None)
+    def first(self, readings: Readings, start: Start = None) -> tuple[Readings, Likeliest]:
+        """Return the even face's most likely outline by one attempt, and readings as it has them.
+
+        See `cleared`.
+        """
+        return self.cleared(readings, self._fit(EVEN).likeliest(readings, start=start))
+
+    def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+        """Return readings free of a law's improbable bend and of a hollow, and the outline anew.
+
+        Only on pads of up to 1024 elements.
+        """
+        if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
+            return readings, even
+        if (bare := unbent(readings)) is not None:
+            readings, even = self._by_law(readings, even, *bare)
+        p = self.told.point_of(even)
+        rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
+        return (readings, even) if rim is None else (rim, self.near(rim, p))
+
+    def _by_law(
+        self, readings: Readings, even: Likeliest, straight: Readings, denser: float
+    ) -> tuple[Readings, Likeliest]:
+        """Return readings with as much of the told law's bend as is probable, and their outline.
+
+        Sizes go with the bend evenly: it is the mean over both laws, at the price of one.
+        """
+        other = self.near(straight, self.told.point_of(even))
+        bend = chance_of_a_bend(other.mode.height + denser - even.mode.height)
+        if bend > 1.0 - SURE:
+            return readings, even
+        if bend < SURE:
+            return straight, other
+        partly = straightened(readings, 1.0 - bend)
+        return partly, self.near(partly, self.told.point_of(even if bend > 0.5 else other))
 
     def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
@@ -345,7 +385,9 @@ class AnyPad:
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(self.told.noise, point[-2:], readings.touched, strays, self.law)
+        noise = learned(
+            self.told.noise, point[-2:], readings.touched, strays, self.law, edge_of(readings)
+        )
         loose = looseness(readings)
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)

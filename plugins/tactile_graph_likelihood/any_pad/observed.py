@@ -9,10 +9,11 @@ import numpy as np
 from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import risen
+from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.readings import Readings, TurnOn
 from tactile_graph_pads.pad import Pad
 
 SPACED = 4
@@ -90,8 +91,12 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     if touched == 0:
         raise Degenerate("no reading rises above the noise: no outline fits")
     logs = np.log(np.where(shows, np.maximum(loads, LEAST), 1.0))
-    law = image.quantity in ("volt", "siemens", "gram")
-    edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if law else -math.inf)
+    lawful = image.quantity in LAWFUL and pad.law.turn_on_g > 0.0
+    edge = least_that_shows(logs[shows], math.log(pad.law.turn_on_g) if lawful else -math.inf)
+    turn_on = None
+    if lawful:
+        hidden = np.sort(least_loads, axis=None)
+        turn_on = _turn_on(pad, float(hidden[len(hidden) // 2]))
     logs = np.where(shows, logs, np.maximum(np.log(np.maximum(least_loads, LEAST)), edge))
     states = np.where(shows, np.uint8(ON), np.uint8(UNDER))
     states[~known] = UNKNOWN
@@ -102,8 +107,15 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     x, y = image.origin_cm
     half = 0.5 * gap_cm
     grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
-    found = Readings(grid, logs, states, touched, down / across, edge)
+    found = Readings(grid, logs, states, touched, down / across, edge, turn_on)
     return uniform(found) if states.size > LARGE_PAD else found
+
+
+def _turn_on(pad: Pad, hidden_g: float) -> TurnOn:
+    """Return what is told of a law at its least loads, with the load that noise hides."""
+    law = pad.law
+    arm, hidden = math.log(law.load_g / law.turn_on_g), math.log(max(hidden_g, LEAST))
+    return TurnOn(math.log(law.turn_on_g), law.turn_on_bend / law.power, arm, hidden)
 
 
 def _loads(

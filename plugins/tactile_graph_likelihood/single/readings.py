@@ -24,13 +24,35 @@ RANK = 8
 """Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
 
 
+class TurnOn(NamedTuple):
+    """What is told of a law at its least loads; all of ln load.
+
+    Parameters
+    ----------
+    log_load : float
+        Of its turn-on.
+    bend : float
+        How much less a load below reads by a law that went on as above, over the squared distance.
+    arm : float
+        How far the turn-on lies below the load by which the law is known.
+    hidden : float
+        The load that noise hides on most elements.
+    """
+
+    log_load: float
+    bend: float
+    arm: float
+    hidden: float
+
+
 class Readings(NamedTuple):
     """What an image says, and where its elements lie.
 
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
     zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`. ``stretch`` is the
     height of a cell over its width, where it is nearly 1 and was taken for that; ``least_log`` the
-    logarithm of the least load that shows, where the readings themselves say it.
+    logarithm of the least load that shows, where the readings themselves say it; ``turn_on`` what
+    is told of the law there, where readings are by one.
     """
 
     grid: Values
@@ -39,6 +61,7 @@ class Readings(NamedTuple):
     touched: int
     stretch: float = 1.0
     least_log: float | None = None
+    turn_on: TurnOn | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:

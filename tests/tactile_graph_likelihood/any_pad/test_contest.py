@@ -28,7 +28,7 @@ def test_a_kind_that_is_hopelessly_behind_is_left_as_it_was_found():
     step = Locate()
     frame = frames_of("noise 0.2 mV", n=3)[2]
     readings = step.readings(frame.image)
-    tops = tops_of_each(step._every, readings)
+    readings, tops = tops_of_each(step._every, readings)
     assert [*tops["rectangle"]] == [EVEN]
     assert tops["disc"][EVEN].evidence > tops["rectangle"][EVEN].evidence + 12.0
     chance = probabilities(tops, readings)
@@ -43,10 +43,9 @@ def test_a_kind_that_is_hopelessly_behind_is_left_as_it_was_found():
 def test_what_is_left_out_would_not_have_won(kind, shape):
     step, off = Locate(), []
     for frame in frames_of(kind, shape):
-        readings = step.readings(frame.image)
-        every = {name: any_pad.tops(readings) for name, any_pad in step._every.items()}
-        full = probabilities(every, readings)
-        found = probabilities(tops_of_each(step._every, readings), readings)
+        readings, tops = tops_of_each(step._every, step.readings(frame.image))
+        every = {name: its.completed(*its.first(readings)) for name, its in step._every.items()}
+        full, found = probabilities(every, readings), probabilities(tops, readings)
         off.append(abs(full[shape] - found[shape]))
     assert np.median(off) < 0.01
     assert np.mean(np.array(off) > 0.3) < 0.1
@@ -65,6 +64,6 @@ def test_the_shape_is_told_among_strays():
 def test_all_kinds_know_of_the_same_strays():
     step = Locate()
     readings = step.readings(frames_of("strays 4 %")[0].image)
-    every, _ = _first_look(step._every, readings)
+    _, every, _ = _first_look(step._every, readings)
     (strays,) = {any_pad.told.noise.strays for any_pad in every.values()}
     assert 0.008 < strays < 0.12

@@ -1,0 +1,165 @@
+"""Where readings begin: what that says of a law's turn-on and exponent."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.readings import Readings
+
+FEW = 2
+"""Readings below the told turn-on, for the law there to be in question."""
+
+AS_TOLD = 2.5
+"""Nats by which a law that is no steeper below its turn-on must explain readings better, to be as
+probable as the told one."""
+
+SURE = 0.02
+"""Probability below which one of the two is none."""
+
+SPACED, GAPS = 4, 2.0
+"""Least readings whose mean spacing is taken, and how many spacings a turn-on lies below them at
+most."""
+
+LEAST_STD = 0.1
+"""Of ln load: no turn-on is known better."""
+
+OTHER = 0.2
+"""Probability that exponent, gains or turn-on are quite other than told, each for itself."""
+
+AS_IS, AS_ELSE = (0.1, 0.1, 0.1), (0.3, 0.4, 1.0)
+"""Deviations of the logarithms of exponent, sigma and turn-on as told, and of others."""
+
+
+LEAST_REACH = 0.1
+"""Of the told distance of the turn-on below the load by which the law is known."""
+
+
+class Edge(NamedTuple):
+    """How far above the told turn-on readings begin, and its deviation, both of ln load.
+
+    ``arm`` is how far that turn-on lies below the load by which the law is known.
+    """
+
+    off: float
+    std: float
+    arm: float
+
+
+def unbent(readings: Readings) -> tuple[Readings, float] | None:
+    """Return readings as by a law that is no steeper below its turn-on.
+
+    Returns
+    -------
+    (Readings, float) or None
+        And the log of how much denser these readings lie by that law than by the told one. None
+        where the told law is no steeper there, or hardly anything reads less than its turn-on.
+    """
+    turn_on = readings.turn_on
+    if turn_on is None or turn_on.bend <= 0.0:
+        return None
+    if readings.least_log is not None and readings.least_log >= turn_on.log_load:
+        return None
+    low = readings.logs[readings.states == ON] - turn_on.log_load
+    low = low[low < 0.0]
+    if len(low) < FEW:
+        return None
+    return straightened(readings, 1.0), float(np.log1p(-2.0 * turn_on.bend * low).sum())
+
+
+def straightened(readings: Readings, share: float) -> Readings:
+    """Return readings as by a law with so much less of a told bend below its turn-on."""
+    turn_on = readings.turn_on
+    if turn_on is None:
+        return readings
+    less, first = share * turn_on.bend, turn_on.log_load
+    least_log, hidden = readings.least_log, turn_on.hidden
+    if least_log is not None:
+        least_log -= less * min(least_log - first, 0.0) ** 2
+    hidden -= less * min(hidden - first, 0.0) ** 2
+    return readings._replace(
+        logs=readings.logs - less * np.minimum(readings.logs - first, 0.0) ** 2,
+        least_log=least_log,
+        turn_on=turn_on._replace(bend=turn_on.bend - less, hidden=hidden),
+    )
+
+
+def chance_of_a_bend(gain: float) -> float:
+    """Return the probability of the told law's bend.
+
+    Parameters
+    ----------
+    gain : float
+        Nats by which the law without it explains readings better.
+    """
+    return 1.0 / (1.0 + math.exp(min(max(gain - AS_TOLD, -50.0), 50.0)))
+
+
+def edge_of(readings: Readings) -> Edge | None:
+    """Return where readings begin, None where noise or the law's own turn-on hides it."""
+    turn_on = readings.turn_on
+    logs: Values = readings.logs[readings.states == ON]
+    m = min(SPACED, len(logs) - 1)
+    if turn_on is None or m < 1:
+        return None
+    lowest = np.sort(np.partition(logs, m)[: m + 1]) - turn_on.log_load
+    if turn_on.bend > 0.0 and lowest[FEW - 1] < 0.0:
+        return None
+    bottom, spacing = float(lowest[0]), float(lowest[-1] - lowest[0]) / m
+    if bottom - max(GAPS * spacing, LEAST_STD) <= turn_on.hidden - turn_on.log_load:
+        return None
+    if bottom <= GAPS * spacing:
+        return Edge(min(bottom, 0.0), LEAST_STD, turn_on.arm)
+    return Edge(bottom - spacing, max(spacing, LEAST_STD), turn_on.arm)
+
+
+def contrast_by(scatter: float, edge: Edge, touched: int) -> float:
+    """Return the law's exponent over the told one.
+
+    Parameters
+    ----------
+    scatter : float
+        Ln of sigma over the told one.
+    edge : Edge
+    touched : int
+        Readings that tell sigma.
+
+    Notes
+    -----
+    With x the logarithm of the exponent over the told one, g that of the gains' sigma and t that of
+    how far the turn-on lies below the load by which the law is known, all over what is told,
+    readings scatter by x + g, and how far they reach below that load grows by x + t. Each of the
+    three is about as told or, less probably, quite other; the mean of x follows by Bayes' rule.
+    """
+    reach = max(edge.arm - edge.off, LEAST_REACH * edge.arm)
+    longer, its_variance = math.log(reach / edge.arm), (edge.std / reach) ** 2
+    total = mean = 0.0
+    for weight, exponent, gains, begin in WORLDS:
+        first = exponent + gains + 0.5 / touched
+        second = exponent + begin / edge.arm**2 + its_variance
+        determinant = first * second - exponent * exponent
+        by_first = (second * scatter - exponent * longer) / determinant
+        by_second = (first * longer - exponent * scatter) / determinant
+        chance = weight * math.exp(-0.5 * (scatter * by_first + longer * by_second))
+        chance /= math.sqrt(determinant)
+        total += chance
+        mean += chance * exponent * (by_first + by_second)
+    return math.exp(mean / total) if total > 0.0 else 1.0
+
+
+def _worlds() -> tuple[tuple[float, float, float, float], ...]:
+    """Return probability and variances of what is as told and what is not, in all ways."""
+    found = []
+    for other in product((False, True), repeat=3):
+        weight = math.prod(OTHER if its else 1.0 - OTHER for its in other)
+        stds = [AS_ELSE[k] if its else AS_IS[k] for k, its in enumerate(other)]
+        found.append((weight, stds[0] ** 2, stds[1] ** 2, stds[2] ** 2))
+    return tuple(found)
+
+
+WORLDS = _worlds()
