@@ -221,6 +221,11 @@ def hollow(u: Values, v: Values) -> Values:
     return (u * u + v * v >= 0.36).astype(float)
 
 
+def ring(inside: float) -> Pressure:
+    """A cup put down, whose rim is wide from a share of the radius on."""
+    return lambda u, v: (u * u + v * v >= inside * inside).astype(float)
+
+
 BASE = Kind()
 SMALL = ((300.0, 1.6), (500.0, 2.0), (800.0, 2.4))
 SMALL_RECTANGLES = ((500.0, 5.0, 3.0), (800.0, 6.5, 4.0))
@@ -266,5 +271,20 @@ FINGERS = replace(KINDS["small objects"], strays=0.01)
 MORE_KINDS: dict[str, Kind] = {
     "fingertips and strays": FINGERS,
     "light fingertips and strays": replace(FINGERS, discs=((150.0, 1.2), (200.0, 1.5))),
+    "law 1/F^1.2": replace(BASE, exponent=1.2),
+    "law 1/F^1.75": replace(BASE, exponent=1.75),
+    "law 1/F, noise 3 mV": replace(BASE, exponent=1.0, noise_v=3e-3),
+    "law 1/F, gains 0.3": replace(BASE, exponent=1.0, sigma=0.3),
+    "law 1/F^1.2, turn-on 20 g": replace(BASE, exponent=1.2, turn_on_g=20.0),
+    "law 1/F^1.75, turn-on 5 g, gains 0.7": replace(BASE, exponent=1.75, turn_on_g=5.0, sigma=0.7),
+    "turn-on 4 g": replace(BASE, turn_on_g=4.0),
+    "turn-on 20 g": replace(BASE, turn_on_g=20.0),
+    "turn-on 20 g, gains 0.3": replace(BASE, turn_on_g=20.0, sigma=0.3),
+    "gains 0.3": replace(BASE, sigma=0.3),
+    "gains 0.7": replace(BASE, sigma=0.7),
+    "ring of 0.4": replace(BASE, pressure=ring(0.4)),
+    "ring of 0.8": replace(BASE, pressure=ring(0.8)),
+    "ring of 0.6, voids 0.3": replace(BASE, pressure=ring(0.6), voids=0.3),
+    "ring of 0.6, noise 1.6 mV": replace(BASE, pressure=ring(0.6), noise_v=1.6e-3),
 }
 """Kinds that are looked at by name only."""
