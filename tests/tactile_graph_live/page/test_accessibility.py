@@ -221,7 +221,7 @@ def test_what_began_anew_is_seen_and_said(page: Any, double: Double) -> None:
     page.locator("#nodes [data-name=circle]").click()
     assert "Keeps a state from frame to frame." in page.locator("#node-about").inner_text()
     double.say(graph(3))
-    page.wait_for_function("document.getElementById('change').textContent.split('. ').length === 1")
+    wait_for(lambda: change.inner_text().count(". ") == 0, "nothing is lost any more")
 
 
 def test_many_errors_leave_the_pad_in_sight(page: Any, double: Double) -> None:
