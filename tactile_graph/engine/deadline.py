@@ -236,8 +236,10 @@ class Deadline:
         below = self._next.get(option.number)
         if below is None:
             return 0.0
-        its_ns = self._expected[below.number].high_ns(self._kind, NEXT_RISK)
-        return max(its_ns - self._period_ns, 0.0)
+        own_ns = self._expected[option.number].high_ns(self._kind, NEXT_RISK)
+        if own_ns <= self._period_ns:  # no frame has to wait for it
+            return 0.0
+        return self._expected[below.number].high_ns(self._kind, NEXT_RISK)
 
     def ended(self, option: Option, state: list[Any]) -> None:
         """Take into account how long the option has taken."""
