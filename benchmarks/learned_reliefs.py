@@ -188,12 +188,13 @@ def picture_of(seen: Seen, poses: Values, nodes: int, trust: Values) -> Values:
     return total / np.maximum(weight, 1e-9)
 
 
-def laid(seen: Seen) -> tuple[Values, Values]:
-    """Return x, y and turn of presses laid on the fullest one, and their picture."""
+def laid(seen: Seen, place: int) -> tuple[Values, Values]:
+    """Return x, y and turn of presses laid on the fullest one or a lesser, and their picture."""
     sums = seen.totals()
     area = (seen.values > 0.05 * seen.values.max(axis=(1, 2))[:, None, None]).sum(axis=(1, 2))
     odd = np.abs(np.log(sums / np.median(sums))) > 0.7
-    first = int(np.argmax(area * np.where(odd, 0.5, 1.0) * np.where(seen.cut(), 0.1, 1.0)))
+    fullness = area * np.where(odd, 0.5, 1.0) * np.where(seen.cut(), 0.1, 1.0)
+    first = int(np.argsort(-fullness)[place])
     radius = 1.05 * np.hypot(seen.boxes[:, 2], seen.boxes[:, 3]).max() / 2.0 + 1.5
     nodes = 2 * math.ceil(radius * NODES) + 1
     poses = np.column_stack([seen.centres, np.zeros(len(sums))])
@@ -374,9 +375,9 @@ def extend(relief: Relief, shape: tuple[int, ...], within: int = 8) -> None:
     relief.depth = out
 
 
-def begun(seen: Seen) -> Relief:
+def begun(seen: Seen, place: int) -> Relief:
     """Return a relief to begin with: the depth that the mean reading of all presses leaves."""
-    poses, picture = laid(seen)
+    poses, picture = laid(seen, place)
     sums = seen.totals()
     load = picture * np.median(sums)
     top = float(load.max())
@@ -389,10 +390,10 @@ def begun(seen: Seen) -> Relief:
                   STAGES[0][0] * usual, np.zeros(n), picture, np.zeros(2))  # fmt: skip
 
 
-def learned(seen: Seen, reads: Reads, relief: Relief | None = None) -> Relief:
+def learned(seen: Seen, reads: Reads, relief: Relief | None = None, place: int = 0) -> Relief:
     """Return the relief of an object by its presses, from a former one where there is one."""
     stages = AGAIN if relief else STAGES
-    relief = relief or begun(seen)
+    relief = relief or begun(seen, place)
     trust = np.ones(len(seen.values))
     for i, (soft, wider, n_steps) in enumerate(stages):
         relief.soft = soft * relief.usual
@@ -442,6 +443,19 @@ def improve(reads: Reads, reliefs: Sequence[Relief], all_seen: Sequence[Seen]) -
     reads.lean_variance = 1.2 * float(np.mean(leans**2))
 
 
+def off_a_cell(relief: Relief, seen: Seen) -> float:
+    """Return the mean misfit of a cell."""
+    return float(np.mean(relief.misfits / seen.cells()))
+
+
+def begin_again(reliefs: list[Relief], all_seen: Sequence[Seen], reads: Reads) -> None:
+    """Learn objects that fit badly anew, their presses laid on two other ones first."""
+    off = [off_a_cell(*one) for one in zip(reliefs, all_seen, strict=True)]
+    for o in np.flatnonzero(off > 2.0 * np.median(off)):
+        more = [learned(all_seen[o], reads, place=place) for place in (1, 2)]
+        reliefs[o] = min([reliefs[o], *more], key=lambda one, o=o: off_a_cell(one, all_seen[o]))
+
+
 def learn_all(
     frames: Sequence[Values], it: Instrument, say: Callable[[str], None], rounds: int = 3
 ) -> tuple[list[Relief], Reads]:
@@ -453,6 +467,8 @@ def learn_all(
     for k in range(rounds):
         known = reliefs or [None] * len(all_seen)
         reliefs = [learned(s, reads, r) for s, r in zip(all_seen, known, strict=True)]
+        if k == 0:
+            begin_again(reliefs, all_seen, reads)
         improve(reads, reliefs, all_seen)
         say(f"round {k + 1}: readings vary by {100 * math.sqrt(reads.variances[1]):.1f} %, gains "
             f"by {100 * np.log(reads.gains).std():.1f} %")  # fmt: skip
@@ -465,9 +481,13 @@ def learn_all(
 
 
 def distances(reliefs: Sequence[Relief], reads: Reads, seen: Seen) -> Values:
-    """Return how far presses are from objects, shape (n, K): misfits over each object's usual."""
+    """Return how far presses are from objects, shape (n, K): misfits over each object's usual.
+
+    The usual of a badly learned object is held back, lest it take in the presses of others.
+    """
     weights = reads.weights(seen.values)
     usual = np.array([np.median(relief.misfits) for relief in reliefs])
+    usual = np.clip(usual, 0.67 * np.median(usual), 1.5 * np.median(usual))
     out = np.empty((len(seen.values), len(reliefs)))
     for k in range(len(out)):
         begun_with = [
