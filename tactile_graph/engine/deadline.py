@@ -1,11 +1,10 @@
 """``Deadline``: what of a frame still fits into its time, told from how long such things took.
 
 For each option the usual time is followed for frames of about the same footprint, and beside it by
-what factors single times have strayed from the usual, apart for footprints of another order: on an
-empty pad a rare frame may take two hundred times the usual. From these follows the risk that an
-option takes longer than what is left when the spared ones are paid for. It is begun where the risk
-is no more than what is allowed; and what is allowed is raised while frames are on time and lowered
-with each that is late, so that in the long run the promised share of frames is on time whatever the
+what factors single times have strayed from the usual. From these follows the risk that an option
+takes longer than what is left when the spared ones are paid for. It is begun where the risk is no
+more than what is allowed; and what is allowed is raised while frames are on time and lowered with
+each that is late, so that in the long run the promised share of frames is on time whatever the
 times are distributed like (adaptive conformal inference; Gibbs and Candes, NeurIPS 2021).
 """
 
@@ -13,10 +12,10 @@ from __future__ import annotations
 
 from bisect import bisect_right, insort
 from collections import deque
-from collections.abc import Callable, Mapping
-from math import exp, inf, log, log2
+from collections.abc import Callable
+from math import exp, log, log2
 from time import perf_counter_ns
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -24,15 +23,10 @@ from tactile_graph.engine.options import Option, Options, Work
 from tactile_graph.engine.outcome import NO_VALUE
 from tactile_graph.wires.frame import Frame
 
-Known = TypeVar("Known", float, "Strayed")
-
-LATE_SHARE = 0.0005
-"""Of frames: what is aimed at, half of what is promised. How many frames of a run are late scatters
-around it, and those that wait behind a late one may be late too."""
+LATE_SHARE = 0.001
+"""Of frames: what is promised is that so few are late."""
 WINDOW = 1000
-"""How many last times, of an order of footprints, tell how far single ones stray."""
-KINDS_ALIKE = 4
-"""Kinds of frames whose times stray alike: footprints within a factor of two."""
+"""How many last times tell how far single ones stray."""
 FOLLOWS = 0.1
 """Share of the way that the usual time goes towards each new one."""
 FADES = 0.03
@@ -42,60 +36,30 @@ PACE = 0.02
 """How fast the allowed risk follows what becomes of frames."""
 RESERVE_RISK = 0.01
 """Share of times that may exceed what is kept for what must be done: not for any rare stall."""
-NEXT_RISK = 0.003
-"""Share of times that may exceed what is kept for the next frame's second choice."""
-PERIOD_FOLLOWS = 0.1
-"""Share of the way that the time between frames goes towards each new one."""
-ANSWERS_FOLLOW = 0.02
-"""Share of the way that the share of frames with a value goes towards each new one."""
 MUCH = log(3.0)
 """A last choice is not spared where one before it is quicker by more than this factor."""
-FIRST_RISK, MOST_RISK = 0.01, 0.3
-
-
-class Strayed:
-    """By what factors the last times have strayed from the usual one, as logarithms."""
-
-    __slots__ = ("_in_order", "_last")
-
-    def __init__(self) -> None:
-        self._last: deque[float] = deque()
-        self._in_order: list[float] = []
-
-    def add(self, strayed: float) -> None:
-        """Add one; of more than `WINDOW` the oldest is forgotten."""
-        self._last.append(strayed)
-        insort(self._in_order, strayed)
-        if len(self._last) > WINDOW:
-            del self._in_order[bisect_right(self._in_order, self._last.popleft()) - 1]
-
-    def beyond(self, most: float) -> float:
-        """Return the share that exceeds what is at most allowed."""
-        n = len(self._in_order)
-        return (n - bisect_right(self._in_order, most)) / n
-
-    def high(self, risk: float) -> float:
-        """Return what is exceeded by a share of them."""
-        n = len(self._in_order)
-        return self._in_order[min(int((1.0 - risk) * n), n - 1)]
+LEAST_RISK, FIRST_RISK, MOST_RISK = 0.002, 0.01, 0.3
 
 
 class Expected:
     """How long an option takes, as it has taken so far."""
 
-    __slots__ = ("_answers", "_faded", "_strayed", "_usual", "answers_in")
+    __slots__ = ("_faded", "_strayed", "_strayed_in_order", "_usual", "answers_in")
 
     def __init__(self) -> None:
         self.answers_in: float | None = None
         """Logarithm of the usual time, of frames of any kind, where it came out with a value."""
-        self._answers: dict[int, float] = {}
         self._usual: dict[int, float] = {}
-        self._strayed: dict[int, Strayed] = {}
+        self._strayed: deque[float] = deque()
+        self._strayed_in_order: list[float] = []
         self._faded = 0.0
 
     def usual(self, kind: int) -> float | None:
         """Return the logarithm of the usual time, that of the most similar kind known."""
-        return nearest(self._usual, kind)
+        known = self._usual
+        if kind in known or not known:
+            return known.get(kind)
+        return known[min(known, key=lambda other: abs(other - kind))]
 
     def risk(self, kind: int, left_ns: float) -> float:
         """Return the share of times, on frames of a kind, that exceed what is left."""
@@ -104,24 +68,17 @@ class Expected:
             return 0.0
         if left_ns <= 0:
             return 1.0
-        return self._strayed_of(kind).beyond(log(left_ns) - usual + self._faded)
+        strayed = self._strayed_in_order
+        most = log(left_ns) - usual + self._faded
+        return (len(strayed) - bisect_right(strayed, most)) / len(strayed)
 
     def high_ns(self, kind: int, risk: float) -> float:
         """Return the time that is exceeded with a risk; 0 where nothing is known."""
         usual = self.usual(kind)
         if usual is None:
             return 0.0
-        return exp(usual + self._strayed_of(kind).high(risk))
-
-    def _strayed_of(self, kind: int) -> Strayed:
-        found = nearest(self._strayed, kind // KINDS_ALIKE)
-        assert found is not None  # there is one since a first time was taken
-        return found
-
-    def answers(self, kind: int) -> float:
-        """Return the share of frames of about a kind of which it comes out with a value."""
-        found = nearest(self._answers, kind // KINDS_ALIKE)
-        return 1.0 if found is None else found
+        strayed = self._strayed_in_order
+        return exp(usual + strayed[min(int((1.0 - risk) * len(strayed)), len(strayed) - 1)])
 
     def took(self, kind: int, ns: float, has_value: bool) -> None:
         """Take a time into account, and whether a value came of it."""
@@ -134,10 +91,11 @@ class Expected:
         follows = max(FOLLOWS, 1.0 - exp(-self._faded))
         self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
         self._faded = 0.0
-        order = kind // KINDS_ALIKE
-        self._strayed.setdefault(order, Strayed()).add(strayed)
-        share = self._answers.get(order, float(has_value))
-        self._answers[order] = share + ANSWERS_FOLLOW * (has_value - share)
+        self._strayed.append(strayed)
+        insort(self._strayed_in_order, strayed)
+        if len(self._strayed) > WINDOW:
+            gone = self._strayed.popleft()
+            del self._strayed_in_order[bisect_right(self._strayed_in_order, gone) - 1]
 
     def refused(self) -> None:
         """Hold it for a little shorter, since nobody has seen what it would have taken."""
@@ -168,13 +126,8 @@ class Deadline:
         self._expected: list[Expected] = []
         self._works: list[Work] = []
         self._spared: list[Option] = []
-        self._next: dict[int, Option] = {}
         self._kind = 0
-        self._last_due_ns: int | None = None
-        self._period_ns = inf
         self._begun: list[int] = []
-        self._ventured = False
-        self._blamed = False
 
     def prepare(self, options: Options) -> None:
         """Take note of what there is to decide about."""
@@ -186,32 +139,21 @@ class Deadline:
         self._works = [option.work for option in options]
         self._expected = [known[w].pop(0) if known.get(w) else Expected() for w in self._works]
         self._spared = [o for o in options if o.spared and o.always]
-        for (ladder, place), option in options.choices.items():
-            below = options.choices.get((ladder, place + 1))
-            if below is not None and not below.spared:
-                self._next[option.number] = below
 
     def begin(self, frame: Frame) -> None:
         """Begin a frame: what it is like tells how long it takes."""
         self._kind = kind_of(frame)
         self._begun.clear()  # an interrupted frame may have left some
-        self._ventured = False
-        if (last := self._last_due_ns) is not None:
-            passed, period = self.due_ns - last, self._period_ns
-            known = period < inf
-            self._period_ns = period + PERIOD_FOLLOWS * (passed - period) if known else passed
-        self._last_due_ns = self.due_ns
 
     def allows(self, option: Option, state: list[Any]) -> bool:
         """Return whether the option is done in time, with no more than the allowed risk."""
         now = self._clock()
         if not self._is_spared(option):
-            left_ns = self.due_ns - now - self._least_ns(option, state) - self._next_ns(option)
-            expected, kind = self._expected[option.number], self._kind
-            if expected.risk(kind, left_ns) > self.allowed_risk * expected.answers(kind):
+            left_ns = self.due_ns - now - self._least_ns(option, state)
+            expected = self._expected[option.number]
+            if expected.risk(self._kind, left_ns) > self.allowed_risk:
                 expected.refused()
                 return False
-            self._ventured = True
         self._begun.append(now)
         return True
 
@@ -231,16 +173,6 @@ class Deadline:
             if spared is not option and state[spared.settles] is None and self._is_spared(spared)
         )
 
-    def _next_ns(self, option: Option) -> float:
-        """Return how long the next frame must not wait, to have time for the choice below this."""
-        below = self._next.get(option.number)
-        if below is None:
-            return 0.0
-        own_ns = self._expected[option.number].high_ns(self._kind, NEXT_RISK)
-        if own_ns <= self._period_ns:  # no frame has to wait for it
-            return 0.0
-        return self._expected[below.number].high_ns(self._kind, NEXT_RISK)
-
     def ended(self, option: Option, state: list[Any]) -> None:
         """Take into account how long the option has taken."""
         has_value = state[option.slot].__class__ not in NO_VALUE
@@ -248,23 +180,10 @@ class Deadline:
         self._expected[option.number].took(self._kind, took_ns, has_value)
 
     def end(self) -> None:
-        """Allow more or less, by whether the frame was on time.
-
-        A late frame in which nothing was begun that might not have been, and that did not wait
-        behind a late one in which something was, would have been late in any case.
-        """
+        """Allow more or less, by whether the frame was on time."""
         late = self._clock() > self.due_ns
-        self._blamed = late and (self._ventured or self._blamed)
-        risk = self.allowed_risk + PACE * (LATE_SHARE - self._blamed)
-        self.allowed_risk = min(max(risk, 0.0), MOST_RISK)
-
-
-def nearest(known: Mapping[int, Known], kind: int) -> Known | None:
-    """Return what is known of a kind, or of the one most similar to it; None where nothing is."""
-    found = known.get(kind)
-    if found is None and known:
-        return known[min(known, key=lambda other: abs(other - kind))]
-    return found
+        risk = self.allowed_risk + PACE * (LATE_SHARE - late)
+        self.allowed_risk = min(max(risk, LEAST_RISK), MOST_RISK)
 
 
 def kind_of(frame: Frame) -> int:

@@ -92,10 +92,13 @@ outputs: [stroke]
 
 
 def test_every_hook_told_of_is_there_and_has_an_example() -> None:
-    told = re.findall(r"^\| \[`(\w+)`\]", PAGE.read_text("utf-8"), re.M)
-    assert set(told) <= set(installed().kinds)
-    shown = "\n".join(sections().values())
-    assert [kind for kind in told if f"def tactile_graph_{kind}(" not in shown] == []
+    told = re.findall(r"^\| \[`(\w+)`\]\((\S*)#\S+\)", PAGE.read_text("utf-8"), re.M)
+    assert len(told) > 8
+    assert {kind for kind, _ in told} <= set(installed().kinds)
+    shown = {"": "\n".join(sections().values())}
+    for _, where in told:
+        shown.setdefault(where, (PAGE.parent / where).read_text("utf-8") if where else "")
+    assert [k for k, where in told if f"def tactile_graph_{k}(" not in shown[where]] == []
 
 
 def test_a_quantity_is_checked_along_the_wires_and_has_its_unit(plugin: Plugin) -> None:

@@ -115,7 +115,15 @@ class LocateDisc(Located):
 
 
 class LocateRectangle(Located):
-    """Return the posterior mean of a rectangle on any pad; settings as of `locate_disc`."""
+    """Return the posterior mean of a rectangle on any pad.
+
+    Parameters
+    ----------
+    quick : bool
+        Whether the most likely rectangle will do, with a normal distribution around it; see
+        `locate_disc`.
+    settings : FootprintSettings
+    """
 
     _kind = RECTANGLE
 
@@ -127,7 +135,15 @@ class LocateRectangle(Located):
 
 
 class LocateEllipse(Located):
-    """Return the posterior mean of an ellipse on any pad; settings as of `locate_disc`."""
+    """Return the posterior mean of an ellipse on any pad.
+
+    Parameters
+    ----------
+    quick : bool
+        Whether the most likely ellipse will do, with a normal distribution around it; see
+        `locate_disc`.
+    settings : FootprintSettings
+    """
 
     _kind = ELLIPSE
 

@@ -256,66 +256,6 @@ def test_a_refused_choice_is_tried_again_in_the_end() -> None:
     assert all(taken[-20:])
 
 
-class Arriving(Timed):
-    """Frames of a pipeline that come so often, each begun as it comes."""
-
-    arrived_ns, by = 0, 1
-
-    def coming(self, n: int, every_ns: int, within_ns: int) -> list[tuple[str, ...]]:
-        """Return what is skipped of each of so many frames."""
-        found = []
-        for _ in range(n):
-            self.index += self.by
-            self.arrived_ns += every_ns
-            TIME.now_ns = self.arrived_ns
-            self.deadline.due_ns = self.arrived_ns + within_ns
-            found.append(self.runner(frame(0, self.index, self.index * 0.1)).decisions)
-        return found
-
-
-def test_the_next_frame_is_left_time_for_its_second_choice() -> None:
-    """Where frames come faster than that takes, the best is not begun at its cost."""
-    COSTS["best"], COSTS["middle"] = (lambda _: 2 * MS), (lambda _: 3 * MS)
-    timed = Arriving(LADDER)
-    timed.coming(3, 20 * MS, 10 * MS)
-    assert timed.coming(1, 20 * MS, MS) == [("best",)]  # what the middle one takes is known now
-    assert timed.coming(50, 20 * MS, 4 * MS + 200_000) == [()] * 50
-    often = timed.coming(100, MS // 2, 4 * MS + 200_000)[-40:]
-    assert often.count(("best",)) >= 30  # it is tried again now and then
-    assert timed.coming(100, 20 * MS, 4 * MS + 200_000)[-1] == ()
-
-
-def test_what_would_have_been_late_in_any_case_lowers_no_risk() -> None:
-    timed = Arriving(LADDER)
-    timed.coming(5, 20 * MS, -1)  # everything is begun once
-    timed.coming(5, 20 * MS, 5 * MS)
-    allowed = timed.deadline.allowed_risk = 0.01
-    timed.coming(5, 20 * MS, -1)  # nothing but the last choice is begun
-    assert timed.deadline.allowed_risk > allowed
-    COSTS["best"] = lambda _: 9 * MS
-    timed.coming(1, 20 * MS, 5 * MS)
-    assert timed.deadline.allowed_risk < allowed
-
-
-@pytest.mark.parametrize("has_value", [True, False])
-def test_where_hardly_anything_comes_out_little_is_risked(has_value: bool) -> None:
-    """A rare frame of 50 ms is no reason to refuse a choice, unless it has no value anyway."""
-    text = LADDER.replace("[best, middle, cheap]", "[found, cheap]").replace(
-        "  answer:",
-        "  doubtful: {step: unsure, in: frame, with: {tag: middle}}\n"
-        f"  found: {{first_of: [best], when: doubtful {'>' if has_value else '<'} 0}}\n  answer:",
-    )
-    COSTS["middle"] = lambda _: 20_000
-    timed = Arriving(text)
-    timed.by = 2  # what is doubtful of them is 1
-    assert timed.coming(300, 100 * MS, 5 * MS) == [()] * 300
-    COSTS["middle"] = lambda _: 50 * MS
-    timed.coming(1, 100 * MS, 5 * MS)
-    COSTS["middle"] = lambda _: 20_000
-    timed.deadline.allowed_risk = 0.01
-    assert timed.coming(5, 100 * MS, 5 * MS) == [() if has_value else ("found",)] * 5
-
-
 @pytest.mark.slow
 def test_in_the_long_run_no_more_than_the_promised_share_is_late() -> None:
     """Times nobody can predict, heavy in the tail, beside a deadline that some exceed."""
