@@ -50,6 +50,7 @@ def test_the_load_is_the_volume_pressed(bowl, reads):
     assert load.sum() == pytest.approx(0.5 * 0.4 * np.pi * np.sqrt(4.0 * 2.0), rel=0.04)
 
 
+@pytest.mark.slow  # machine code is made for it
 def test_the_cost_s_gradient_is_that_of_its_differences(bowl, reads):
     press = np.array([[10.2, 6.1, 0.4, 0.7, 0.02, -0.01]])
     law = reads.law(0.05)
@@ -73,6 +74,7 @@ def test_the_cost_s_gradient_is_that_of_its_differences(bowl, reads):
         assert told_by[at] == pytest.approx((high - cost(changed)) / 2e-4, rel=1e-2, abs=1e-6)
 
 
+@pytest.mark.slow  # machine code is made for it
 def test_a_press_is_found_again_from_a_cell_beside(bowl, reads):
     true = np.array([10.2, 6.1, 0.4, 0.7, 0.0, 0.0])
     law = reads.law(0.03)
