@@ -107,8 +107,11 @@ def test_an_empty_pad_is_not_swept(name: str) -> None:
         assert not result.failures
 
 
+SLOW = ("bayes-circle", "bayes-objects")
+
+
 @pytest.mark.parametrize(
-    "name", [*EVERY[:-1], pytest.param("bayes-objects", marks=pytest.mark.slow)]
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in EVERY]
 )
 def test_odd_images_come_to_an_answer_or_a_reason(name: str) -> None:
     pipeline = load(name)
