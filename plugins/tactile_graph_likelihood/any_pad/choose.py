@@ -18,7 +18,6 @@ from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import Likeliest
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 
 Name = Literal["disc", "ellipse", "rectangle"]
@@ -64,10 +63,8 @@ class Locate:
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._placing = Placing(self._pad)
-        kinds: dict[str, int] = {name: KINDS[name] for name in dict.fromkeys(shapes)}
-        self._every = {name: AnyPad.of(settings, kind) for name, kind in kinds.items()}
-        self._quick = {
-            name: AnyPad.of(settings, kind, quick=True) for name, kind in kinds.items() if quick
+        self._every: dict[str, AnyPad] = {
+            name: AnyPad.of(settings, KINDS[name], quick) for name in dict.fromkeys(shapes)
         }
 
     def __call__(self, image: Image) -> Located:
@@ -101,8 +98,7 @@ class Locate:
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""
-        small = readings.states.size <= LARGE_PAD
-        every = self._quick if small and self._quick else self._every
+        every = {name: any_pad.suited(readings) for name, any_pad in self._every.items()}
         readings, tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)

@@ -107,7 +107,7 @@ class AnyPad:
         Whether no fit is sampled, but one with an angle that reaches over the pad's edge: each
         stands for itself as a normal distribution, an even face's with the law's exponent, and
         other pressures are looked at where the pattern is clear. A fainter one widens the
-        posterior. On small pads only.
+        posterior. On small pads only: see `suited`.
 
     Notes
     -----
@@ -134,6 +134,15 @@ class AnyPad:
         evened = sigma < told.noise.sigma
         noise = replace(told.noise, sigma=sigma, voids=voids)
         return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick)
+
+    @cached_property
+    def _thorough(self) -> AnyPad:
+        return replace(self, quick=False)
+
+    def suited(self, readings: Readings) -> AnyPad:
+        """Return these fits, or on pads of more than 1024 elements those that are not quick."""
+        large = readings.states.size > LARGE_PAD
+        return self._thorough if self.quick and large else self
 
     @cached_property
     def _kept(self) -> dict[str, Model]:

@@ -17,10 +17,7 @@ from tactile_graph_likelihood.single.likely import (
     LikelyRectangle,
     likely,
 )
-from tactile_graph_likelihood.single.model import Start
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings
 
 QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
 """Points enough for a mean whose own error does not matter beside the posterior's deviation."""
@@ -54,8 +51,7 @@ class Located:
         quick: bool = False,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
-        self._any_pad = AnyPad.of(settings, self._kind)
-        self._quick = AnyPad.of(settings, self._kind, quick=True) if quick else None
+        self._any_pad = AnyPad.of(settings, self._kind, quick)
         self._placing = Placing(self._pad)
 
     def posterior(
@@ -63,12 +59,8 @@ class Located:
     ) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        return self._placing(image, [self._found(readings, start)])[0]
-
-    def _found(self, readings: Readings, start: Start) -> Posterior:
-        if self._quick is not None and readings.states.size <= LARGE_PAD:
-            return self._quick.posterior(readings, start)
-        return self._any_pad.posterior(readings, start)
+        found = self._any_pad.suited(readings).posterior(readings, start)
+        return self._placing(image, [found])[0]
 
 
 class LocateDisc(Located):

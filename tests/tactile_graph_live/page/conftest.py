@@ -74,3 +74,23 @@ def window(browser: Any) -> Iterator[Any]:
     yield make
     for one in made:
         one.context.close()
+
+
+@pytest.fixture
+def double() -> Iterator[Any]:
+    """A server that says what the test has it say."""
+    from helpers_live_page import Double, served
+
+    with served(Double()) as double:
+        yield double
+
+
+@pytest.fixture
+def page(window: Any, double: Any) -> Iterator[Any]:
+    """The page of that server with a graph and a result in it; it may complain of nothing."""
+    opened = window()
+    opened.page.goto(double.address)
+    opened.page.wait_for_selector("#nodes [role=option]")
+    opened.page.wait_for_selector("#result-rows tr")
+    yield opened.page
+    assert opened.complaints() == []

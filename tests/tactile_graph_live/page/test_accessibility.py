@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -68,21 +67,6 @@ CONTRAST = """() => {
     }
     return found;
 }"""
-
-
-@pytest.fixture
-def double() -> Iterator[Double]:
-    with served(Double()) as double:
-        yield double
-
-
-@pytest.fixture
-def page(window: Any, double: Double) -> Iterator[Any]:
-    opened = window()
-    opened.page.goto(double.address)
-    opened.page.wait_for_selector("#result-rows tr")
-    yield opened.page
-    assert opened.complaints() == []
 
 
 def tree(page: Any) -> list[dict[str, Any]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -15,21 +14,6 @@ from helpers_live_page import Double, frame, graph, hello, pulse, served, settin
 pytestmark = pytest.mark.slow  # a browser starts
 
 RECORDING = {"on": True, "file": "/recordings/one.zarr", "frames": 1234, "label": "cup", "lost": 0}
-
-
-@pytest.fixture
-def double() -> Iterator[Double]:
-    with served(Double()) as double:
-        yield double
-
-
-@pytest.fixture
-def page(window: Any, double: Double) -> Iterator[Any]:
-    opened = window()
-    opened.page.goto(double.address)
-    opened.page.wait_for_selector("#nodes [role=option]")
-    yield opened.page
-    assert opened.complaints() == []
 
 
 def test_it_asks_for_the_pictures_in_sight(page: Any, double: Double) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import COLUMNS, ROWS, Double, drawn, frame, picture, pulse, served
+from helpers_live_page import COLUMNS, ROWS, Double, drawn, frame, picture, pulse
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -19,12 +19,6 @@ AT = """([x, y]) => {
     return [...c.getContext("2d").getImageData(Math.round(x * ratio), Math.round(y * ratio), 1, 1).data];
 }"""
 YELLOW, PURPLE, GREY = (253, 231, 37, 255), (68, 1, 84, 255), (120, 120, 120, 255)
-
-
-@pytest.fixture
-def double() -> Iterator[Double]:
-    with served(Double()) as double:
-        yield double
 
 
 @pytest.fixture

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import Double, frame, served
+from helpers_live_page import Double, frame
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -18,21 +17,6 @@ WHO = """() => {
     return e === document.body ? "" : e.id || e.dataset.name || e.getAttribute("aria-label")
         || e.textContent.trim() || e.tagName;
 }"""
-
-
-@pytest.fixture
-def double() -> Iterator[Double]:
-    with served(Double()) as double:
-        yield double
-
-
-@pytest.fixture
-def page(window: Any, double: Double) -> Iterator[Any]:
-    opened = window()
-    opened.page.goto(double.address)
-    opened.page.wait_for_selector("#nodes [role=option]")
-    yield opened.page
-    assert opened.complaints() == []
 
 
 def walked(page: Any, key: str = "Tab") -> list[str]:

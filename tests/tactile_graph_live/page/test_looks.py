@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -16,12 +15,6 @@ pytestmark = pytest.mark.slow  # a browser starts
 
 FAILED = {"outcome": "failed", "reason": "all points lie in a line", "us": 5.0}
 SKIPPED = {"outcome": "skipped", "reason": "touched does not hold", "us": None}
-
-
-@pytest.fixture
-def double() -> Iterator[Double]:
-    with served(Double()) as double:
-        yield double
 
 
 def opened(window: Any, double: Double, **options: Any) -> Any:
