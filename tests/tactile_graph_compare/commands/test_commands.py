@@ -106,7 +106,8 @@ def test_markdown_has_whole_tables(hand_made):
     lines = [line for line in got.stdout.splitlines() if line.startswith("|")]
     assert len({line.count("|") for line in lines[:6]}) == 1
     assert lines[1] == "| :-- | :-- | --: | --: | --: | --: | --: | --: | --: | --: |"
-    assert "discs \\*" in got.stdout
+    # Whichever is the quicker is on the front of error and time: as they err alike, one always is.
+    assert re.search(r"\b(discs|next) \\\*", got.stdout), "a star of its own, not of Markdown's"
     call(*TWO, "--markdown", "out.md")
     assert (hand_made / "out.md").read_text().startswith("2 variants on made")
 
