@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame
-from tactile_graph.engine.gathering import flat
+from tactile_graph.engine.blocks.gathering import flat
 from tactile_graph.steps import Report
 from tactile_graph.steps.ranges import Irregular, Ranges
 from tactile_graph.wires.frame_stack import FrameStack

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tactile_graph import load
-from tactile_graph.engine.gathering import flat
+from tactile_graph.engine.blocks.gathering import flat
 from tactile_graph.steps import Report
 from tactile_graph.testing.same import same
 from tactile_graph.wires.frame_stack import FrameStack
