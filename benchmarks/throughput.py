@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Result, load
 from tactile_graph.compiled import warm_up
-from tactile_graph.engine.block import Block
+from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.runner import Runner
 from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.stacks import ImageStack

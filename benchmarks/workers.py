@@ -63,7 +63,7 @@ def lines_of(store: str, pipeline: str, low: int) -> str:
     """Return the lines of a range of frames: what joblib and Dask are given to do."""
     from tactile_graph import load
     from tactile_graph.cli.output.writers import JsonLines
-    from tactile_graph_sources.readers.in_ranges import ranges_of_recordings
+    from tactile_graph_sources.readers.sequence.in_ranges import ranges_of_recordings
 
     ranges = ranges_of_recordings(Path(store))
     assert ranges is not None

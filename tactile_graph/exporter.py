@@ -10,8 +10,8 @@ from tactile_graph.files import check_target
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
-    from tactile_graph.engine.block import Block
-    from tactile_graph.engine.table import Table
+    from tactile_graph.engine.blocks.block import Block
+    from tactile_graph.engine.tables.table import Table
 
 
 class Writer(Protocol):

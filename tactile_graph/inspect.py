@@ -15,7 +15,7 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
 - `Replay`: what a plan alone would have come to, from a run that settled more.
 """
 
-from tactile_graph.engine.outcome import (
+from tactile_graph.engine.outcomes.outcome import (
     NO_VALUE,
     NOT_ASKED,
     Done,
@@ -26,10 +26,10 @@ from tactile_graph.engine.outcome import (
 )
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.replay import Replay
-from tactile_graph.engine.rows import as_data, scalars, without_nan
 from tactile_graph.engine.runner import Runner, check_frame
-from tactile_graph.engine.table import Table, make_table
-from tactile_graph.engine.truth import measures_of, shape_kind
+from tactile_graph.engine.tables.rows import as_data, scalars, without_nan
+from tactile_graph.engine.tables.table import Table, make_table
+from tactile_graph.engine.tables.truth import measures_of, shape_kind
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
 from tactile_graph.pipeline.plain import plain

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from tactile_graph import Frame, Pipeline
-from tactile_graph.engine.outcome import Failed, Skipped
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.testing.same import same
 from tactile_graph.wires.frame_stack import in_stacks
 

@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter
 from helpers_recordings import SHARED, Array, npz_bytes, shared
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.capcontact import PITCH_CM
+from tactile_graph_sources.readers.arrays.capcontact import PITCH_CM
 from tactile_graph_sources.recording import recording
 
 ROWS, COLUMNS, FINER = 41, 72, 8

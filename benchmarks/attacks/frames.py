@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.writers import json_row
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_stress.finite import not_finite

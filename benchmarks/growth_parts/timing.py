@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from growth_parts.scenes import FED_TOO, case, given, settings_of
 
-from tactile_graph.engine.freeze import freeze
+from tactile_graph.engine.operations.freeze import freeze
 from tactile_graph.errors import TactileGraphError, text_of
 from tactile_graph.plugins.registry import installed
 from tactile_graph.testing.cases import Case

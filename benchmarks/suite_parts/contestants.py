@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Circle, Ellipse, Frame, Pipeline, Rectangle, load
-from tactile_graph.engine.truth import errors_against, nearest, shape_kind
+from tactile_graph.engine.tables.truth import errors_against, nearest, shape_kind
 from tactile_graph.wires.frame import TrueObject
 
 Values = NDArray[np.float64]

@@ -22,7 +22,7 @@ from suite_parts.records import Measured
 from suite_parts.scenes import pad_of
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import NO_VALUE
+from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.pipeline.graph import NodeKind
 from tactile_graph_compare.run.audit import Audit, audit
 

@@ -16,16 +16,16 @@ from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
 from tactile_graph.wires.frame_stack import FrameStack
-from tactile_graph_sources.readers.formats import format_of, format_of_folder, known
-from tactile_graph_sources.readers.garbage import stacks_without_garbage, without_garbage
+from tactile_graph_sources.readers.choosing.formats import format_of, format_of_folder, known
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.in_ranges import ranges_of_recordings
-from tactile_graph_sources.readers.labels import labels_of
-from tactile_graph_sources.readers.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.tables.names import ColumnsTold
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.sequence.garbage import stacks_without_garbage, without_garbage
+from tactile_graph_sources.readers.sequence.in_ranges import ranges_of_recordings
+from tactile_graph_sources.readers.sequence.labels import labels_of
+from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told, with_leaps_told
+from tactile_graph_sources.readers.words.names import ColumnsTold
+from tactile_graph_sources.readers.words.told import Told
 
 Length = Annotated[float, Gt(0)]
 

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
     from tactile_graph.api.result import Result
     from tactile_graph.api.results import Results
-    from tactile_graph.engine.block import Block
-    from tactile_graph.engine.options import Decider
-    from tactile_graph.engine.promises import Promises
+    from tactile_graph.engine.blocks.block import Block
+    from tactile_graph.engine.deadlines.options import Decider
+    from tactile_graph.engine.outcomes.promises import Promises
     from tactile_graph.engine.runner import Runner
     from tactile_graph.live.live_stream import LiveStream
     from tactile_graph.wires.frame_stack import FrameStack
@@ -207,7 +207,7 @@ class Pipeline(Graph):
         runner : Runner, optional
             Of this pipeline; for its outputs if not given.
         """
-        from tactile_graph.engine.gathering import Share, flat, gathered
+        from tactile_graph.engine.blocks.gathering import Share, flat, gathered
 
         runner = runner or self.runner()
         if not runner.in_blocks:
@@ -260,7 +260,7 @@ class Pipeline(Graph):
     @cached_property
     def promises(self) -> Promises:
         """What the steps promise and have not been seen to keep yet."""
-        from tactile_graph.engine.promises import Promises
+        from tactile_graph.engine.outcomes.promises import Promises
 
         return Promises(self.nodes.values(), self.registry)
 
@@ -285,7 +285,7 @@ class Pipeline(Graph):
     def _opened(self, seed: int, report: Report | None, in_stacks: bool) -> Iterator[Any]:
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
-        from tactile_graph.engine.sources import open_source
+        from tactile_graph.engine.calls.sources import open_source
 
         return open_source(self.source, seed, report or Report(), in_stacks)
 

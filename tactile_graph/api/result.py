@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +21,7 @@ class Result(Outcomes):
 
     def row(self) -> dict[str, Any]:
         """Return the outputs flattened into named scalars, as tables and CSV have them."""
-        from tactile_graph.engine.rows import result_row
+        from tactile_graph.engine.tables.rows import result_row
 
         return result_row(self)
 

@@ -56,7 +56,7 @@ class Results(Iterator[Result]):
             import pandas as pd
         except ImportError:
             raise UsageError(MISSING) from None
-        from tactile_graph.engine.table import make_table, units_of
+        from tactile_graph.engine.tables.table import make_table, units_of
 
         table = make_table(self._pipeline, self._asked, long)
         rows: list[dict[str, Any]] = []

@@ -66,7 +66,7 @@ def _interrupted(error: BaseException) -> int:
 
 def exited(error: BaseException) -> PluginError:
     """Return what to say when a plugin's code ends the program."""
-    from tactile_graph.engine.outcome import raised_at
+    from tactile_graph.engine.outcomes.outcome import raised_at
 
     what = f"{error!r}, {raised_at(error)}"
     told = PluginError(f"a plugin ended the program: {what}")

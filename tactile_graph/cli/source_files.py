@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tactile_graph.cli.file_kinds import file_kind
-from tactile_graph.engine.sources import open_source
+from tactile_graph.engine.calls.sources import open_source
 from tactile_graph.errors import PipelineError, Problem, TactileGraphError
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.plugins.registry import Registry

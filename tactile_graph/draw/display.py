@@ -14,8 +14,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.outcome import Done, Failed, Skipped, outcome_word
-from tactile_graph.engine.rows import scalars
+from tactile_graph.engine.outcomes.outcome import Done, Failed, Skipped, outcome_word
+from tactile_graph.engine.tables.rows import scalars
 from tactile_graph.errors import PluginError, shown
 from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
 

@@ -31,8 +31,8 @@ from tactile_graph.draw.display import (
 from tactile_graph.draw.film_files import RATE_HZ, Gif, Mp4, Picture
 from tactile_graph.draw.paint_strip import DASHES, Pen
 from tactile_graph.draw.strip_columns import Column
-from tactile_graph.engine.outcome import NO_VALUE, outcome_word
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, outcome_word
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.files import said
 from tactile_graph.wires import Frame
 

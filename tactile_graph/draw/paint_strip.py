@@ -26,7 +26,7 @@ from tactile_graph.draw.display import (
     truth_list,
 )
 from tactile_graph.draw.strip_columns import Column
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.wires import Frame, Image, Mask, TrueObject
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from tactile_graph.draw.colours import FOUND, TRUE
 from tactile_graph.draw.paint_strip import DASHES, Pen
 from tactile_graph.draw.strip_columns import Column, columns, outcome_of
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.files import write_whole
 from tactile_graph.pipeline.graph import FRAME

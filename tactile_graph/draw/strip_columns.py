@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.draw.display import images_in, is_picture
-from tactile_graph.engine.fields import field_getter
-from tactile_graph.engine.outcome import NO_VALUE, NOT_ASKED
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, NOT_ASKED
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.pipeline.graph import FRAME, Graph, NodeKind
 from tactile_graph.quantities import unit_of
 

@@ -9,15 +9,15 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from tactile_graph.engine.outcome import Done, Failed, gaps, outcome_word, with_value
-from tactile_graph.engine.rows import scalars
+from tactile_graph.engine.outcomes.outcome import Done, Failed, gaps, outcome_word, with_value
+from tactile_graph.engine.tables.rows import scalars
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.steps.signature import type_name
 from tactile_graph.vocabulary import words_and_unit
 
 if TYPE_CHECKING:
-    from tactile_graph.engine.outcomes import Explained, Outcomes
+    from tactile_graph.engine.outcomes.outcomes import Explained, Outcomes
     from tactile_graph.pipeline.graph import Graph
 
 STATES = {"ran": "green", "reused": "cyan", "skipped": "yellow", "failed": "bold red"}

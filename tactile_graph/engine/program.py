@@ -12,13 +12,19 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
-from tactile_graph.engine.allowed import Deciding, ladder, where_allowed
-from tactile_graph.engine.fields import field_getter
-from tactile_graph.engine.freeze import FROZEN, IMMUTABLE, freeze
-from tactile_graph.engine.guards import guarded
-from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
+from tactile_graph.engine.deadlines.allowed import Deciding, ladder, where_allowed
+from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
+from tactile_graph.engine.operations.guards import guarded
+from tactile_graph.engine.operations.step_operation import (
+    Block,
+    Call,
+    Operation,
+    State,
+    step_operation,
+)
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
-from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref

@@ -11,8 +11,14 @@ from dataclasses import replace
 from operator import itemgetter
 from typing import Any, TypeVar
 
-from tactile_graph.engine.outcome import Failed, Skipped, gaps
-from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, REUSED, Outcomes, blank_state
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped, gaps
+from tactile_graph.engine.outcomes.outcomes import (
+    INNER,
+    ITEM_FAILURES,
+    REUSED,
+    Outcomes,
+    blank_state,
+)
 from tactile_graph.engine.plan import Plan
 from tactile_graph.engine.program import Reading, make_program
 from tactile_graph.pipeline.graph import FRAME, Node

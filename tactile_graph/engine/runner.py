@@ -11,18 +11,18 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.allowed import Deciding
-from tactile_graph.engine.block import Block, Constant, Group, Repeats, first_settled
-from tactile_graph.engine.blocks import Blocks, worth_blocks
-from tactile_graph.engine.calls import Call, make_call
-from tactile_graph.engine.context import Context, RunInner
-from tactile_graph.engine.isolated import Host, ProcessState
-from tactile_graph.engine.options import Decider, options_of
-from tactile_graph.engine.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
+from tactile_graph.engine.blocks.block import Block, Constant, Group, Repeats, first_settled
+from tactile_graph.engine.blocks.blocks import Blocks, worth_blocks
+from tactile_graph.engine.calls.calls import Call, make_call
+from tactile_graph.engine.calls.context import Context, RunInner
+from tactile_graph.engine.calls.isolated import Host, ProcessState
+from tactile_graph.engine.calls.watched import watched
+from tactile_graph.engine.deadlines.allowed import Deciding
+from tactile_graph.engine.deadlines.options import Decider, options_of
+from tactile_graph.engine.operations.step_operation import Operation, step_label
+from tactile_graph.engine.outcomes.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.engine.step_operation import Operation, step_label
-from tactile_graph.engine.watched import watched
 from tactile_graph.errors import RuleError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node

@@ -1,8 +1,8 @@
 """Frames as they come: read by one thread, answered by another, the oldest shed under load."""
 
-from tactile_graph.engine.deadline import Deadline
-from tactile_graph.engine.isolated import ProcessState
-from tactile_graph.engine.options import Recorded
+from tactile_graph.engine.calls.isolated import ProcessState
+from tactile_graph.engine.deadlines.deadline import Deadline
+from tactile_graph.engine.deadlines.options import Recorded
 from tactile_graph.live.beside import Beside
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.live_run import LiveRun

@@ -19,10 +19,10 @@ from statistics import median
 from threading import Condition, Lock, Thread
 from typing import IO, Any, NamedTuple
 
-from tactile_graph.engine.isolated_worker import received, sent
-from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.outcomes import Outcomes
-from tactile_graph.engine.rows import scalars
+from tactile_graph.engine.calls.isolated_worker import received, sent
+from tactile_graph.engine.outcomes.outcome import NO_VALUE
+from tactile_graph.engine.outcomes.outcomes import Outcomes
+from tactile_graph.engine.tables.rows import scalars
 from tactile_graph.wires.frame import Frame
 
 KEEP = 20

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import IO, Any
 
-from tactile_graph.engine.isolated_worker import received, sent
+from tactile_graph.engine.calls.isolated_worker import received, sent
 
 NICE = 19
 """Whoever else works on this machine comes first."""

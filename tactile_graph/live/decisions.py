@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.engine.options import Recorded
+from tactile_graph.engine.deadlines.options import Recorded
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.wires.frame import Frame
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 
 ResultT = TypeVar("ResultT", bound=Outcomes)
 

@@ -12,10 +12,10 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from threading import Lock, Thread
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
-from tactile_graph.engine.deadline import Deadline
-from tactile_graph.engine.isolated import ProcessState
-from tactile_graph.engine.options import Decider
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.calls.isolated import ProcessState
+from tactile_graph.engine.deadlines.deadline import Deadline
+from tactile_graph.engine.deadlines.options import Decider
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
 from tactile_graph.errors import UsageError
 from tactile_graph.live.beside import Beside

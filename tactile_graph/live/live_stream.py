@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator
 from threading import Thread
 from typing import Generic, Self, TypeVar
 
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.live_run import LiveRun
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.plan import Plan
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.steps.ranges import Ranges

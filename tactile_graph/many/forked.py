@@ -17,7 +17,7 @@ WANTED = (
     "numba",
     "tactile_graph.plugins.core",
     "tactile_graph.engine.runner",
-    "tactile_graph.engine.table",
+    "tactile_graph.engine.tables.table",
     "tactile_graph.compiled.machine_code",
     "tactile_graph.cli.output.writers",
 )

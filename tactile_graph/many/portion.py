@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.gathering import flat
+from tactile_graph.engine.blocks.gathering import flat
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.image import Image

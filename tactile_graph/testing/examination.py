@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from tactile_graph.engine.stacked import StackedForm, form_of
-from tactile_graph.engine.watched import Kept
+from tactile_graph.engine.blocks.stacked import StackedForm, form_of
+from tactile_graph.engine.calls.watched import Kept
 from tactile_graph.errors import Skip, text_of
 from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
 from tactile_graph.testing.finite import not_finite

@@ -41,8 +41,8 @@ def run_step(
     PluginError
         If the step writes into its inputs, or gives something else than it promises.
     """
-    from tactile_graph.engine.freeze import freeze
-    from tactile_graph.engine.watched import watched
+    from tactile_graph.engine.calls.watched import watched
+    from tactile_graph.engine.operations.freeze import freeze
     from tactile_graph.testing.subject import subject_of
     from tactile_graph.wires import Image
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.draw.display import display_list
-from tactile_graph.engine.rows import scalars
-from tactile_graph.engine.truth import errors_against, shape_kind
+from tactile_graph.engine.tables.rows import scalars
+from tactile_graph.engine.tables.truth import errors_against, shape_kind
 from tactile_graph.errors import text_of
 from tactile_graph.wires import TrueObject
 

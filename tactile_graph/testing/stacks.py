@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
-from tactile_graph.engine.stacked import StackedForm
+from tactile_graph.engine.blocks.stacked import StackedForm
 from tactile_graph.errors import text_of
 from tactile_graph.testing.same import same
 from tactile_graph.wires.stacks import Answered, Stack

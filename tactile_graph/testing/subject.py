@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.promises import broken_rule, misfit
+from tactile_graph.engine.outcomes.promises import broken_rule, misfit
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.checks import check_signature

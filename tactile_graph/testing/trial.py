@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.freeze import freeze
+from tactile_graph.engine.operations.freeze import freeze
 from tactile_graph.errors import TactileGraphError, text_of
 
 FIRST_S = 60.0

@@ -17,7 +17,7 @@ from tactile_graph.cli import cli
 from tactile_graph.draw.display import display_list
 from tactile_graph.draw.paint_svg import SvgPicture, View
 from tactile_graph.draw.strip import strip_figure
-from tactile_graph.engine.columns import columns_of, values_of
+from tactile_graph.engine.tables.columns import columns_of, values_of
 from tactile_graph.errors import PipelineError, PluginError
 from tactile_graph.plugins import registry as registry_module
 from tactile_graph.plugins.names import OWN

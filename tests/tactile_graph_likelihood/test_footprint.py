@@ -7,7 +7,7 @@ import pytest
 
 from helpers_likelihood import NOISE, drawn, made
 from helpers_modes import answered_by
-from tactile_graph.engine.rows import as_data
+from tactile_graph.engine.tables.rows import as_data
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, packed, unpacked

@@ -12,7 +12,7 @@ import pytest
 
 from tactile_graph import Circle, Frame, Pipeline, load
 from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph.pipeline.graph import NodeKind
 from tactile_graph_fitters.circle.fit_circle_load import EvenCircle
 from tactile_graph_likelihood.single.likely import LikelyCircle

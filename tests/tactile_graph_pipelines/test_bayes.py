@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Frame, Rectangle, load
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tactile_graph import Circle, Frame, load
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 
 ORIGIN_CM = (-0.15, -0.15)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Frame, load
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph_classifiers.measuring.shapes import true_name
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from helpers_blocks import assert_blocks_are_frames
 from tactile_graph import Frame, load
-from tactile_graph.engine.stacked import stacked_form
+from tactile_graph.engine.blocks.stacked import stacked_form
 from tactile_graph.plugins.registry import installed
 
 N = 60

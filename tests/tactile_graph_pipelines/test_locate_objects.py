@@ -5,7 +5,7 @@ import pytest
 
 from tactile_graph import Frame, load
 from tactile_graph.compiled import warm_up
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
 pytestmark = pytest.mark.slow  # the kernels alone compile for a quarter of a minute

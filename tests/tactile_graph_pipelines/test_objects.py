@@ -10,7 +10,7 @@ import pytest
 from helpers_panel import Camera, panel_frames, real_panel_frames
 from tactile_graph import Frame, load
 from tactile_graph.api.result import Result
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph_filters.contacts.align_contacts import AlignContacts
 from tactile_graph_tracking.score_objects import ObjectScore, score_objects
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, load
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph_tracking.score_objects import score_objects
 
 pytestmark = [

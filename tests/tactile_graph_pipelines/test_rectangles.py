@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tactile_graph import Frame, Rectangle, load
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.wires import Mask
 from tactile_graph_filters.morphology.close import Close
 from tactile_graph_filters.morphology.subdivide import subdivide

@@ -11,7 +11,7 @@ import pytest
 import tactile_graph_thesis
 from tactile_graph import load
 from tactile_graph.cli.output.writers import json_row
-from tactile_graph.engine.outcome import Failed
+from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.plugins.registry import installed
 
 NAMES = installed().names("pipelines")

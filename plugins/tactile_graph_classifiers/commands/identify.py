@@ -108,7 +108,7 @@ def _named(result: Result, node: str) -> Any:
     OtherQuantityError
         If the frame is in another unit than the objects were learned in.
     """
-    from tactile_graph.engine.outcome import Failed
+    from tactile_graph.engine.outcomes.outcome import Failed
     from tactile_graph_classifiers.database.known import OtherQuantityError
 
     outcome: Any = result.outcome(node)
@@ -134,7 +134,7 @@ class _Lines:
         OtherQuantityError
             If it is in another unit than the objects were learned in.
         """
-        from tactile_graph.engine.outcome import Failed, Skipped
+        from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
 
         outcome = _named(result, self.node)
@@ -211,7 +211,7 @@ class _Together(_Lines):
         OtherQuantityError
             If it is in another unit than the objects were learned in.
         """
-        from tactile_graph.engine.outcome import Failed, Skipped
+        from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
 
         outcome = _named(result, self.node)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from tactile_graph.cli.arguments import COUNT, takes_count
-from tactile_graph.engine.sources import open_source
+from tactile_graph.engine.calls.sources import open_source
 from tactile_graph.errors import Mark, UsageError
 from tactile_graph.pipeline.document import assignment
 from tactile_graph.pipeline.graph import Source

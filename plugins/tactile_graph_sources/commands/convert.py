@@ -81,7 +81,7 @@ def convert(
         frames = _frames(recordings, *wanted, seed, report)
         frames = islice(frames, n_frames)
         if truth is not None:
-            from tactile_graph_sources.readers.truth_file import with_truth
+            from tactile_graph_sources.readers.words.truth_file import with_truth
 
             frames = with_truth(frames, truth)
         about = source or ", ".join(r.name for r in recordings)

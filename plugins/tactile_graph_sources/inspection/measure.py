@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.leaps import is_leap
+from tactile_graph_sources.readers.sequence.leaps import is_leap
 
 Stack = NDArray[np.float64]
 MAD_TO_SD = 1.4826

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.told import Told
 
 if TYPE_CHECKING:
     from tactile_graph_sources.readers.tables.labelled import Labels

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from tactile_graph.steps.ranges import Irregular
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
-from tactile_graph_sources.readers.filled import FILLS
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.words.filled import FILLS
 
 
 class Laid(NamedTuple):

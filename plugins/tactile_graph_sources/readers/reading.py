@@ -14,9 +14,9 @@ from tactile_graph.steps import Report
 from tactile_graph.wires import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, Image, TrueObject
 from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack
 from tactile_graph.wires.stacks import ImageStack
-from tactile_graph_sources.readers.filled import filling
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.filled import filling
+from tactile_graph_sources.readers.words.told import Told
 
 
 class Reading:

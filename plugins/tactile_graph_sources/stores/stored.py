@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.stacks import ImageStack
-from tactile_graph_sources.readers.truth import truth_from_json
+from tactile_graph_sources.readers.words.truth import truth_from_json
 from tactile_graph_sources.stores.journal import (
     Block,
     Columns,

@@ -10,7 +10,7 @@ import numpy as np
 
 from tactile_graph.files import whole_file
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.truth import truth_to_json
+from tactile_graph_sources.readers.words.truth import truth_to_json
 from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
 

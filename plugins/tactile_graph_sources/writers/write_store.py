@@ -17,7 +17,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import put_on_disc, said, uninterrupted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
-from tactile_graph_sources.readers.truth import truth_to_json
+from tactile_graph_sources.readers.words.truth import truth_to_json
 from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.layout import (
     COLUMNS,

@@ -186,7 +186,7 @@ def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
     """Return the frames to choose by, with the truth that a file holds."""
     frames: Iterator[Frame] = opened.frames(asked.seed)
     if asked.truth is not None:
-        from tactile_graph_sources.readers.truth_file import with_truth
+        from tactile_graph_sources.readers.words.truth_file import with_truth
 
         frames = with_truth(frames, asked.truth)
     return list(span.of(frames))

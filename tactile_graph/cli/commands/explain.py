@@ -38,7 +38,7 @@ def explain(
     from tactile_graph.cli.terminal import console
     from tactile_graph.compiled import answered_meanwhile
     from tactile_graph.draw.tables import result_table
-    from tactile_graph.engine.outcome import Failed
+    from tactile_graph.engine.outcomes.outcome import Failed
 
     span = Span(0, number + 1)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)

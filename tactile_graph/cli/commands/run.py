@@ -30,8 +30,8 @@ from tactile_graph.files import is_plain
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
-    from tactile_graph.engine.block import Block
-    from tactile_graph.engine.table import Table
+    from tactile_graph.engine.blocks.block import Block
+    from tactile_graph.engine.tables.table import Table
     from tactile_graph.exporter import Writer
     from tactile_graph.wires.frame import Frame
 
@@ -219,8 +219,8 @@ class _Run:
         from tactile_graph.cli.output.progress import Bar
         from tactile_graph.cli.output.tally import Tally
         from tactile_graph.cli.terminal import console, stdout_for_programs
-        from tactile_graph.engine.columns import columns_of
-        from tactile_graph.engine.options import Recorded
+        from tactile_graph.engine.deadlines.options import Recorded
+        from tactile_graph.engine.tables.columns import columns_of
         from tactile_graph.steps.injected import Report
 
         self.report = Report(listener=self._trouble)
@@ -250,7 +250,7 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.gathering import WORTH_BLOCKS, flat, is_long
+        from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS, flat, is_long
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
         if in_blocks and self.span.is_all:
@@ -314,7 +314,7 @@ class _Run:
     def _take(self, results: Result | Block[Result]) -> None:
         self.last_frame_s = time.monotonic()
         first = self.tally.n == 0
-        from tactile_graph.engine.outcomes import Outcomes
+        from tactile_graph.engine.outcomes.outcomes import Outcomes
 
         if isinstance(results, Outcomes):
             self._one(results)
@@ -403,7 +403,7 @@ class _Run:
         write_provenance(str(name), data)
 
     def _units(self) -> dict[str, str] | None:
-        from tactile_graph.engine.table import units_of
+        from tactile_graph.engine.tables.table import units_of
 
         table = self.form_of_table
         return None if table is None else units_of(table, self.quantity)

@@ -14,9 +14,9 @@ from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.tally import LOOKED_THROUGH, Tally
 from tactile_graph.compiled import warm_up
-from tactile_graph.engine.block import Block
-from tactile_graph.engine.columns import columns_of
-from tactile_graph.engine.gathering import WORTH_BLOCKS
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS
+from tactile_graph.engine.tables.columns import columns_of
 from tactile_graph.exporter import Writer, write_block
 from tactile_graph.many.division import Division, Settling
 from tactile_graph.many.portion import Portion

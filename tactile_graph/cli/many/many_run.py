@@ -19,9 +19,9 @@ from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.progress import Bar
 from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.terminal import console
-from tactile_graph.engine.columns import columns_of
-from tactile_graph.engine.gathering import is_long
-from tactile_graph.engine.table import make_table, units_of
+from tactile_graph.engine.blocks.gathering import is_long
+from tactile_graph.engine.tables.columns import columns_of
+from tactile_graph.engine.tables.table import make_table, units_of
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
 from tactile_graph.many.division import Division, division_of

@@ -19,7 +19,7 @@ from typing import Any
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.parquet import ParquetFile, pyarrow
-from tactile_graph.engine.table import Table
+from tactile_graph.engine.tables.table import Table
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, said, uninterrupted, write_whole

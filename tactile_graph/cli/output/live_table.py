@@ -11,8 +11,8 @@ from rich.console import Console
 from rich.text import Text
 
 from tactile_graph.api.result import Result
-from tactile_graph.engine.columns import Column, OutputColumns, values_of
-from tactile_graph.engine.outcome import NO_VALUE, Failed
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
+from tactile_graph.engine.tables.columns import Column, OutputColumns, values_of
 from tactile_graph.foreign_text import visible
 
 GAP = "  "

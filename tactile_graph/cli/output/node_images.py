@@ -21,7 +21,7 @@ import numpy as np
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5, Zarr, put_in_place
 from tactile_graph.draw.display import view
-from tactile_graph.engine.outcome import NO_VALUE, Failed
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, said, uninterrupted

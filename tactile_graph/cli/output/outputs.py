@@ -13,7 +13,7 @@ from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
-    from tactile_graph.engine.table import Table
+    from tactile_graph.engine.tables.table import Table
 
 OFFERS = "exporters"
 USUAL = ".jsonl"
@@ -72,7 +72,7 @@ class Output:
         """Return who writes it, and the table it is, if it is one."""
         table = None
         if self.exporter.holds == "numbers":
-            from tactile_graph.engine.table import make_table
+            from tactile_graph.engine.tables.table import make_table
 
             table = make_table(pipeline, asked, self.long)
         export = Export(self.name, pipeline, asked, self.full, table)

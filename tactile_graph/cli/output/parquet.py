@@ -12,9 +12,9 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from tactile_graph.api.result import Result
-from tactile_graph.engine.block import Block
-from tactile_graph.engine.columns import Column
-from tactile_graph.engine.table import Table, units_of
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.tables.columns import Column
+from tactile_graph.engine.tables.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import said, uninterrupted

@@ -15,11 +15,11 @@ from rich.text import Text
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.live_table import shown
-from tactile_graph.engine.block import Block
-from tactile_graph.engine.block_columns import Part, known_finite, parts_of
-from tactile_graph.engine.columns import OutputColumns, values_of
-from tactile_graph.engine.notices import notices
-from tactile_graph.engine.outcome import Failed, Skipped, item_words
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.outcomes.notices import notices
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped, item_words
+from tactile_graph.engine.tables.block_columns import Part, known_finite, parts_of
+from tactile_graph.engine.tables.columns import OutputColumns, values_of
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.stacks import Stack
 

@@ -12,12 +12,12 @@ from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.column_texts import csv_lines, number_texts
-from tactile_graph.engine.block import Block
-from tactile_graph.engine.block_columns import parts_of, plain_fields
-from tactile_graph.engine.outcome import NO_VALUE
-from tactile_graph.engine.rows import as_data, without_nan
-from tactile_graph.engine.table import Table
-from tactile_graph.engine.truth import errors_against, nearest
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.outcomes.outcome import NO_VALUE
+from tactile_graph.engine.tables.block_columns import parts_of, plain_fields
+from tactile_graph.engine.tables.rows import as_data, without_nan
+from tactile_graph.engine.tables.table import Table
+from tactile_graph.engine.tables.truth import errors_against, nearest
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said

@@ -24,7 +24,7 @@ from tactile_graph.draw.display import (
     is_picture,
     truth_list,
 )  # fmt: skip
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PluginError
 from tactile_graph.wires import TrueObject
 

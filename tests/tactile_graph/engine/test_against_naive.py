@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from helpers_graphs import CALLS, NAIVE, STEPS, cases, frame, registry, shown
 from helpers_naive import Naive, Outcome
 from tactile_graph import Frame, loads
-from tactile_graph.engine.options import Decider, Option, Options
-from tactile_graph.engine.outcome import Failed, Skipped, gaps
+from tactile_graph.engine.deadlines.options import Decider, Option, Options
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped, gaps
 from tactile_graph.live import Recorded
 
 UNHEALTHY = [HealthCheck.too_slow, HealthCheck.data_too_large]

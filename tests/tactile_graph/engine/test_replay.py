@@ -8,7 +8,7 @@ import pytest
 
 from helpers_graphs import CALLS, STEPS, frame, registry
 from tactile_graph import Pipeline, loads
-from tactile_graph.engine.outcome import NOT_ASKED, Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import NOT_ASKED, Failed, Skipped
 from tactile_graph.engine.plan import make_plan
 from tactile_graph.engine.replay import Replay
 

@@ -11,7 +11,7 @@ import pytest
 
 from helpers_graphs import registry
 from tactile_graph import Frame, Image, Pipeline, loads
-from tactile_graph.engine.outcome import Skipped
+from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph.errors import PipelineError, RuleError
 from tactile_graph.pipeline.conditions import compile_condition
 from tactile_graph.pipeline.facts import quantity_trouble

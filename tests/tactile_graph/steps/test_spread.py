@@ -11,7 +11,7 @@ import pytest
 from annotated_types import Ge
 
 from tactile_graph import Frame
-from tactile_graph.engine.sources import open_source
+from tactile_graph.engine.calls.sources import open_source
 from tactile_graph.errors import Mark, PluginError
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps import Report, Spread

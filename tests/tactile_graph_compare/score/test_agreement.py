@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tactile_graph import Circle, Degenerate, Rectangle
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph_compare.records.scores import Agreement
 from tactile_graph_compare.score.agreement import Agreeing, Found, found_in

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Circle, Degenerate, Ellipse, Frame, Polygon, Rectangle
-from tactile_graph.engine.outcome import Failed, Skipped
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare.score.answers import Answers, Places, answers_of

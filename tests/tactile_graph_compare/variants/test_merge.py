@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, STEPS, cases, documents, frame, registry, shown
 from tactile_graph import Pipeline, load, loads
-from tactile_graph.engine.outcome import Failed, Skipped
-from tactile_graph.engine.rows import as_data
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
+from tactile_graph.engine.tables.rows import as_data
 from tactile_graph.plugins.registry import installed
 from tactile_graph_compare.records.graph import STATES, state_of
 from tactile_graph_compare.run.session import balanced_orders

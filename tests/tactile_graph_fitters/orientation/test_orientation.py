@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import references_fitters as references
 from helpers_rectangles import covered, off_rad, points, rectangle_xy, seeds, some_rectangle, turned
-from tactile_graph.engine.rows import scalars
+from tactile_graph.engine.tables.rows import scalars
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Mask, Points, Rectangle
 from tactile_graph_fitters.orientation.orientation import (

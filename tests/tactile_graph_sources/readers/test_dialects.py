@@ -25,10 +25,10 @@ from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
+from tactile_graph_sources.readers.arrays.matlab import frames_first
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.matlab import frames_first
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.told import Told
 
 FILES = dialects()
 HDF5 = find_spec("h5py") is not None

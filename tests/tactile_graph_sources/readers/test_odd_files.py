@@ -11,7 +11,7 @@ import pytest
 
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
-from tactile_graph_sources.readers.tables.dialect import Dialect
+from tactile_graph_sources.readers.words.dialect import Dialect
 from tactile_graph_sources.recording import recording
 
 

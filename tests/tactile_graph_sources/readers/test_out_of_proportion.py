@@ -17,9 +17,12 @@ from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError, TactileGraphError, UsageError
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.devices.preset_file import load_preset, read_preset
-from tactile_graph_sources.readers import archive, hdf5, head, json_stack, mcap_chunks
-from tactile_graph_sources.readers import npz as npz_reader
-from tactile_graph_sources.readers.archive import opened
+from tactile_graph_sources.readers import head
+from tactile_graph_sources.readers.arrays import archive, hdf5
+from tactile_graph_sources.readers.arrays import npz as npz_reader
+from tactile_graph_sources.readers.arrays.archive import opened
+from tactile_graph_sources.readers.logs import mcap_chunks
+from tactile_graph_sources.readers.text import json_stack
 from tactile_graph_sources.stores.journal import read_journal
 
 
@@ -84,7 +87,7 @@ def test_an_archive_is_opened_once_for_all_its_pictures(
         n += 1
         return opened(path)
 
-    monkeypatch.setattr("tactile_graph_sources.readers.pictures.opened", counted)
+    monkeypatch.setattr("tactile_graph_sources.readers.arrays.pictures.opened", counted)
     one = picture(np.eye(4, dtype=np.uint8), "png")
     frames, _ = frames_of(write(tmp_path, zipped({f"{i}.png": one for i in range(9)})))
     assert len(frames) == 9

@@ -1,1 +1,1 @@
-"""Plain tables: how they are recognised, taken apart and read."""
+"""Plain tables: how the numbers lie in them, by their words and by the numbers themselves."""

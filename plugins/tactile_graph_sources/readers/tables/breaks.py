@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.tables.dialect import clock_s
-from tactile_graph_sources.readers.tables.names import ROLES, SECONDS
+from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.names import ROLES, SECONDS
 
 FRAME_LINE = re.compile(
     r"\W*(?:frame|bild|image|trame|cuadro|scan|sample)\W*(\d{1,9})\b.{0,80}",

@@ -21,7 +21,7 @@ from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import Layout, unit_of
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.told import Told
 
 SMALLEST_SURE_SQUARE = 64
 MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256

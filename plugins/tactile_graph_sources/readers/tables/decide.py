@@ -25,11 +25,11 @@ from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
-from tactile_graph_sources.readers.tables.names import ColumnsTold, named
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
-from tactile_graph_sources.readers.told import Told
-from tactile_graph_sources.readers.units import length_unit
+from tactile_graph_sources.readers.words.names import ColumnsTold, named
+from tactile_graph_sources.readers.words.told import Told
+from tactile_graph_sources.readers.words.units import length_unit
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"

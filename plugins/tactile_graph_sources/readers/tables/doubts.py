@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tactile_graph_sources.readers.tables.dialect import Dialect, is_row
+from tactile_graph_sources.readers.words.dialect import Dialect, is_row
 
 _LOOKED_AT = 400
 _FEWEST_PAIRS, _FEWEST_LINES = 3, 2

@@ -9,7 +9,7 @@ from math import isqrt
 from tactile_graph_sources.readers.tables.evidence import counts_up, is_sum, rises
 from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.table import Table
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.told import Told
 
 
 def without_extra(base: Layout, table: Table, told: Told) -> Layout:

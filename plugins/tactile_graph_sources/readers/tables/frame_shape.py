@@ -11,7 +11,7 @@ from tactile_graph_sources.readers.tables.evidence import (
     row_length_clarity,
     row_lengths,
 )
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.told import Told
 
 
 class Shaped(NamedTuple):

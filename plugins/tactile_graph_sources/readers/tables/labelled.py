@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tactile_graph_sources.readers.tables.dialect import is_numeric
-from tactile_graph_sources.readers.tables.names import ROLES
+from tactile_graph_sources.readers.words.dialect import is_numeric
+from tactile_graph_sources.readers.words.names import ROLES
 
 MOST = 0.6
 """Least share of the lines that must be written so."""

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.tables.preamble import Described
-from tactile_graph_sources.readers.units import value_unit
+from tactile_graph_sources.readers.words.preamble import Described
+from tactile_graph_sources.readers.words.units import value_unit
 
 _FIRST = "LabVIEW Measurement"
 _OPENS = "Channels"

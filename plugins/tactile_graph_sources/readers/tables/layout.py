@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tactile_graph_sources.readers.tables.dialect import Dialect, unquoted
 from tactile_graph_sources.readers.tables.evidence import Numbers
-from tactile_graph_sources.readers.tables.preamble import Described
 from tactile_graph_sources.readers.tables.table import Table
+from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
+from tactile_graph_sources.readers.words.preamble import Described
 
 _DAY_S = 86400.0
 _DAYS, _LONGEST_STEP = (20_000.0, 80_000.0), 2e-4

@@ -14,10 +14,10 @@ from math import isqrt
 from typing import NamedTuple
 
 from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph_sources.readers.tables.dialect import unquoted
-from tactile_graph_sources.readers.tables.names import Named, as_told, named
 from tactile_graph_sources.readers.tables.table import Table
-from tactile_graph_sources.readers.told import Told
+from tactile_graph_sources.readers.words.dialect import unquoted
+from tactile_graph_sources.readers.words.names import Named, as_told, named
+from tactile_graph_sources.readers.words.told import Told
 
 _PLACE = re.compile(
     r"(.*?)(?:[\W_]*r(?:ow)?[\W_]*\d+[\W_]*c(?:ol(?:umn)?)?[\W_]*\d+"

@@ -18,23 +18,23 @@ from tactile_graph_sources.readers.tables.breaks import (
     opens_matrix,
     signature,
 )
-from tactile_graph_sources.readers.tables.dialect import (
+from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.words.dialect import (
     MISSING,
     Dialect,
     clock_s,
     is_row,
     without_rules,
 )
-from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
-from tactile_graph_sources.readers.tables.names import (
+from tactile_graph_sources.readers.words.names import (
     SECONDS,
     ColumnsTold,
     Named,
     as_told,
     named,
 )
-from tactile_graph_sources.readers.tables.preamble import Described, described
-from tactile_graph_sources.readers.units import value_unit
+from tactile_graph_sources.readers.words.preamble import Described, described
+from tactile_graph_sources.readers.words.units import value_unit
 
 _BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
 _COMMENT = ("#", "%", "//")

@@ -21,7 +21,7 @@ from rich.console import Console
 from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, load
 from tactile_graph.cli.output.live_table import LiveTable
-from tactile_graph.engine.columns import columns_of
+from tactile_graph.engine.tables.columns import columns_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -195,14 +195,14 @@ def test_values_that_json_has_no_words_for_become_null(tmp_path):
 
 
 def test_infinity_and_nan_are_null_for_json_has_neither():
-    from tactile_graph.engine.rows import without_nan
+    from tactile_graph.engine.tables.rows import without_nan
 
     cleaned = without_nan({"a": [{"b": float("inf"), "c": float("nan")}]})
     assert cleaned == {"a": [{"b": None, "c": None}]}
 
 
 def test_lines_tell_a_big_array_by_its_shape_and_in_full_by_its_numbers(monkeypatch):
-    monkeypatch.setattr("tactile_graph.engine.rows.MOST_NUMBERS", 23)
+    monkeypatch.setattr("tactile_graph.engine.tables.rows.MOST_NUMBERS", 23)
     args = ["run", "discs", "--only", "footprint", "-o", "-"]
     short, full = (lines(call(*args, *more).stdout)[0] for more in ([], ["--full"]))
     assert short["outputs"]["footprint"]["values"] == {"shape": [4, 6]}

@@ -13,9 +13,9 @@ from helpers_blocks import in_blocks, one_by_one
 from tactile_graph import Circle, Frame, Pipeline, load
 from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.output.writers import Csv, JsonLines
-from tactile_graph.engine.block import Block
-from tactile_graph.engine.columns import columns_of
-from tactile_graph.engine.table import make_table
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.tables.columns import columns_of
+from tactile_graph.engine.tables.table import make_table
 from tactile_graph.wires import TrueObject
 from tactile_graph.wires.frame_stack import in_stacks
 

@@ -1,0 +1,172 @@
+"""Files of named arrays (HDF5, MATLAB): which of them is the stack, and what stands beside it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph_sources.readers.arrays.stack import stack_of
+from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.laid import Laid, laid_in
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.words.names import ROLES, named
+from tactile_graph_sources.readers.words.preamble import Described
+
+MOST_VALUES = 500_000_000
+_NUMBERED = re.compile(r"(.*?)(\d{1,9})(/\D*)?")
+_FRAME_WORDS = {w for w, role in ROLES.items() if role == "frame" and len(w) > 2}
+_FRAME_WORDS |= {"arr", "img", "matrix", "map", "t"}
+"""What numbered matrices are called that are frames, not sensors."""
+
+
+class Held(NamedTuple):
+    """What is taken from a file.
+
+    Parameters
+    ----------
+    values : ndarray
+        The stack.
+    what : str
+        What messages call it.
+    said : Described
+        What the file says of it.
+    times : ndarray, shape (n,), optional
+        None where there are none.
+    times_name : str
+    """
+
+    values: NDArray[Any]
+    what: str
+    said: Described
+    times: NDArray[Any] | None = None
+    times_name: str = ""
+
+
+def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
+    """Yield the matrices of a stack; times that are not as many as the frames are left out."""
+    frames, times_s, said = _timed(reading, held)
+    reading.report.expect(len(frames))
+    yield from reading.frames(frames, times_s, **said)
+
+
+def laid_of(reading: Reading, held: Held) -> Laid | None:
+    """Return how the matrices of a stack are read, any without those before them."""
+    frames, times_s, said = _timed(reading, held)
+    return laid_in(reading, frames, times_s, **said)
+
+
+def _timed(
+    reading: Reading, held: Held
+) -> tuple[NDArray[Any], NDArray[np.float64] | None, dict[str, Any]]:
+    """Return matrices, their times, and what the file says of all of them."""
+    _refuse_lone_matrix(reading, held)
+    frames = stack_of(reading, held.values, held.what)
+    times, factor = held.times, 1.0
+    if times is not None and len(times) != len(frames):
+        times = None
+    if times is not None:
+        factor = _factor(reading, held.times_name, times)
+    said = held.said
+    times_s = None if times is None else times.astype(np.float64) * factor
+    told = {"factor": said.factor, "pitch_cm": said.pitch_cm, "quantity": said.quantity}
+    return frames, times_s, told
+
+
+def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
+    """Refuse a matrix that has a time for each of its rows, so that these may be frames."""
+    told = reading.told.rows is not None and reading.told.columns is not None
+    if told or held.times is None or held.values.ndim != 2:
+        return
+    n, n_cells = held.values.shape
+    if 1 < n == len(held.times):
+        raise DataError(
+            str(reading.path),
+            f"{held.what} has shape {held.values.shape} and {held.times_name!r} {n} times: {n} "
+            f"frames of {n_cells} cells; give rows and columns",
+        )
+
+
+def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -> str:
+    """Return the name of the only stack, or of what ``sensor`` names.
+
+    Parameters
+    ----------
+    reading : Reading
+    shapes : mapping
+        Name -> shape of each array of numbers.
+    word : str
+        What messages call an array: ``dataset``, ``variable``.
+
+    Raises
+    ------
+    DataError
+        If there is none, or several could be meant, or the one is too large.
+    """
+    where, asked = str(reading.path), reading.told.sensor
+    stacks = [n for n, s in shapes.items() if is_stack(s)]
+    listed = one_of(f"{n} {s}" for n, s in shapes.items())
+    if asked:
+        if asked not in shapes:
+            near = did_you_mean(asked, shapes)
+            raise DataError(where, f"no {word} {asked!r}, there are {one_of(shapes)}{near}")
+        reading.sensors[asked] = None
+    elif not stacks:
+        raise DataError(where, f"no matrix or stack of matrices in it; its {word}s: {listed}")
+    elif len(stacks) > 1:
+        told = f"several {word}s could be it ({listed}); name one with sensor"
+        raise SeveralSensorsError(where, told, stacks)
+    name = asked or stacks[0]
+    if int(np.prod(shapes[name])) > MOST_VALUES:
+        raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")
+    return name
+
+
+def is_stack(shape: tuple[int, ...]) -> bool:
+    """Return whether an array of such a shape may be a matrix or matrices, of one channel each."""
+    axes = [n for n in shape[1:] if n != 1] if len(shape) > 3 else shape
+    if len(shape) > 3:
+        return len(axes) == 2
+    return len(shape) in (2, 3) and min(shape) > 1
+
+
+def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
+    """Return the names of matrices that are the frames of one recording, in their order.
+
+    They are alike but for a number, as ``frame_07`` or ``arr_7`` is, and of one shape; none where
+    anything else could be a stack as well.
+    """
+    found = {n: _NUMBERED.fullmatch(n) for n, s in shapes.items() if is_stack(s)}
+    stems = {(m[1].lower(), m[3]) if m else None for m in found.values()}
+    one_shape = len({shapes[n] for n in found}) == 1
+    if len(found) < 2 or len(stems) > 1 or None in stems or not one_shape:
+        return []
+    stem = next((m[1].lower() for m in found.values() if m), "")
+    word = re.split(r"[\W_]+", stem.strip("/_-. "))[-1].removesuffix("s")
+    if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
+        return []
+    return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)
+
+
+def time_among(names: Iterable[str]) -> str:
+    """Return the first of the names that says time; empty if none does."""
+    return next((n for n in sorted(names) if "time" in named((_bare(n), "")).roles), "")
+
+
+def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
+    factor = named((_bare(name), "")).time_factor
+    if factor is not None:
+        return factor
+    known = times[np.isfinite(times)].astype(np.float64)
+    factor, unit = unit_of(known)
+    reading.assume(f"times assumed to be in {unit}")
+    return factor
+
+
+def _bare(name: str) -> str:
+    return name.replace(".", "/").rpartition("/")[2]

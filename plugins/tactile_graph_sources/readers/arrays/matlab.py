@@ -1,0 +1,137 @@
+"""MATLAB files of versions 5 to 7: one stack of matrices, in a variable, a struct or a cell array.
+
+Those of version 7.3 are HDF5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.arrays.datasets import Held, chosen, frames_of, time_among
+from tactile_graph_sources.readers.arrays.mat5 import DamagedError, variables
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.words.preamble import described
+
+_MARKS = (b"\x00\x01IM", b"\x01\x00MI")
+LONGEST_SIDE = 4
+"""Times both others: a longer axis is the frames'."""
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file has MATLAB's header of version 5."""
+    return head.raw.startswith(b"MATLAB 5.0 MAT-file") and head.raw[124:128] in _MARKS
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield the matrices of the only stack in the file, or of the one that ``sensor`` names.
+
+    Raises
+    ------
+    DataError
+        If the file is damaged, no stack or several could be meant, or its axes can be read two
+        ways.
+    """
+    found = list(_variables("", _loaded(reading)))
+    arrays = {v.name: np.asarray(v.value) for v in found if not isinstance(v.value, str)}
+    name = chosen(reading, {n: a.shape for n, a in arrays.items()}, "variable")
+    time = time_among(n for n, a in arrays.items() if 1 < a.size == max(a.shape))
+    times = arrays[time].ravel() if time else None
+    said = described(f"{v.bare}: {v.value}" for v in found if np.ndim(v.value) == 0)
+    what, values = f"variable {name!r}", arrays[name]
+    if not any(v.in_cells for v in found if v.name == name):
+        values = frames_first(reading, values, what, times)
+    yield from frames_of(reading, Held(values, what, said, times, time))
+
+
+def _loaded(reading: Reading) -> dict[str, Any]:
+    try:
+        return variables(reading.path)
+    except DamagedError as error:
+        told = f"the MATLAB file cannot be read: {error}"
+        raise DataError(str(reading.path), told) from None
+
+
+class _Variable(NamedTuple):
+    """An array of numbers, or a text; ``name`` is ``a.b`` within a struct.
+
+    ``in_cells`` says that its first axis runs over the cells of a cell array, or over structs.
+    """
+
+    name: str
+    value: Any
+    in_cells: bool = False
+
+    @property
+    def bare(self) -> str:
+        return self.name.rpartition(".")[2]
+
+
+def _variables(name: str, value: Any) -> Iterator[_Variable]:
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _variables(f"{name}.{key}" if name else str(key), inner)
+    elif isinstance(value, list):
+        yield from _cells(name, value)
+    elif value is not None:
+        yield _Variable(name, value)
+
+
+def _cells(name: str, cells: list[Any]) -> Iterator[_Variable]:
+    """Yield what cells or structs of one kind hold, one behind the other."""
+    if cells and all(isinstance(c, dict) and c.keys() == cells[0].keys() for c in cells):
+        for key in cells[0]:
+            yield from _cells(f"{name}.{key}", [c[key] for c in cells])
+        return
+    arrays = [c for c in cells if isinstance(c, np.ndarray)]
+    if len(arrays) == len(cells) and len({a.shape for a in arrays}) == 1:
+        yield _Variable(name, np.stack(arrays), in_cells=True)
+
+
+def frames_first(
+    reading: Reading, values: NDArray[Any], what: str, times: NDArray[Any] | None
+) -> NDArray[Any]:
+    """Return a stack with its frames along the first axis, whichever they lie along.
+
+    Parameters
+    ----------
+    reading : Reading
+    values : ndarray
+        As MATLAB indexes it: mostly (rows, columns, frames).
+    what : str
+        What messages call it.
+    times : ndarray, optional
+        Times, of which there may be as many as frames.
+
+    Raises
+    ------
+    DataError
+        If neither times, nor a square matrix, nor one long axis tells.
+    """
+    told = reading.told
+    if values.ndim != 3 or (told.rows is not None and told.columns is not None):
+        return values
+    first, middle, last = values.shape
+    votes = {len(times)} & {first, last} if times is not None and first != last else set()
+    if not votes and (first == middle) != (middle == last):
+        votes = {last if first == middle else first}
+    longest = max(first, last)
+    if not votes and longest > LONGEST_SIDE * max(middle, min(first, last)):
+        votes = {longest}
+    if not votes:
+        raise DataError(
+            str(reading.path),
+            f"{what} has shape {values.shape}: {last} frames of {first} x {middle} along the last "
+            f"axis, or {first} frames of {middle} x {last} along the first; give rows and columns",
+        )
+    return values if votes == {first} else np.moveaxis(values, -1, 0)
+
+
+FORMAT = RecordingFormat("MATLAB 5 to 7 (.mat)", recognises, read)

@@ -1,0 +1,207 @@
+"""Pictures as frames: PNG, TIFF, JPEG and whatever else imageio reads; pages, folders, archives."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import logging
+import os
+import re
+import warnings
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.arrays.archive import opened
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
+
+_MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
+NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
+MOST_BYTES = 1 << 28
+MOST_UNPACKED = 1 << 26
+MOST_PIXELS = 4_000_000
+MOST_TIMES = 200
+"""Pixels for each byte of a file of many pages."""
+_NUMBER = re.compile(r"(\d+)")
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file starts as pictures do, or is an archive of them."""
+    if head.raw.startswith(b"PK\x03\x04"):
+        return any(n.lower().encode() in head.raw for n in NAMES) and _holds_pictures(head.path)
+    return head.raw.startswith(_MARKS) and not (head.raw.startswith(b"BM") and head.lines)
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each picture or page, its grey values as they are.
+
+    Raises
+    ------
+    DataError
+        If a picture cannot be read, or its colours are no shades of one.
+    """
+    if reading.head.raw.startswith(b"PK"):
+        with opened(reading.path) as archive:
+            yield from _of_archive(reading, archive)
+        return
+    reading.recognised("the first bytes of a picture")
+    if reading.path.stat().st_size > MOST_BYTES:
+        raise DataError(str(reading.path), f"is a picture of more than {MOST_BYTES >> 20} MB")
+    for matrix in _pages(reading, reading.path.read_bytes(), ""):
+        yield reading.frame(matrix)
+
+
+def _of_archive(reading: Reading, archive: zipfile.ZipFile) -> Iterator[Frame]:
+    members = _pictures_of(archive)
+    reading.recognised(f"an archive of {len(members)} pictures, in the order of their numbers")
+    reading.report.expect(len(members))
+    for name in members:
+        for matrix in _pages(reading, _unpacked(reading, archive, name), name):
+            yield reading.frame(matrix)
+
+
+def read_folder(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each picture of a folder, in the order of the numbers in their names."""
+    names = pictures_in(reading.path)
+    reading.recognised(f"a folder of {len(names)} pictures, in the order of their numbers")
+    reading.report.expect(len(names))
+    for name in names:
+        content = (reading.path / name).read_bytes()
+        reading.report.digest(str(reading.path / name), hashlib.sha256(content).hexdigest())
+        for matrix in _pages(reading, content, name):
+            yield reading.frame(matrix)
+
+
+def pictures_in(folder: Path) -> list[str]:
+    """Return the names of a folder's pictures in their order; none where it holds no picture."""
+    with os.scandir(folder) as entries:
+        names = [e.name for e in entries if e.name.lower().endswith(NAMES) and e.is_file()]
+    return in_order(names)
+
+
+def in_order(names: list[str]) -> list[str]:
+    """Return names of pictures by the numbers in them, so that 10 comes after 9."""
+    return sorted(names, key=lambda n: [(p.isdecimal(), p.zfill(20)) for p in _NUMBER.split(n)])
+
+
+def _holds_pictures(path: Path) -> bool:
+    try:
+        with opened(path) as archive:
+            return bool(_pictures_of(archive))
+    except DataError:  # who reads arrays tells it
+        return False
+
+
+def _pictures_of(archive: zipfile.ZipFile) -> list[str]:
+    """Return the pictures of an archive in their order."""
+    names = archive.namelist()
+    return in_order([n for n in names if n.lower().endswith(NAMES) and "__MACOSX" not in n])
+
+
+def _unpacked(reading: Reading, archive: zipfile.ZipFile, name: str) -> bytes:
+    try:
+        if archive.getinfo(name).file_size > MOST_UNPACKED:
+            raise ValueError(f"it has more than {MOST_UNPACKED >> 20} MB")
+        return archive.read(name)
+    except Exception as error:
+        raise DataError(f"{reading.path}:{name}", f"cannot be unpacked: {error}") from error
+
+
+def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]]:
+    import imageio.v3 as iio
+
+    where = f"{reading.path}:{name}" if name else str(reading.path)
+    n, plugin = 0, _plugin(content)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
+        try:
+            _check_size(where, content)
+            for page in iio.imiter(content, plugin=plugin):
+                for matrix in _matrices(np.asarray(page), plugin):
+                    yield _grey(where, matrix)
+                    n += 1
+        except DataError:
+            raise
+        except Exception as error:  # every library below imageio has errors of its own
+            if not n:
+                text = str(error).partition("\n")[0][:120]
+                raise DataError(where, f"the picture cannot be read: {text}") from error
+            reading.damaged(f"page {n}", "cannot be read; the pages before it are kept")
+
+
+def _check_size(where: str, content: bytes) -> None:
+    """Refuse a picture by what it says of its size, before it is unpacked."""
+    n_values = 0
+    if _plugin(content) == "pillow":
+        from PIL import Image as Picture
+
+        with Picture.open(io.BytesIO(content)) as picture:
+            sides = [picture.size[::-1]]
+    else:
+        import tifffile
+
+        with tifffile.TiffFile(io.BytesIO(content)) as file:
+            sides = [(s.keyframe.imagelength, s.keyframe.imagewidth) for s in file.series]
+            n_values = sum(int(s.size) for s in file.series)
+    for rows, columns in sides:
+        if rows * columns > MOST_PIXELS:
+            raise DataError(where, f"the picture has {rows} x {columns} pixels")
+    if n_values > max(MOST_PIXELS, MOST_TIMES * len(content)):
+        raise DataError(
+            where,
+            f"its pages hold {n_values} pixels, {n_values // len(content)} for each byte; allowed "
+            f"are {MOST_TIMES} beyond {MOST_PIXELS}",
+        )
+
+
+def _plugin(content: bytes) -> str:
+    """Return who reads a picture: left to itself imageio asks OpenCV too, which prints."""
+    if content[:2] not in (b"II", b"MM"):
+        return "pillow"
+    logger = logging.getLogger("tifffile")
+    if not logger.handlers:
+        logger.addHandler(logging.NullHandler())  # what is wrong comes as an exception as well
+    return "tifffile"
+
+
+def _matrices(page: NDArray[Any], plugin: str) -> Iterator[NDArray[Any]]:
+    """Yield the pictures of what may be a stack of pages that TIFF holds together.
+
+    In other pictures a third axis is that of colours, or of grey and how much shines through.
+    """
+    stacked = page.ndim == 3 and page.shape[2] not in (3, 4) and plugin == "tifffile"
+    if page.ndim == 4 or stacked:
+        yield from page
+    else:
+        yield page
+
+
+def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:
+    if page.dtype.kind not in "buif" or page.ndim not in (2, 3) or 0 in page.shape:
+        raise DataError(where, f"the picture has shape {page.shape} and type {page.dtype}")
+    if page.ndim == 2:
+        return page
+    colours = page[..., :3] if page.shape[2] >= 3 else page[..., :1]
+    if (colours == colours[..., :1]).all():
+        return np.asarray(colours[..., 0])
+    raise DataError(
+        where,
+        "the picture is in colours, from which no values can be had back; save the values, or "
+        "shades of grey",
+    )
+
+
+FORMAT = RecordingFormat(
+    "pictures (PNG, TIFF, JPEG, GIF, BMP; single, many pages or a zip of them)", recognises, read
+)
+FOLDER = RecordingFormat(
+    FORMAT.name, lambda head: bool(pictures_in(head.path)), read_folder, of_folders=True
+)

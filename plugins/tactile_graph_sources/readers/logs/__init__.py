@@ -1,0 +1,1 @@
+"""Logs of messages (MCAP): which hold frames, and what these hold."""

@@ -1,0 +1,1 @@
+"""What is seen from frame to frame only: garbage, leaps of time, any range, which file."""

@@ -1,0 +1,382 @@
+"""JSON of frames: a list of matrices, an object a frame, one object around all, or a line each."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError, one_of
+from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
+from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.names import ROLES, named
+from tactile_graph_sources.readers.words.preamble import Described, described
+
+FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
+LINES_LOOKED_AT = 20
+MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
+_SHAPES = ("shape", "size", "dims", "dimensions", "grid")
+_ROS_PARTS = {"secs": "nsecs", "sec": "nanosec"}
+"""How messages of ROS 1 and 2 spell the seconds of a stamp, and what comes on top."""
+_NUMBERED = re.compile(r"(\D*)(\d{1,9})")
+Cells = NDArray[np.float64]
+
+
+class Entries(NamedTuple):
+    """Frames as the file holds them, what it says of them, and the name of their times."""
+
+    values: list[Any]
+    times: list[Any] | None
+    time_name: str
+    said: Described
+    why: str
+
+
+def recognises(head: Head) -> bool:
+    """Return whether the file is JSON: an object, or a list that goes on over its first line."""
+    text = head.raw.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text.startswith(b"{"):
+        return b'"' in text[:200]
+    if not text.startswith(b"["):
+        return _holds_objects(head.first(LINES_LOOKED_AT))
+    first = next((x.strip() for x in head.lines if x.strip()), "")
+    if not head.whole:
+        return first.startswith(("[[", "[{")) or not first.endswith("]")
+    return _parsed("\n".join(head.lines)) is not None or _is_nested(first)
+
+
+def _holds_objects(lines: list[str]) -> bool:
+    """Return whether most lines are an object each, as where a program's words stand between."""
+    n = sum(1 for x in lines if x.startswith('{"') and x.rstrip().endswith("}"))
+    return 2 * n > len(lines) and isinstance(_parsed(next(x for x in lines if x[0] == "{")), dict)
+
+
+def _is_nested(line: str) -> bool:
+    """Return whether a line is a list of lists of numbers, as JSON writes it."""
+    found = _parsed(line) if line.startswith("[[") else None
+    return found is not None and (a := _array(found)) is not None and a.ndim == 2
+
+
+def read(reading: Reading) -> Iterator[Frame]:
+    """Yield a frame for each matrix, or each list of as many numbers as the others have.
+
+    Raises
+    ------
+    DataError
+        If the file is no JSON, holds no frames, or does not say their shape.
+    """
+    yield from frames_of(reading, entries_of(str(reading.path), _content(reading)))
+
+
+def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
+    """Yield the frames of what was found; raises what `read` raises."""
+    where = str(reading.path)
+    arrays = [_array(v) for v in entries.values]
+    shapes = Counter(a.shape for a in arrays if a is not None and a.ndim in (1, 2) and a.size)
+    if not shapes:
+        raise DataError(where, f"it holds no frames of numbers ({entries.why})")
+    usual = shapes.most_common(1)[0][0]
+    good = [a for a in arrays if a is not None and a.shape == usual]
+    shape = usual if len(usual) == 2 else _shape(reading, np.stack(good), entries.said)
+    reading.told.agree(where, *shape)
+    reading.recognised(entries.why)
+    reading.report.expect(len(arrays))
+    factor = _time_factor(reading, entries)
+    for k, array in enumerate(arrays):
+        if array is None or array.shape != usual:
+            got = "no numbers" if array is None else f"shape {array.shape}"
+            reading.damaged(f"frame {k}", f"{got}, not {usual}")
+            continue
+        matrix = array if array.ndim == 2 else reading.told.laid_out(array, *shape)
+        yield reading.frame(
+            matrix,
+            pitch_cm=entries.said.pitch_cm,
+            quantity=entries.said.quantity,
+            factor=entries.said.factor,
+            time_s=_time(entries, k, factor),
+        )
+
+
+def _content(reading: Reading) -> Any:
+    where = str(reading.path)
+    try:
+        text = reading.path.read_text(encoding=reading.head.encoding)
+    except ValueError as error:
+        raise DataError(where, f"its text is damaged: {error}") from error
+    _check_size(where, text)
+    whole = _parsed(text)
+    return _by_lines(reading, text) if whole is None else whole
+
+
+def _check_size(where: str, text: str) -> None:
+    """Refuse a text whose lists would take far more memory, or hold more, than frames do."""
+    n_lists, n_commas = text.count("[") + text.count("{"), text.count(",")
+    if n_lists > FEW_LISTS + n_commas * 2 // 3:
+        raise DataError(
+            where,
+            f"its JSON has {n_lists} lists and objects and {n_commas} commas; allowed are "
+            f"{FEW_LISTS}, and two more for every three commas",
+        )
+    if n_commas > LONGEST_LIST * max(n_lists, 1):
+        told = f"its JSON has {n_commas} commas and {n_lists} lists; allowed are {LONGEST_LIST}"
+        raise DataError(where, f"{told} a list")
+
+
+def _by_lines(reading: Reading, text: str) -> list[Any]:
+    """Return what each line holds; lines that hold no object and no list are damaged."""
+    lines: list[Any] = []
+    n_damaged = 0
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            entry = _parsed(line)
+            if isinstance(entry, dict | list):
+                lines.append(entry)
+                continue
+            n_damaged += 1
+            reading.damaged(number, "no JSON" if entry is None else "no object and no list")
+            if n_damaged > MOST_DAMAGED + len(lines):
+                break
+    if not lines or n_damaged > MOST_DAMAGED + len(lines):
+        text = "it begins as JSON does, and is none, as a whole or by lines"
+        raise DataError(str(reading.path), text)
+    return lines
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+
+
+def _array(entry: object) -> Cells | None:
+    try:
+        return np.array(entry, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        return None
+
+
+def entries_of(where: str, content: Any) -> Entries:
+    """Return the frames in what was parsed, wherever they lie in it.
+
+    Raises
+    ------
+    DataError
+        If there are none, or several lists could be them.
+    """
+    if isinstance(content, dict):
+        return _of_object(where, content)
+    if not isinstance(content, list) or not content:
+        raise DataError(where, "its JSON is neither a list of frames nor an object around one")
+    if not isinstance(content[0], dict):
+        nested = isinstance(content[0], list) and content[0] and isinstance(content[0][0], list)
+        if not isinstance(content[0], list):
+            return Entries([content], None, "", Described(), "a list of numbers")
+        what = "a list of matrices" if nested else "a list of lists of numbers"
+        if not nested and _is_matrix(content):
+            content = [content]
+        return Entries(content, None, "", Described(), what)
+    if len(content[0]) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
+    objects = [_plain(e) if isinstance(e, dict) else {} for e in content]
+    first = objects[0]
+    lists = [k for k, v in first.items() if isinstance(v, list) and not _is_of_objects(v)]
+    if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
+        raise DataError(
+            where,
+            "its JSON holds an object for each cell; save it as a table, in Python: "
+            f"pandas.read_json('{Path(where).name}').to_csv('out.csv', index=False)",
+        )
+    key = _only(where, lists)
+    time = next((k for k in first if _is_time(k)), "")
+    times = [e.get(time) for e in objects] if time else None
+    said = _said(first)
+    return Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
+
+
+def _plain(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object with its cells in one list, and its shape, if it has one, as numbers."""
+    return _with_cells(_with_shape(_with_rows(_of_ros(_flattened(_flattened(entry))))))
+
+
+def _is_of_objects(entry: list[Any]) -> bool:
+    return bool(entry) and isinstance(entry[0], dict)
+
+
+def _of_ros(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return a message of ROS with its stamp in seconds, and its array's dimensions as a shape."""
+    found = dict(entry)
+    for key, value in entry.items():
+        stem, _, name = key.rpartition(".")
+        if name in _ROS_PARTS and isinstance(value, int):
+            part = entry.get(f"{stem}.{_ROS_PARTS[name]}", 0)
+            if isinstance(part, int) and stem:
+                del found[key]
+                found[f"{stem}.time_s"] = value + 1e-9 * part
+        if name == "dim" and isinstance(value, list) and len(value) == 2 and _is_of_objects(value):
+            found["shape"] = [d.get("size") for d in value if isinstance(d, dict)]
+    return found
+
+
+def _with_shape(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object whose list of two that says the shape is ``rows`` and ``columns``."""
+    for key, pair in entry.items():
+        said = key.rpartition(".")[2].lower() in _SHAPES and isinstance(pair, list)
+        if said and len(pair) == 2 and all(isinstance(n, int) and n > 0 for n in pair):
+            rest = {k: v for k, v in entry.items() if k != key}
+            return {**rest, "rows": pair[0], "columns": pair[1]}
+    return entry
+
+
+def _with_cells(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object whose numbers by the names of cells, ``r0c0``, ``r0c1``, …, are a matrix."""
+    if any(isinstance(v, list) for v in entry.values()):
+        return entry
+    keys = [k for k, v in entry.items() if v is None or type(v) in (int, float)]
+    places = (found := named([k.rpartition(".")[2] for k in keys])).places
+    if not places:
+        return entry
+    matrix = np.full((max(p.row for p in places) + 1, max(p.column for p in places) + 1), np.nan)
+    if matrix.size > 2 * len(places):
+        return entry
+    names = [keys[k] for k in found.cells]
+    for name, (row, column) in zip(names, places, strict=True):
+        value = entry[name]
+        matrix[row, column] = np.nan if value is None else value
+    rest = {k: v for k, v in entry.items() if k not in names}
+    return {**rest, f"{names[0]} to {names[-1]}": matrix.tolist()}
+
+
+def _flattened(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object with what objects within it hold beside its own, their names in front."""
+    flat: dict[str, Any] = {}
+    for key, value in entry.items():
+        inner = value if isinstance(value, dict) else {}
+        flat |= {f"{key}.{k}": v for k, v in inner.items()} if inner else {key: value}
+    return flat
+
+
+def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return an object in which lists that are numbered and alike are one: ``r0``, ``r1``, …."""
+    found = {
+        k: m for k, v in entry.items() if isinstance(v, list) and (m := _NUMBERED.fullmatch(k))
+    }
+    stems = {m[1].lower() for m in found.values()}
+    shapes = {a.shape if (a := _array(entry[k])) is not None else None for k in found}
+    if len(found) < 2 or len(stems) > 1 or None in shapes or len(shapes) > 1:
+        return entry
+    stem = stems.pop()
+    if stem and ROLES.get(stem.strip("_- ")) not in ("row", "frame"):
+        return entry
+    names = sorted(found, key=lambda k: int(found[k][2]))
+    rest = {k: v for k, v in entry.items() if k not in found}
+    return {**rest, f"{names[0]} to {names[-1]}": [entry[k] for k in names]}
+
+
+def _of_object(where: str, content: dict[str, Any]) -> Entries:
+    if len(content) > MOST_KEYS:
+        raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
+    content = _plain(content)
+    lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
+    time = next((k for k in lists if _is_time(k)), "")
+    times = lists.pop(time, None)
+    deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
+    key = _only(where, deep or lists)
+    inner = entries_of(where, lists[key])
+    said = _said(content) if _said(content) != Described() else inner.said
+    if inner.times is None and times is not None and len(times) == len(inner.values):
+        return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
+    return inner._replace(said=said, why=f"{key!r}: {inner.why}")
+
+
+def _is_matrix(rows: list[Any]) -> bool:
+    """Return whether lists of numbers are the rows of one matrix: as many as each holds."""
+    return len(rows) > 1 and all(isinstance(r, list) and len(r) == len(rows) for r in rows)
+
+
+def _only(where: str, keys: Any) -> str:
+    names = list(keys)
+    if len(names) == 1:
+        return str(names[0])
+    if names:
+        told = f"several lists could be the frames ({one_of(names)}); keep one"
+        raise DataError(where, f"its JSON holds {told}")
+    raise DataError(
+        where,
+        "its JSON holds no list that could be a frame; save a list of rows for each, such as "
+        '{"time": 0.05, "values": [[1, 2], [3, 4]]}',
+    )
+
+
+def _is_time(key: str) -> bool:
+    key = key.rpartition(".")[2]
+    return "time" in named((key, "")).roles or ROLES.get(key.lower()) == "time"
+
+
+def _said(content: dict[str, Any]) -> Described:
+    if {"width", "height"} <= content.keys():
+        content = {**content, "columns": content["width"], "rows": content["height"]}
+    return described(
+        f"{k.rpartition('.')[2]}: {v}"
+        for k, v in content.items()
+        if isinstance(v, str | int | float)
+    )
+
+
+def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
+    found = shape_of_cells(cells, reading.told.with_said(said.rows, said.columns))
+    if found.shape is None:
+        raise DataError(str(reading.path), found.trouble)
+    for what in found.assumed:
+        reading.assume(what)
+    return found.shape
+
+
+def _time_factor(reading: Reading, entries: Entries) -> float:
+    if not entries.times:
+        return 1.0
+    factor = named((entries.time_name.rpartition(".")[2], "")).time_factor
+    if factor is not None:
+        return factor
+    numbers = [_number(t) if isinstance(t, str) else t for t in entries.times]
+    times = [t for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
+    factor, unit = unit_of(np.array(times, dtype=np.float64))
+    reading.assume(f"times assumed to be in {unit}")
+    return factor
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _time(entries: Entries, k: int, factor: float) -> float | None:
+    if not entries.times:
+        return None if entries.said.frame_s is None else k * entries.said.frame_s
+    time = entries.times[k]
+    if isinstance(time, str) and (number := _number(time)) is not None:
+        time = number
+    if isinstance(time, str):
+        first = next((c for t in entries.times if (c := clock_s(str(t))) is not None), None)
+        at = clock_s(time)
+        return None if at is None or first is None else round(at - first, 6)
+    if isinstance(time, bool) or not isinstance(time, int | float):
+        return None
+    time_s = float(time) * factor if abs(time) < 1e300 else np.inf
+    return time_s if np.isfinite(time_s) else None
+
+
+FORMAT = RecordingFormat("JSON of frames", recognises, read)

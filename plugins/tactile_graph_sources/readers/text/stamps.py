@@ -1,0 +1,77 @@
+"""``Stamps``: number and time of a frame from the fields of its line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from datetime import datetime
+
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.words.dialect import clock_s, floats
+
+_DAY_S = 86400.0
+
+
+class Stamps:
+    """Reads what a table keeps of each frame beside its cells.
+
+    Times of day count from the first frame, and go on over midnight. Where a table has no time
+    but says its rate, the frame's number gives it.
+    """
+
+    def __init__(self, reading: Reading, layout: Layout) -> None:
+        self._reading = reading
+        self._layout = layout
+        self._first: float | None = None
+        self._last = -math.inf
+        self._days = 0.0
+        self._start = reading.index
+
+    def of(self, fields: Sequence[str]) -> tuple[float | None, float | None]:
+        """Return the number and the time (s) of a frame; None where there is none.
+
+        Raises
+        ------
+        ValueError
+            If either is no number.
+        """
+        roles = self._layout.roles
+        index = None
+        if "frame" in roles:
+            index = floats([fields[roles["frame"]]])[0]
+            if not math.isfinite(index):
+                raise ValueError("the frame's number is no number")
+        return index, self.time_s(fields)
+
+    def time_s(self, fields: Sequence[str]) -> float | None:
+        """Return the time of a frame; raises what `of` raises."""
+        layout = self._layout
+        if "clock" in layout.roles:
+            return self._clock(fields[layout.roles["clock"]])
+        if "time" not in layout.roles:
+            frame_s = layout.said.frame_s
+            return None if frame_s is None else (self._reading.index - self._start) * frame_s
+        time_s = floats([fields[layout.roles["time"]]])[0] * layout.time_factor
+        if not math.isfinite(time_s):
+            raise ValueError("the time is no number")
+        return time_s
+
+    def _clock(self, text: str) -> float:
+        given = self._layout.time_format
+        at = _by_format(text, given) if given else clock_s(text)
+        if at is None:
+            raise ValueError(f"{text.strip()[:30]!r} is no time of day")
+        if at + self._days < self._last - _DAY_S / 2:
+            self._days += _DAY_S
+        self._last = at + self._days
+        self._first = self._last if self._first is None else self._first
+        return round(self._last - self._first, 6)
+
+
+def _by_format(text: str, given: str) -> float | None:
+    try:
+        at = datetime.strptime(text.strip().strip('"'), given)
+    except ValueError:
+        return None
+    return (at.replace(tzinfo=None) - datetime(2000, 1, 1)).total_seconds()

@@ -1,0 +1,1 @@
+"""What users and files say of a recording: units, names of columns, notes, what truly lay there."""

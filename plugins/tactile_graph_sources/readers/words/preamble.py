@@ -1,0 +1,82 @@
+"""What the lines before a table say of it: ``Rows: 12``, ``Raster: 5 mm``, ``Einheit = kPa``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from tactile_graph_sources.readers.words.units import (
+    length_cm,
+    value_unit,
+    without_length_unit,
+)
+
+_PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*[:=;,\t]+\s*\"?(.*?)[\s\",;]*")
+_WORDS = {
+    "rows": {"rows", "row", "zeilen", "reihen", "lignes", "filas", "righe", "number of rows",
+             "n rows", "num rows", "nrows"},
+    "columns": {"columns", "column", "cols", "spalten", "colonnes", "columnas", "colonne",
+                "number of columns", "n cols", "num cols", "num columns", "ncols"},
+    "shape": {"shape", "size", "matrix", "grid", "resolution", "dimensions", "sensor size",
+              "größe", "matriz", "matrice", "taille", "array"},
+    "pitch": {"pitch", "spacing", "cell size", "sensel size", "sensel width",
+              "cell width", "raster", "rastermaß", "pas", "paso", "passo",
+              "element pitch", "cell pitch", "sensor pitch"},
+    "unit": {"unit", "units", "einheit", "unité", "unite", "unidad", "unidades", "unità",
+             "unita", "pressure unit"},
+    "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
+             "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
+             "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},
+}  # fmt: skip
+_MEANING = {word: key for key, words in _WORDS.items() for word in words}
+_SHAPE = re.compile(r"\D*?(\d{1,5})\s*(?:x|×|\*|,|by|mal)\s*(\d{1,5})\b.*", re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
+
+
+@dataclass(frozen=True)
+class Described:
+    """What a table says of itself in words; None where it says nothing."""
+
+    rows: int | None = None
+    columns: int | None = None
+    pitch_cm: tuple[float, float] | None = None
+    quantity: str = "raw"
+    factor: float = 1.0
+    frame_s: float | None = None
+
+
+def described(lines: Iterable[str]) -> Described:
+    """Return what the lines before a table say of its shape, pitch, unit and rate."""
+    said = Described()
+    for line in lines:
+        found = _PAIR.fullmatch(line)
+        if found is None:
+            continue
+        key, _, unit = found[1].strip().lower().replace("_", " ").partition("[")
+        key, _, other = key.partition("(")
+        bare, length = without_length_unit(key.strip())
+        meaning = _MEANING.get(bare)
+        if meaning is not None:
+            said = _take(said, meaning, found[2], (unit or other).strip(" ])") or length)
+    return said
+
+
+def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
+    number = _NUMBER.match(value)
+    if meaning in ("rows", "columns"):
+        n = int(value) if value.isdecimal() and 0 < int(value[:9]) < 10**5 else None
+        if n is None:
+            return said
+        return replace(said, rows=n) if meaning == "rows" else replace(said, columns=n)
+    if meaning == "shape":
+        found = _SHAPE.fullmatch(value)
+        return said if found is None else replace(said, rows=int(found[1]), columns=int(found[2]))
+    if meaning == "pitch":
+        pitch = length_cm(value, unit)
+        return said if pitch is None else replace(said, pitch_cm=(pitch, pitch))
+    if meaning == "unit":
+        quantity, factor = value_unit(value)
+        return replace(said, quantity=quantity, factor=factor)
+    rate = float(number[0].replace(",", ".")) if number else 0.0
+    return replace(said, frame_s=1.0 / rate) if 0.0 < rate < 1e6 else said

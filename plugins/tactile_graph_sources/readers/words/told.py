@@ -1,0 +1,98 @@
+"""``Told``: what the user says about a recording where the file itself cannot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
+
+MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """The settings of a recording; None where the file is to be believed.
+
+    ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
+    ``skip`` how many frames are left out in front.
+    """
+
+    rows: int | None = None
+    columns: int | None = None
+    pitch_cm: tuple[float, float] | None = None
+    origin_cm: tuple[float, float] | None = None
+    quantity: str | None = None
+    sensor: str = ""
+    of_columns: ColumnsTold = NOTHING_TOLD
+    order: str = "rows"
+    transpose: bool = False
+    flip: str = ""
+    skip: int = 0
+
+    @classmethod
+    def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:
+        """Return what settings say, by their names; a pitch may be one number."""
+        pitch = settings.get("pitch_cm")
+        if isinstance(pitch, int | float):
+            settings["pitch_cm"] = (float(pitch), float(pitch))
+        return cls(of_columns=columns_told, **settings)
+
+    def laid_out(self, cells: NDArray[Any], rows: int, columns: int) -> NDArray[Any]:
+        """Return cells in a row as a matrix, by the order in which they come."""
+        if self.order == "columns":
+            return cells.reshape(columns, rows).T
+        return cells.reshape(rows, columns)
+
+    def turned(self, matrix: NDArray[Any]) -> NDArray[Any]:
+        """Return a matrix as the pad is to be seen."""
+        if self.transpose:
+            matrix = matrix.T
+        if self.flip in ("rows", "both"):
+            matrix = matrix[::-1]
+        return matrix[:, ::-1] if self.flip in ("columns", "both") else matrix
+
+    def agree(self, where: str, rows: int, columns: int) -> None:
+        """Refuse a shape that is not the one told, or is none at all.
+
+        Raises
+        ------
+        DataError
+            If the file's shape is empty, absurdly large, or not what the settings say.
+        """
+        if min(rows, columns) < 1 or rows * columns > MOST_CELLS:
+            raise DataError(
+                where,
+                f"its frames are said to have {rows} x {columns} cells; "
+                f"at least 1 x 1 and at most {MOST_CELLS} cells can be true",
+            )
+        told_rows, told_columns = self.rows or rows, self.columns or columns
+        if (told_rows, told_columns) != (rows, columns):
+            raise DataError(
+                where,
+                f"its frames have {rows} rows and {columns} columns, the settings say "
+                f"rows={self.rows}, columns={self.columns}; leave them out",
+            )
+
+    def with_said(self, rows: int | None, columns: int | None) -> Told:
+        """Return the settings with a shape that the file says where they say none."""
+        return replace(self, rows=self.rows or rows, columns=self.columns or columns)
+
+    def fits(self, n_values: int) -> tuple[int, int] | None:
+        """Return rows and columns of so many values, by either or both; None where none fit."""
+        rows = self.rows or n_values // (self.columns or 1)
+        columns = self.columns or (n_values // rows if rows else 0)
+        return (rows, columns) if rows * columns == n_values > 0 else None
+
+    def misfit(self, n_values: int) -> str:
+        """Return what to say of values in a row that the told shape does not fit."""
+        said = (
+            f"rows={self.rows}, columns={self.columns}" if self.rows or self.columns else "nothing"
+        )
+        return (
+            f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
+            "give rows and columns whose product is that number"
+        )

@@ -1,0 +1,1 @@
+"""What may be left undone when time is short, and who decides about it."""

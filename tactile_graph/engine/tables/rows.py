@@ -1,0 +1,143 @@
+"""Flatten results into named scalars for tables, CSV and JSON, with errors where truth is known."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tactile_graph.engine.outcomes.outcome import (
+    NO_VALUE,
+    Done,
+    Failed,
+    Skipped,
+    gaps,
+    item_words,
+    outcome_word,
+    with_value,
+)
+from tactile_graph.engine.outcomes.outcomes import Outcomes
+from tactile_graph.engine.tables.truth import shape_kind
+from tactile_graph.errors import PluginError
+
+MOST_NUMBERS = 32
+"""How many numbers an array or a list may have to be written where only a summary is."""
+
+
+def result_row(result: Outcomes) -> dict[str, Any]:
+    """Return frame number and time, then each output's scalars; a reason where it has none."""
+    frame = result.frame
+    row: dict[str, Any] = {"frame": frame.index}
+    if frame.label:
+        row["label"] = frame.label
+    if frame.time_s is not None:
+        row["time_s"] = frame.time_s
+    for name in result.plan.asked:
+        outcome = result.outcome(name)
+        if outcome.__class__ in NO_VALUE:
+            row[name] = outcome_word(outcome)
+            continue
+        row.update(scalars(name, outcome))
+        if gaps(outcome):
+            row[name] = outcome_word(outcome)
+    return row
+
+
+def scalars(name: str, value: Any) -> dict[str, Any]:
+    """Return a value as scalars named ``name`` or ``name.field``."""
+    if isinstance(value, bool | int | float | str | np.generic):
+        return {name: value.item() if isinstance(value, np.generic) else value}
+    if isinstance(value, Done):
+        return {name: "done"}
+    shown = getattr(value, "columns_shown", ())
+    if shown:
+        return {f"{name}.{field}": getattr(value, field) for field in shown}
+    fields = getattr(value, "_fields", ())
+    row: dict[str, Any] = {}
+    for field in fields:
+        inner = getattr(value, field)
+        if isinstance(inner, list | tuple) and "count" in fields:
+            continue  # the record counts them itself
+        if inner is not None and not isinstance(inner, Skipped | Failed):
+            row.update(scalars(f"{name}.{field}", inner))
+    if fields:
+        return row
+    if isinstance(value, list | tuple):
+        return {f"{name}.count": len(with_value(value))}
+    count = getattr(value, "count", None)
+    return {f"{name}.count": count} if isinstance(count, int) else {}
+
+
+def as_data(value: Any, full: bool = True) -> Any:
+    """Return a value as plain data for JSON, arrays as nested lists.
+
+    Parameters
+    ----------
+    value : Any
+    full : bool
+        Whether records give every field. Otherwise one that has a method ``summary()`` gives the
+        mapping that this returns, and arrays and lists of more than `MOST_NUMBERS` numbers are
+        told by their shape alone.
+    """
+    if isinstance(value, Skipped):
+        return {"skipped": value.reason, "origin": value.origin, **_item(value)}
+    if isinstance(value, Failed):
+        told = {"failed": value.reason, "origin": value.origin, "kind": value.kind}
+        return {**told, **_item(value)}
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist() if full or value.size <= MOST_NUMBERS else _shape(*value.shape)
+    if isinstance(value, bool | int | float | str) or value is None:
+        return value
+    if isinstance(value, Mapping):
+        return {str(k): as_data(v, full) for k, v in value.items()}
+    if not full and callable(getattr(type(value), "summary", None)):
+        return _own_summary(value)
+    if hasattr(value, "_asdict"):
+        return {k: as_data(v, full) for k, v in value._asdict().items()}
+    if isinstance(value, list | tuple):
+        data = [as_data(v, full) for v in value]
+        numbers = len(data) > MOST_NUMBERS and not isinstance(data[0], dict)
+        return _shape(len(data)) if numbers and not full else data
+    return _record(value, full)
+
+
+def _item(outcome: Skipped | Failed) -> dict[str, str]:
+    return {"item": item_words(outcome.item).removeprefix("item ")} if outcome.item else {}
+
+
+def _shape(*shape: int) -> dict[str, list[int]]:
+    return {"shape": list(shape)}
+
+
+def _own_summary(value: Any) -> dict[str, Any]:
+    told = value.summary()
+    if not isinstance(told, Mapping):
+        kind = type(value).__name__
+        raise PluginError(f"{kind}.summary() must return a mapping, got {type(told).__name__}")
+    return {str(k): as_data(v, full=False) for k, v in told.items()}
+
+
+def _record(value: Any, full: bool) -> Any:
+    if dataclasses.is_dataclass(value):
+        names = [f.name for f in dataclasses.fields(value)]
+    else:
+        names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
+    shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
+    shape = shape_kind(type(value))
+    data = {} if shape is None or "kind" in shown else {"kind": shape.__name__}
+    data |= {n: as_data(getattr(value, n), full) for n in shown}
+    for name in getattr(value, "columns_shown", ()):
+        data.setdefault(name, as_data(getattr(value, name), full))
+    return data if data else str(value)
+
+
+def without_nan(data: Any) -> Any:
+    """Return data with null for NaN, which JSON has not."""
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, dict):
+        return {k: without_nan(v) for k, v in data.items()}
+    return [without_nan(v) for v in data] if isinstance(data, list) else data

@@ -1,0 +1,305 @@
+"""Steps in processes of their own: what hangs or crashes costs its node, and nothing else."""
+
+from __future__ import annotations
+
+import gc
+import os
+import time
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import helpers_isolated as steps
+import helpers_isolated_kernels as kernel_steps
+from helpers_graphs import STEPS, frame, registry
+from tactile_graph import Image, Pipeline, hookimpl, loads
+from tactile_graph.compiled import mode
+from tactile_graph.engine.outcomes.outcome import Failed, Skipped
+from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.pipeline.graph import Isolation
+from tactile_graph.plugins.registry import Registry
+
+pytestmark = pytest.mark.slow
+OWN = {
+    "moody": steps.moody,
+    "counting": steps.Counting,
+    "elsewhere": steps.elsewhere,
+    "readiness": kernel_steps.readiness,
+    "unsendable": steps.unsendable,
+}
+
+
+def pipeline(node: str, more: str = "") -> Pipeline:
+    text = f"""
+pipeline: p
+nodes:
+  risky: {{{node}}}
+  other: {{step: read, in: frame}}
+{more}
+outputs: [risky, other]
+"""
+    return loads(text, "p.yaml", registry({**STEPS, **OWN}))
+
+
+def run_until_back(runner: Any, number: int, seconds: float = 60.0) -> list[Any]:
+    """Return the results until the step has a value again."""
+    end, results = time.monotonic() + seconds, []
+    while time.monotonic() < end:
+        results.append(runner(frame(number, len(results))))
+        runner.forget()
+        if "risky" in results[-1]:
+            return results
+        time.sleep(0.02)
+    raise AssertionError(results[-1])
+
+
+def test_a_step_that_hangs_is_killed_and_started_anew_while_the_others_go_on() -> None:
+    runner = pipeline("step: moody, in: frame, time_limit_s: 0.5, with: {plus: 1}").runner()
+    assert runner(frame(10))["risky"] == 11
+    began = time.monotonic()
+    hung = runner(frame(steps.HANGS, 1))
+    assert 0.4 < time.monotonic() - began < 5
+    outcome = hung.outcome("risky")
+    assert isinstance(outcome, Failed)
+    assert "took longer than its 0.5 s: its process was killed, a new one starts" in outcome.reason
+    assert hung["other"] == steps.HANGS
+    results = run_until_back(runner, 20)
+    assert results[-1]["risky"] == 21
+    skipped = [r.outcome("risky") for r in results[:-1]]
+    assert skipped  # frames do not wait for the new process
+    assert all(isinstance(s, Skipped) for s in skipped)
+    told = "its process is being started anew: the last took longer than its 0.5 s"
+    assert {s.reason for s in skipped} == {told}
+    assert all(r["other"] == 20 for r in results)
+
+
+def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    outcome = runner(frame(steps.CRASHES)).outcome("risky")
+    assert isinstance(outcome, Failed)
+    assert "ended its process by SIGKILL: a new one starts" in outcome.reason
+    assert run_until_back(runner, 7)[-1]["risky"] == 7
+
+
+def test_no_call_waits_for_a_compiler_which_would_count_for_its_time() -> None:
+    """It is imported before the first call, and plain code answers while it works."""
+    runner = pipeline("step: readiness, in: frame, isolated: true").runner()
+    imported, n_answering = runner(frame(0))["risky"]
+    assert imported
+    assert n_answering == ((os.cpu_count() or 1) > 1 and mode() == "auto")
+
+
+def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixture[str]) -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    failed = runner(frame(steps.FAILS)).outcome("risky")
+    assert (failed.kind, failed.reason) == ("degenerate", "too little")
+    assert runner(frame(steps.PRINTS))["risky"] == steps.PRINTS
+
+
+def test_state_and_random_numbers_are_those_of_the_step_at_home() -> None:
+    at_home = pipeline("step: counting, in: frame, with: {start: 3}").runner(seed=5)
+    away = pipeline("step: counting, in: frame, with: {start: 3}, isolated: true").runner(seed=5)
+    for i in range(3):
+        assert away(frame(0, i))["risky"] == at_home(frame(0, i))["risky"]
+
+
+def test_it_runs_in_another_process_which_ends_with_the_runner() -> None:
+    runner = pipeline("step: elsewhere, in: frame, isolated: true").runner()
+    process = runner(frame(0))["risky"]
+    assert process != os.getpid()
+    del runner
+    gc.collect()
+    for _ in range(200):
+        try:
+            os.kill(process, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.02)
+    raise AssertionError("it still runs")
+
+
+def test_what_cannot_be_sent_is_told() -> None:
+    runner = pipeline("step: unsendable, in: frame, isolated: true").runner()
+    assert "RuntimeError: gave " in runner(frame(0)).outcome("risky").reason
+
+    def local(image: Image) -> int:
+        return 0
+
+    text = "pipeline: p\nnodes: {risky: {step: local, in: frame, isolated: true}}\noutputs: [risky]"
+    with pytest.raises(UsageError, match="node 'risky': step 'local' cannot run in a process of"):
+        loads(text, "p.yaml", registry({"local": local})).runner()
+
+
+@pytest.mark.parametrize(
+    ("node", "message"),
+    [
+        ("first_of: [other], isolated: true", "'isolated' belongs to a node that has a 'step'"),
+        ("use: other, time_limit_s: 1", "'time_limit_s' belongs to a node that has a 'step'"),
+        ("step: moody, in: frame, time_limit_s: 0", "'time_limit_s' must be a number above 0, got"),
+        ("step: moody, in: frame, time_limit_s: soon", "must be a number above 0, got a text"),
+        ("step: moody, in: frame, isolated: 2", "'isolated' must be true or false, got 2"),
+    ],
+)
+def test_mistakes_in_the_file_are_told_with_their_place(node: str, message: str) -> None:
+    with pytest.raises(PipelineError, match=rf"p.yaml:4:\d+: node 'risky'.*{message}"):
+        pipeline(node)
+
+
+def test_what_was_said_of_a_step_stands_in_the_record_of_the_run() -> None:
+    resolved = pipeline("step: moody, in: frame, time_limit_s: 0.5").resolved()
+    assert resolved["nodes"]["risky"]["time_limit_s"] == 0.5
+
+
+# -- steps that share a process ------------------------------------------------------------------
+
+TOGETHER = """
+pipeline: p
+isolated: [{isolated}]
+nodes:
+  one: {{step: elsewhere, in: frame}}
+  two: {{step: elsewhere, in: frame}}
+  sum: {{step: counting, in: frame}}
+  at_home: {{step: elsewhere, in: frame, isolated: false}}
+  other: {{step: read, in: frame, isolated: false}}
+outputs: [one, two, sum, at_home, other]
+"""
+
+
+def marked(isolated: str = "", **marks: float | None) -> Pipeline:
+    """Return a pipeline of a plugin ``risky`` that marks steps, and of a file that names some."""
+    module = types.ModuleType("risky")
+    offered = {**OWN, "read": STEPS["read"]}
+    module.tactile_graph_steps = hookimpl(lambda: offered)  # type: ignore[attr-defined]
+    module.tactile_graph_isolated = hookimpl(lambda: marks)  # type: ignore[attr-defined]
+    plugins = Registry([("risky", "risky-package", "1", lambda: module)])
+    (plugin,) = plugins.plugins
+    assert not plugin.error, plugin.error
+    return loads(TOGETHER.format(isolated=isolated), "p.yaml", plugins)
+
+
+def processes(result: Any) -> list[int]:
+    return [result[name] for name in ("one", "two", "at_home")]
+
+
+@pytest.mark.parametrize(
+    ("isolated", "marks"),
+    [("elsewhere", {}), ("risky.elsewhere", {}), ("risky.*", {}), ("", {"elsewhere": None})],
+)
+def test_steps_named_by_the_file_or_marked_by_their_plugin_share_a_process(
+    isolated: str, marks: dict[str, float | None]
+) -> None:
+    one, two, at_home = processes(marked(isolated, **marks).runner()(frame(0)))
+    assert one == two != at_home == os.getpid()
+
+
+def test_two_names_of_the_list_are_two_processes() -> None:
+    text = TOGETHER.replace("two: {{step: elsewhere", "two: {{step: moody")
+    names = "elsewhere, moody, counting"
+    graph = loads(text.format(isolated=names), "p.yaml", registry({**STEPS, **OWN}))
+    found = {n.isolation.process for n in graph.nodes.values() if n.isolation}
+    assert len(found) == 3
+
+
+def test_a_step_that_ends_the_process_takes_the_state_of_those_beside_it_and_is_named() -> None:
+    text = TOGETHER.replace("two: {{step: elsewhere", "two: {{step: moody").format(isolated="t.*")
+    runner = loads(text, "p.yaml", registry({**STEPS, **OWN}, plugin="t")).runner()
+    assert runner(frame(9))["sum"][0] == 1
+    crashed = runner(frame(steps.CRASHES, 1))
+    assert "ended its process by SIGKILL at node 'two'" in crashed.outcome("two").reason
+    assert crashed["other"] == steps.CRASHES
+    waits = runner(frame(9, 2)).outcome("sum")
+    assert isinstance(waits, Skipped)
+    told = "the process of t is being started anew: the last ended its process by SIGKILL"
+    assert waits.reason.startswith(told)
+    end = time.monotonic() + 60
+    while "sum" not in (result := runner(frame(9, 3))):
+        assert time.monotonic() < end
+        runner.forget()
+        time.sleep(0.02)
+    assert result["sum"][0] == 1
+
+
+def test_a_plugin_may_say_how_long_a_call_takes_at_most() -> None:
+    graph = marked(elsewhere=2.5)
+    assert graph.nodes["one"].isolation == Isolation(2.5, "risky")
+    assert graph.resolved()["nodes"]["one"]["time_limit_s"] == 2.5
+    assert graph.nodes["at_home"].isolation is None
+
+
+def test_nodes_of_pipelines_that_are_used_are_found_by_the_list_too(tmp_path: Path) -> None:
+    inner = "pipeline: i\nnodes: {a: {step: elsewhere, in: frame}}\noutputs: [a]"
+    (tmp_path / "i.yaml").write_text(inner)
+    text = "pipeline: p\nisolated: [elsewhere]\nnodes: {used: {use: i.yaml}}\noutputs: [used]"
+    graph = loads(text, str(tmp_path / "p.yaml"), registry({**STEPS, **OWN}))
+    isolation = graph.nodes["used/a"].isolation
+    assert isolation is not None
+    assert isolation.process
+
+
+def test_a_runner_that_takes_anothers_place_takes_its_processes_too() -> None:
+    first = marked("elsewhere").runner()
+    one, two, _ = processes(first(frame(0)))
+    then = marked("elsewhere").runner(after=first)
+    assert processes(then(frame(0)))[:2] == [one, two]
+    assert then.anew == ()
+
+
+def test_a_runner_tells_how_the_processes_fare() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    assert runner.processes == {"risky": ("", 0, False, "")}
+    runner(frame(steps.CRASHES))
+    state = runner.processes["risky"]
+    assert (state.n_restarts, state.starting) == (1, True)
+    assert state.why == "ended its process by SIGKILL"
+    end = time.monotonic() + 60
+    while runner.processes["risky"].starting:  # without a frame that asks for it
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    assert runner(frame(7))["risky"] == 7
+    assert runner.processes["risky"].n_restarts == 1
+
+
+def test_one_that_takes_its_place_tells_on_and_under_the_new_names() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    runner(frame(steps.CRASHES))
+    text = "pipeline: p\nnodes: {dared: {step: moody, in: frame, isolated: true}}\noutputs: [dared]"
+    then = loads(text, "p.yaml", registry({**STEPS, **OWN})).runner(after=runner)
+    assert {n: s.n_restarts for n, s in then.processes.items()} == {"dared": 1}
+
+
+def test_processes_within_a_pipeline_that_is_mapped_are_told_of(tmp_path: Path) -> None:
+    inner = "pipeline: i\nnodes: {a: {step: elsewhere, in: frame, isolated: true}}\noutputs: [a]"
+    (tmp_path / "i.yaml").write_text(inner)
+    text = (
+        "pipeline: p\nnodes:\n  pair: {step: pair, in: frame}\n"
+        "  used: {use: i.yaml, in: pair, each: true}\noutputs: [used]"
+    )
+    own = registry({**STEPS, **OWN, "pair": steps.pair})
+    runner = loads(text, str(tmp_path / "p.yaml"), own).runner()
+    assert list(runner.processes) == ["used/a"]
+    assert len(runner(frame(3))["used"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("isolated", "message"),
+    [
+        ("isolated: moody", "'isolated' must be a list of steps, or of plugins as"),
+        ("isolated: [2]", r"'isolated' must be a list of steps, .*, got 2"),
+        ("isolated: [mody]", "'isolated': no step named 'mody'; did you mean 'moody'"),
+        ("isolated: [nobody.*]", "'isolated': no plugin named 'nobody'"),
+    ],
+)
+def test_mistakes_in_the_list_are_told_with_their_place(isolated: str, message: str) -> None:
+    text = f"pipeline: p\n{isolated}\nnodes: {{a: {{step: moody, in: frame}}}}\noutputs: [a]"
+    with pytest.raises(PipelineError, match=rf"p.yaml:2:\d+: {message}"):
+        loads(text, "p.yaml", registry({**STEPS, **OWN}))
+
+
+def test_a_plugin_that_marks_what_it_has_not_is_told() -> None:
+    module = types.ModuleType("risky")
+    module.tactile_graph_steps = hookimpl(lambda: OWN)  # type: ignore[attr-defined]
+    module.tactile_graph_isolated = hookimpl(lambda: {"mody": None})  # type: ignore[attr-defined]
+    (plugin,) = Registry([("risky", "risky-package", "1", lambda: module)]).plugins
+    assert "tactile_graph_isolated: it has no step 'mody'; did you mean 'moody'" in plugin.error

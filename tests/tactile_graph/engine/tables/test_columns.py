@@ -1,0 +1,64 @@
+"""Columns follow from types, and hold exactly what values of those types flatten into."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+
+from tactile_graph import Circle, Ellipse, Image, Mask, Points, Polygon, Rectangle
+from tactile_graph.engine.tables.columns import _columns
+from tactile_graph.engine.tables.rows import scalars
+from tactile_graph.vocabulary import words_and_unit
+
+
+class Inner(NamedTuple):
+    angle_rad: float
+    name: str | None
+
+
+class Outer(NamedTuple):
+    inner: Inner
+    items: list[Circle]
+    circle: Circle
+
+
+class Counted(NamedTuple):
+    items: tuple[int, ...]
+    count: int
+
+
+CIRCLE = Circle(1.0, 2.0, 3.0)
+VALUES = [
+    (float, 1.5), (int, 2), (bool, True), (str, "x"), (np.float64, np.float64(1.0)),
+    (Literal["a", "b"], "a"),
+    (Circle, CIRCLE), (Ellipse, Ellipse(1.0, 1.0, 2.0, 1.0, 0.0)),
+    (Rectangle, Rectangle(1.0, 1.0, 2.0, 1.0, 0.0)),
+    (Polygon, Polygon(np.eye(3)[:, :2].copy())), (Points, Points(np.zeros((3, 2)))),
+    (Image, Image(np.ones((2, 2)))), (Mask, Mask(np.ones((2, 2), bool))),
+    (list[Circle], (CIRCLE,)), (tuple[float, ...], (1.0, 2.0)),
+    (Inner, Inner(1.0, "n")), (Outer, Outer(Inner(1.0, "n"), [CIRCLE], CIRCLE)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "value"), VALUES, ids=lambda v: str(v)[:30])
+def test_a_types_columns_are_its_values_scalars(kind: Any, value: Any):
+    assert [c.key for c in _columns("out", "out", kind)] == list(scalars("out", value))
+
+
+def test_a_record_that_counts_its_list_itself_gets_one_column_for_it():
+    assert [c.key for c in _columns("c", "c", Counted)] == ["c.count"]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("radius_cm", ("radius", "cm")), ("area_cm2", ("area", "cm²")),
+        ("angle_deg", ("angle", "°")), ("contact_area_cm2", ("contact area", "cm²")),
+        ("force_n", ("force", "N")), ("n_cells", ("n cells", "")), ("count", ("count", "")),
+        ("cm", ("cm", "")),
+    ],
+)  # fmt: skip
+def test_units_are_read_from_names(name, expected):
+    assert words_and_unit(name) == expected

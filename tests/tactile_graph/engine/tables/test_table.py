@@ -1,0 +1,128 @@
+"""Results as a table: a row a frame and object, nothing lost, numbers with their units."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+
+from helpers_graphs import frame, registry
+from tactile_graph import Circle, Degenerate, Frame, Image, load, loads
+from tactile_graph.engine.tables.table import ObjectTable, make_table, units_of
+from tactile_graph.errors import UsageError
+from tactile_graph.vocabulary import words_and_unit
+from tactile_graph.wires import TrueObject
+
+
+class Found(NamedTuple):
+    circles: list[Circle]
+    count: int  # type: ignore[assignment]
+    state: Literal["rests", "moves"]
+
+
+def found(image: Image) -> Found:
+    n = int(image.values[0, 0])
+    return Found([Circle(i, 2.0 * i, 1.0) for i in range(1, n + 1)], n, "rests")
+
+
+def smaller(circle: Circle) -> Circle:
+    if circle.x_cm == 2.0:
+        raise Degenerate("too small already")
+    return Circle(circle.x_cm, circle.y_cm, 0.5)
+
+
+NODES = """
+pipeline: p
+nodes:
+  found: {step: found, in: frame}
+  smaller: {step: smaller, in: found.circles, each: true}
+outputs: [found, smaller]
+"""
+
+
+def table_of(number: float, truth: Any = None) -> list[dict[str, Any]]:
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    given = frame(number)
+    given = Frame(given.image, truth=truth)
+    table = make_table(pipeline, tuple(pipeline.outputs), long=True)
+    keys = [c.key for c in table.columns]
+    rows = list(table.rows(pipeline.run(given)))
+    assert all(row.keys() <= set(keys) for row in rows)
+    return rows
+
+
+def test_each_item_of_each_list_has_a_row_in_its_place() -> None:
+    rows = table_of(3)
+    assert [(r["output"], r.get("item"), r["outcome"]) for r in rows] == [
+        ("found", None, "ok"),
+        ("found.circles", 1, "ok"),
+        ("found.circles", 2, "ok"),
+        ("found.circles", 3, "ok"),
+        ("smaller", 1, "ok"),
+        ("smaller", 2, "failed: too small already"),
+        ("smaller", 3, "ok"),
+    ]
+    assert (rows[0]["count"], rows[0]["state"], rows[0]["type"]) == (3, "rests", "Found")
+    assert [(r["type"], r["x_cm"], r["radius_cm"]) for r in rows if "x_cm" in r][-1] == (
+        "Circle", 3.0, 0.5,
+    )  # fmt: skip
+
+
+def test_a_frame_without_objects_keeps_its_rows_and_says_so() -> None:
+    rows = table_of(0)
+    assert [(r["output"], r["outcome"]) for r in rows] == [
+        ("found", "ok"),
+        ("found.circles", "no items"),
+        ("smaller", "skipped: no items to run for"),
+    ]
+
+
+def test_objects_have_their_errors_where_the_truth_is_known() -> None:
+    rows = table_of(1, truth=(TrueObject(Circle(1.0, 2.5, 1.0)),))
+    assert [r["centre_error_cm"] for r in rows if "x_cm" in r] == [0.5, 0.5]
+    assert [r["radius_error_cm"] for r in rows if "x_cm" in r] == [0.0, -0.5]
+
+
+def test_every_column_of_numbers_has_a_unit_and_sums_of_readings_have_the_frames() -> None:
+    pipeline = load("contacts")
+    table = ObjectTable(pipeline, ("load", "contacts"))
+    units = units_of(table, "kilopascal")
+    numbers = {c.key for c in table.columns if c.kind in (int, float)}
+    assert units.keys() == numbers
+    assert (units["x_cm"], units["load"], units["peak"], units["count"]) == (
+        "cm",
+        "kPa",
+        "kPa",
+        "1",
+    )
+    assert units_of(table, "counts")["load"] == "counts"
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("vx_cm_s", ("vx", "cm/s")), ("age_s", ("age", "s")), ("area_cm2", ("area", "cm²")),
+     ("cm", ("cm", "")), ("n_points", ("n points", ""))],
+)  # fmt: skip
+def test_a_name_is_words_and_a_unit(name: str, expected: tuple[str, str]) -> None:
+    assert words_and_unit(name) == expected
+
+
+def test_results_become_a_pandas_table_of_either_form() -> None:
+    pytest.importorskip("pandas")
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    frames = [frame(n, n) for n in (3, 1)]
+    wide = pipeline.stream(frames).to_pandas()
+    assert wide["found.count"].tolist() == [3, 1]
+    assert wide["smaller.outcome"].tolist() == ["item 2 failed: too small already", "ok"]
+    long = pipeline.stream(frames).to_pandas(long=True)
+    assert len(long) == 7 + 3
+    assert long.attrs["units"]["radius_cm"] == "cm"
+    assert np.isnan(long["radius_cm"][0])
+
+
+def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(UsageError, match=r"to_pandas needs pandas, .*: pip install pandas"):
+        load("contacts").stream([np.ones((4, 4))]).to_pandas()

@@ -1,0 +1,89 @@
+"""Truth from a file of its own: which objects lie in which frames."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph import Frame
+from tactile_graph.errors import DataError, UsageError
+from tactile_graph.wires import Circle, Ellipse, Rectangle, TrueObject
+from tactile_graph_sources.readers.words.truth import truth_to_json
+from tactile_graph_sources.readers.words.truth_file import with_truth
+
+
+def frames(n: int = 4) -> Iterator[Frame]:
+    return (Frame.of(np.zeros((2, 2)), index=k) for k in range(n))
+
+
+TABLE = """frames;kind;x_cm;y_cm;radius_cm;length_cm;breadth_cm;angle_deg;weight_g;name
+0-1;circle;1,5;2;0.5;;;;200;cup
+1;rectangle;3;4;;2;1;90;;
+2;none;;;;;;;;
+"""
+
+
+def test_a_table_says_what_lies_in_which_frames(tmp_path: Path) -> None:
+    path = tmp_path / "truth.csv"
+    path.write_text(TABLE)
+    cup = TrueObject(Circle(1.5, 2.0, 0.5), 200.0, "cup")
+    bar = TrueObject(Rectangle(3.0, 4.0, 2.0, 1.0, math.pi / 2))
+    assert [f.truth for f in with_truth(frames(), path)] == [(cup,), (cup, bar), (), None]
+
+
+def test_all_is_every_frame(tmp_path: Path) -> None:
+    path = tmp_path / "truth.csv"
+    path.write_text(
+        "frames,kind,x_cm,y_cm,semi_major_cm,semi_minor_cm,angle_deg\nall,ellipse,1,2,3,2,0\n"
+    )
+    egg = TrueObject(Ellipse(1.0, 2.0, 3.0, 2.0, 0.0))
+    assert {f.truth for f in with_truth(frames(), path)} == {(egg,)}
+
+
+def test_a_list_is_one_entry_a_frame(tmp_path: Path) -> None:
+    truths = [None, (), (TrueObject(Circle(1.0, 2.0, 3.0)),), None]
+    path = tmp_path / "truth.json"
+    path.write_text(truth_to_json(truths))
+    assert [f.truth for f in with_truth(frames(), path)] == truths
+    for n in (3, 5):
+        with pytest.raises(DataError, match="holds the truth of 4 frames, there are"):
+            list(with_truth(frames(n), path))
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("frame,kind\n", "1: no column 'frame'; known: .*did you mean 'frames'"),
+        ("frames,name\n", "a header with 'frames' and 'kind' is needed"),
+        ("frames,kind\n3,cirle\n", "truth.csv:2: unknown kind 'cirle', .*did you mean 'circle'"),
+        ("frames,kind,x_cm,y_cm,radius_cm\n0,circle,1,2,-3\n", "radius_cm: must be a number > 0"),
+        ("frames,kind,x_cm,y_cm,radius_cm\n0,circle,,2,3\n", "x_cm: must be a number, got ''"),
+        ("frames,kind\n3-1,none\n", "must be such as 7, 10-25 or all, got '3-1'"),
+        ("frames,kind\n9,none\n", "speaks of frame 9, the last one is 3"),
+    ],
+)
+def test_what_cannot_be_true_is_named(text: str, what: str, tmp_path: Path) -> None:
+    path = tmp_path / "truth.csv"
+    path.write_text(text)
+    with pytest.raises(DataError, match=what):
+        list(with_truth(frames(), path))
+
+
+def test_json_that_is_no_truth_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "truth.json"
+    path.write_text('[[{"kind": "cube"}]]')
+    with pytest.raises(DataError, match="no list of true objects"):
+        list(with_truth(frames(1), path))
+
+
+def test_a_true_shape_of_a_plugins_own_cannot_be_written():
+    class Stroke(Circle):
+        pass
+
+    told = "a true Stroke cannot be written; what can is: circle, ellipse, polygon, rectangle"
+    with pytest.raises(UsageError, match=told):
+        truth_to_json([(TrueObject(Stroke(1.0, 2.0, 3.0)),)])

@@ -1,0 +1,35 @@
+"""Units as vendors spell them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactile_graph_sources.readers.words.units import length_cm, pressure_unit
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "cm"),
+    [
+        ("5.08 mm", "", 0.508),
+        ("0.127 centimeters", "", 0.127),
+        ("0,86", "cm", 0.86),
+        ("0.5 inches", "", 1.27),
+        ("1 metre", "", None),
+        ("wide", "", None),
+        ("0 mm", "", None),
+        ("1.2.3 mm", "", None),
+        ("5 furlongs", "", None),
+    ],
+)
+def test_lengths_become_centimetres_or_nothing(text: str, unit: str, cm: float | None) -> None:
+    assert length_cm(text, unit) == (None if cm is None else pytest.approx(cm))
+
+
+@pytest.mark.parametrize("text", ["raw", "", "sensels", "kilofoo"])
+def test_units_that_are_no_pressure_are_raw(text: str) -> None:
+    assert pressure_unit(text) == ("raw", 1.0)
+
+
+@pytest.mark.parametrize(("text", "factor"), [("kPa", 1.0), ("N/cm²", 10.0), ("PSI", 6.894757293)])
+def test_pressures_have_a_factor_to_kilopascal(text: str, factor: float) -> None:
+    assert pressure_unit(text) == ("kilopascal", pytest.approx(factor))
