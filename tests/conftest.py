@@ -47,6 +47,32 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+BY_LOOPS = tuple(
+    Path(__file__).parent / room
+    for room in (
+        "docs", "tactile_graph/testing", "tactile_graph_classifiers",
+        "tactile_graph_filters/parting", "tactile_graph_fitters", "tactile_graph_hull",
+        "tactile_graph_likelihood", "tactile_graph_pipelines",
+    )
+)  # fmt: skip
+"""Tests that plain loops answer sooner than the compiler has made machine code for them."""
+
+
+@pytest.fixture(autouse=True)
+def quick_by_loops(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Have nobody wait for the compiler in a run that leaves the slow tests out.
+
+    What compares machine code with loops compiles all the same. A run of all tests has kernels
+    answer as users' do.
+    """
+    short = request.config.getoption("markexpr") == "not slow"
+    if short and any(room in request.path.parents for room in BY_LOOPS):
+        with answered_by("plain"):
+            yield
+    else:
+        yield
+
+
 @pytest.fixture(autouse=True)
 def cool_kernels() -> Iterator[None]:
     """Whatever a test warms up is for that test alone."""

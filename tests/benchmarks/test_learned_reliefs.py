@@ -33,6 +33,7 @@ def reads():
     return Reads(STRIP, np.ones(SHAPE), 0.99, np.array([1e-6, 1e-4, 1e-4]))
 
 
+@pytest.mark.slow  # machine code is made for it
 def test_a_load_s_derivatives_are_those_of_its_differences(bowl, reads):
     press = np.array([10.2, 6.1, 0.4, 0.7, 0.02, -0.01])
     by = loads(bowl, press, BOX, SHAPE, reads.taps, 0.05, True)

@@ -47,6 +47,7 @@ def test_exact_hull_is_that_of_fractions(kind):
         assert np.array_equal(hull(Points(xy), rounding_ulps=0.0).xy_cm, exact_hull(xy))
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("kernel", KERNELS, ids=lambda k: k.__name__)
 def test_kernels_and_their_twins_agree(kernel):
     rng = np.random.default_rng(2)
@@ -174,6 +175,7 @@ def test_other_memory_layouts_are_taken_and_inputs_stay(find):
     assert np.array_equal(xy, kept)
 
 
+@pytest.mark.slow  # many points
 @pytest.mark.parametrize("find", ALL_HULLS)
 def test_hundred_thousand_points_agree(find):
     xy = np.random.default_rng(8).normal(size=(100_000, 2))

@@ -32,10 +32,10 @@ KNOWN_IN_GRAMS = {
 
 SLOW = {
     *("locate", "locate-circle", "locate-contacts", "locate-objects", "locate-rectangle"),
-    *("bayes-circle", "bayes-objects", "bayes-lines", "bayes-rectangle", "circle-by-order"),
-    *set(tactile_graph_thesis.tactile_graph_pipelines()) - {"thesis-lines"},
+    *("bayes-circle", "bayes-objects", "bayes-lines", "bayes-rectangle", "bayes-smooth"),
+    *("circle-by-order", *tactile_graph_thesis.tactile_graph_pipelines()),
 }
-"""Those of which much is compiled, and steps between others, which are like those."""
+"""Those of which much is computed or compiled, and steps between others, which are like those."""
 
 
 def slow_where_much_is_compiled(names: set[str]) -> list[Any]:

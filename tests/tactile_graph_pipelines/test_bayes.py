@@ -107,7 +107,7 @@ def test_an_empty_pad_is_not_swept(name: str) -> None:
         assert not result.failures
 
 
-SLOW = ("bayes-circle", "bayes-objects")
+SLOW = ("bayes-circle", "bayes-lines", "bayes-objects", "bayes-rectangle")
 
 
 @pytest.mark.parametrize(

@@ -199,16 +199,19 @@ def test_without_anything_to_split_it_says_what_contacts_says():
             assert getattr(a, name) == pytest.approx(getattr(b, name))
 
 
+@pytest.mark.slow  # much is parted
 def test_six_objects_are_counted_right_in_nine_scenes_of_ten():
     right = [SPLIT(f.image, footprint(f.image)).count == 6 for f in frames("six", 40, 11)]
     assert np.mean(right) >= 0.9
 
 
+@pytest.mark.slow  # much is parted
 def test_single_objects_of_the_thesis_mostly_stay_whole():
     right = [SPLIT(f.image, footprint(f.image)).count == 1 for f in frames("discs", 30, 5)]
     assert np.mean(right) >= 0.85
 
 
+@pytest.mark.slow  # much is parted
 @pytest.mark.usefixtures("plain_kernels")
 def test_both_twins_agree_on_uneven_scenes():
     pytest.importorskip("numba")

@@ -241,6 +241,7 @@ def test_the_likeliest_of_all_straight_cuts_is_made(seed, is_turned):
     np.testing.assert_array_equal(cells.owner, wanted)
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("scene", ["six", "rectangle-2"])
 def test_compiled_and_plain_agree(scene):
     pytest.importorskip("numba")

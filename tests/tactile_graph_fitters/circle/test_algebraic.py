@@ -77,6 +77,7 @@ def test_exact_arcs_give_their_circle_back(fit, peer, degrees):
     assert got.iterations == 0
 
 
+@pytest.mark.slow  # much is fitted
 def test_hyper_has_less_bias_than_taubin_and_taubin_than_kasa():
     """On long runs of noisy half circles, the mean radius tells."""
     rng = np.random.default_rng(8)

@@ -150,6 +150,7 @@ def test_wrong_images_are_refused():
         FitCircleLoad()(Image(np.full((4, 4), np.nan), quantity="gram"))
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.usefixtures("plain_kernels")
 @pytest.mark.parametrize("sigma", [0.0, 0.5])
 def test_the_compiled_kernel_finds_the_same(sigma):

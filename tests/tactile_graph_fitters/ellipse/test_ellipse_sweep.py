@@ -87,6 +87,7 @@ def test_says_why_there_is_no_ellipse(xy, words):
         ellipse_sweep(Points(np.array(xy, float)))
 
 
+@pytest.mark.slow  # much is fitted
 def test_points_that_say_nothing_of_an_axis_give_no_endless_ellipse():
     """A hull with a stray cell far from its centre has runaway minima at some orientations."""
     hull = np.array([[-3.0, -1.0], [3.0, -1.1], [3.0, 1.0], [-3.0, 1.1], [0.0, 9.0], [0.4, 9.0]])

@@ -35,6 +35,7 @@ def test_reports_the_full_axes_and_beside_them_the_sides():
     assert corrected.breadth_cm == got.corrected_breadth_cm
 
 
+@pytest.mark.slow  # much is fitted
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds)
 def test_corrected_sides_are_those_of_the_rectangle_the_ellipse_was_fitted_to(seed):

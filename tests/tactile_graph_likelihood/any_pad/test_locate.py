@@ -54,7 +54,7 @@ def check_a_disc_is_found(kind, centre_cm, radius_cm):
     ("kind", "centre_cm", "radius_cm"),
     [
         ("law 1/F", 0.13, 0.12),
-        ("leaning face", 0.22, 0.10),
+        pytest.param("leaning face", 0.22, 0.10, marks=pytest.mark.slow),
     ],
 )
 def test_a_disc_is_found_on_a_pad_that_nobody_described(kind, centre_cm, radius_cm):

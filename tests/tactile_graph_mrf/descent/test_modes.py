@@ -34,6 +34,7 @@ def test_a_line_that_costs_nothing_stays(on):
     assert state.down.tolist() == [[on, not on]]
 
 
+@pytest.mark.usefixtures("plain_kernels")
 def test_cheaper_labels_are_taken_whatever_the_start():
     model = Model(n_levels=4, noise="laplace", lambda_d=0.0, lines="none")
     problem = prepare(model, Image(np.array([[0.0, 1.0, 3.0]])))

@@ -30,7 +30,12 @@ pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 NOISES = ("noise-algorithms", "noise-circles", "noise-rectangles")
 SCHEDULE = ("annealing", "state-space")
-LONG = (*SCHEDULE, "hysteresis", "heavier-smaller")
+RESTORED = tuple(i.id for i in items() if i.id.startswith(("figure-5.", "table-5.")))
+"""Much is compiled for those of chapter 5."""
+LONG = (
+    *(*SCHEDULE, *RESTORED, "restoration-filters", "load-prior", "noise-models"),
+    *("direct-ellipse", "finer-pad", "figure-4.22", "figure-4.38", "heavier-smaller", "hysteresis"),
+)
 VERDICTS: dict[str, list[bool]] = yaml.safe_load(
     (Path(__file__).parent / "verdicts.yaml").read_text(encoding="utf-8")
 )
