@@ -44,6 +44,7 @@ def test_a_load_s_derivatives_are_those_of_its_differences(bowl, reads):
         np.testing.assert_allclose(by[k + 1], (high - low) / 2e-4, atol=0.02)
 
 
+@pytest.mark.slow  # machine code is made for it
 def test_the_load_is_the_volume_pressed(bowl, reads):
     press = np.array([10.2, 6.1, 0.4, 0.4, 0.0, 0.0])
     load = loads(bowl, press, BOX, SHAPE, reads.taps, 1e-3, False)[0]

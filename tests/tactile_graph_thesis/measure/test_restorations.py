@@ -33,6 +33,7 @@ from tactile_graph_thesis.measure.simulated_rectangle import figure_5_8
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_pictures_hold_every_panel_with_axes_and_legend() -> None:
     raw, ours = figures_5_10_to_5_13(seed=1), figures_5_10_to_5_13(seed=1, way="bayes")
     assert [one.name for one in raw] == ["Disc I", "Disc II", "RECTANGLE II"]

@@ -44,6 +44,7 @@ def test_image_model_and_schedules_are_those_told() -> None:
     assert N_LEVELS == (50, 100, 150, 200, 250)
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("seed", range(3))
 def test_the_line_field_of_least_energy_is_exactly_the_rectangle(seed: int) -> None:
     made = figure_5_8(seed, "restore")
@@ -54,6 +55,7 @@ def test_the_line_field_of_least_energy_is_exactly_the_rectangle(seed: int) -> N
     assert cells_amiss(made) == 0
 
 
+@pytest.mark.slow  # much is compiled
 def test_a_line_that_lacks_makes_cells_amiss() -> None:
     made = figure_5_8(0, "restore")
     vertical = made.lines.vertical.copy()
