@@ -9,6 +9,7 @@ import pytest
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
 from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.model import Model
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import KINDS, Bench
@@ -67,3 +68,23 @@ def test_all_kinds_know_of_the_same_strays():
     _, every, _ = _first_look(step._every, readings)
     (strays,) = {any_pad.told.noise.strays for any_pad in every.values()}
     assert 0.008 < strays < 0.12
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_outline_is_searched_for_twice_at_most(monkeypatch):
+    find, last = Model._find, []
+
+    def counted(self, problem, table, begin, attempts, known):
+        last.append(attempts[1])
+        return find(self, problem, table, begin, attempts, known)
+
+    monkeypatch.setattr(Model, "_find", counted)
+    most = {}
+    for quick in (False, True):
+        last.clear()
+        step = Locate(quick=quick)
+        for frame in [*frames_of("strays 4 %"), *frames_of("strays 4 %", "rectangle")]:
+            step(frame.image)
+        most[quick] = max(last)
+    assert most == {False: 3, True: 2}
