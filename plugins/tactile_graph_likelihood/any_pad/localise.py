@@ -86,9 +86,6 @@ FEW, LOOSE = 20, 0.3
 """Touched elements of an outline so small that a void looks like its rim, and the deviation in
 pitches that is added to where its posterior is first looked for."""
 
-QUICK_ATTEMPTS = 2
-"""Searches of an outline, at most, where a quick answer will do."""
-
 FAINT_TOUCH, SPARSE, FEW_POINTS = 5, 8.0, 64
 """Touched elements, and how many times as many an outline around them covers, where they are rather
 noise: its posterior, as wide as the pad, is looked at in so many points."""
@@ -242,27 +239,12 @@ class AnyPad:
         Where a quick answer will do, a first attempt that finds no more than ``near`` is the last.
         """
         model = self._fit(EVEN)
-        if near is None:
-            even = model.likeliest(readings)
-            return self._further(readings, even) if even.unsure else even
-        if not self.quick:
+        if near is not None and not self.quick:
             return model.likeliest(readings, before=near, anew=True)
         even = model.likeliest(readings, before=near, anew=True, attempts=1)
-        if even.unsure and even.mode.height > near.mode.height + SAME:
-            return self._further(readings, even)
-        return even._replace(unsure=False)
-
-    def _further(self, readings: Readings, before: Likeliest) -> Likeliest:
-        """Return the most likely outline after the attempts that follow a first one.
-
-        Where a quick answer will do it is as sure as it will be.
-        """
-        model = self._fit(EVEN)
-        if not self.quick:
-            return model.likeliest(readings, before=before)
-        return model.likeliest(readings, before=before, attempts=QUICK_ATTEMPTS)._replace(
-            unsure=False
-        )
+        if near is not None and -math.inf < even.mode.height <= near.mode.height + SAME:
+            return even._replace(unsure=False)
+        return model.likeliest(readings, before=even) if even.unsure else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:
         """Return the share of strays beyond an outline, 0 unless it is far more than told."""
@@ -278,7 +260,7 @@ class AnyPad:
         near = self.near(readings, self.told.point_of(even))
         if readings.states.size > LARGE_PAD and not near.unsure:
             return near
-        return self._further(readings, near)
+        return self._fit(EVEN).likeliest(readings, before=near)
 
     def completed(
         self, readings: Readings, even: Likeliest, anywhere: bool = True
@@ -300,7 +282,7 @@ class AnyPad:
         """
         large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
         if even.unsure and not large:
-            even = self._further(readings, even)
+            even = model.likeliest(readings, before=even)
         if anywhere and readings.touched <= FEW:
             even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
