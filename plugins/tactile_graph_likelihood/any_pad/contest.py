@@ -25,7 +25,8 @@ HOPELESS = 12.0
 another kind once it is no longer looked at: what explains the rest explains it for both."""
 
 LOST = -5.0
-"""Surprise below which an attempt has rather been caught somewhere than shown a kind's worth."""
+"""Surprise below which an attempt has rather been caught somewhere than shown a kind's worth; where
+a quick answer will do that is asked only if no other kind explains the readings."""
 
 Tops = dict[str, Likeliest]
 
@@ -110,7 +111,8 @@ def _may_win(any_pad: AnyPad, its: Likeliest, best: Likeliest, touched: int) -> 
     """Return whether an outline is not hopelessly behind another one, or only caught there."""
     if its.mode.height == -math.inf:
         return True
-    if its.fit.surprise < LOST and any_pad.told.kind != DISC:
+    caught = its.fit.surprise < LOST and any_pad.told.kind != DISC
+    if caught and not (any_pad.quick and best.fit.surprise > POOR):
         return True
     shared = variance_inflation(best.fit.neighbours, touched)
     return best.evidence - its.evidence < HOPELESS * shared

@@ -50,6 +50,7 @@ from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.search import SAME
 
 
 class Pattern(NamedTuple):
@@ -233,11 +234,16 @@ class AnyPad:
         return self._fit(EVEN).likeliest_near(readings, point)
 
     def searched(self, readings: Readings, near: Likeliest | None = None) -> Likeliest:
-        """Return the same after all attempts that are worth their time."""
+        """Return the same after all attempts that are worth their time.
+
+        Where a quick answer will do, a first attempt that finds no more than ``near`` is the last.
+        """
         model = self._fit(EVEN)
-        if near is not None:
+        if near is not None and not self.quick:
             return model.likeliest(readings, before=near, anew=True)
-        even = model.likeliest(readings)
+        even = model.likeliest(readings, before=near, anew=True, attempts=1)
+        if near is not None and -math.inf < even.mode.height <= near.mode.height + SAME:
+            return even._replace(unsure=False)
         return model.likeliest(readings, before=even) if even.unsure else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:

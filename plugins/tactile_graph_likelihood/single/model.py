@@ -154,14 +154,16 @@ class Model:
         before: Likeliest | None = None,
         start: Start = None,
         anew: bool = False,
+        attempts: int = ATTEMPTS,
     ) -> Likeliest:
-        """Return the most likely outline, by one attempt, or two more after an earlier one.
+        """Return the most likely outline, by one attempt, or more after an earlier one.
 
-        ``anew`` says that what was found before was no attempt yet, but `likeliest_near`.
+        ``anew`` says that what was found before was no attempt yet, but `likeliest_near`;
+        ``attempts`` is how many there are at most, the earlier one counted.
         """
         if before is None:
             return self._likeliest(readings, start, (0, 1), None)
-        return self._likeliest(readings, start, (0 if anew else 1, ATTEMPTS), before.mode)
+        return self._likeliest(readings, start, (0 if anew else 1, attempts), before.mode)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the most likely outline near a point, shape (K,), that is nearly as likely.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from threading import Condition
 
 import numpy as np
@@ -39,10 +39,14 @@ class Bench:
     order : wire.Order
     outbox : Outbox
         Takes what the server is to know.
+    between : callable, optional
+        Called before the first frame, and behind each.
     """
 
-    def __init__(self, order: wire.Order, outbox: Outbox) -> None:
-        self._order, self._outbox = order, outbox
+    def __init__(
+        self, order: wire.Order, outbox: Outbox, between: Callable[[], None] | None = None
+    ) -> None:
+        self._order, self._outbox, self._between = order, outbox, between or _nothing
         self._pipeline: Pipeline = pickle.loads(order.pickled)
         self._photographer = Photographer(self._pipeline, order.version)
         self._next_photographer: Photographer | None = None
@@ -92,6 +96,7 @@ class Bench:
 
     def run(self) -> None:
         """Answer frames until told to end; where a source ends, wait for what comes next."""
+        self._between()
         while not self._ended:
             error = self._answer_all()
             if self._ended:
@@ -139,6 +144,7 @@ class Bench:
             self._outbox.show(wire.Snapshot(snapshot, live.arrived_ns if self._tally.ready else 0))
         if now >= self._next_summary_ns:
             self._summarise("running")
+        self._between()
 
     def _looking(self, live: Live) -> Photographer:
         """Return the photographer of the pipeline that gave the result."""
@@ -295,6 +301,10 @@ class Bench:
 
     def _say(self, text: str, level: Level = "note") -> None:
         self._outbox.note(wire.Said(text, level))
+
+
+def _nothing() -> None:
+    """Do nothing."""
 
 
 def _try(pipeline: Pipeline, frame: Frame) -> None:

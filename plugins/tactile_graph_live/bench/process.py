@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import signal
 import sys
@@ -15,6 +14,7 @@ from tactile_graph.plugins.registry import restrict
 from tactile_graph_live.bench import wire
 from tactile_graph_live.bench.bench import Bench
 from tactile_graph_live.bench.outbox import Outbox
+from tactile_graph_live.bench.settled import Settled
 
 SWITCH_S = 0.0005
 """Between threads: a frame's reader must not wait 5 ms for a step's loop."""
@@ -32,15 +32,13 @@ def main(pipe: Connection, order: wire.Order) -> None:
     sys.setswitchinterval(SWITCH_S)
     outbox = Outbox(pipe.send)
     try:
-        bench = Bench(order, outbox)
+        bench = Bench(order, outbox, Settled())
     except TactileGraphError as error:  # a process of a step that cannot be started, say
         outbox.note(wire.Ended(str(error), 0))
         outbox.end()
         return
     threading.Thread(target=_listen, args=(pipe, bench), daemon=True).start()
     threading.Thread(target=_tick, args=(bench,), daemon=True).start()
-    gc.collect()
-    gc.freeze()  # what is there by now stays: no collection need look at it again
     bench.run()
     outbox.end()
 

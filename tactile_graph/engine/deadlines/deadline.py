@@ -52,7 +52,7 @@ class Expected:
         self._usual: dict[int, float] = {}
         self._strayed: deque[float] = deque()
         self._strayed_in_order: list[float] = []
-        self._faded = 0.0
+        self._faded: dict[int, float] = {}
 
     def usual(self, kind: int) -> float | None:
         """Return the logarithm of the usual time, that of the most similar kind known."""
@@ -69,7 +69,7 @@ class Expected:
         if left_ns <= 0:
             return 1.0
         strayed = self._strayed_in_order
-        most = log(left_ns) - usual + self._faded
+        most = log(left_ns) - usual + self._faded.get(kind, 0.0)
         return (len(strayed) - bisect_right(strayed, most)) / len(strayed)
 
     def high_ns(self, kind: int, risk: float) -> float:
@@ -88,18 +88,20 @@ class Expected:
             self.answers_in = before + FOLLOWS * (time - before)
         strayed = 0.0 if usual is None else time - usual
         # After many refusals nothing of late is known: then this one time counts for all.
-        follows = max(FOLLOWS, 1.0 - exp(-self._faded))
+        follows = max(FOLLOWS, 1.0 - exp(-self._faded.pop(kind, 0.0)))
         self._usual[kind] = time - (1.0 - follows) * strayed if kind in self._usual else time
-        self._faded = 0.0
         self._strayed.append(strayed)
         insort(self._strayed_in_order, strayed)
         if len(self._strayed) > WINDOW:
             gone = self._strayed.popleft()
             del self._strayed_in_order[bisect_right(self._strayed_in_order, gone) - 1]
 
-    def refused(self) -> None:
-        """Hold it for a little shorter, since nobody has seen what it would have taken."""
-        self._faded += FADES
+    def refused(self, kind: int) -> None:
+        """Hold it for a little shorter, since nobody has seen what it would have taken.
+
+        On frames of this kind only: times on others say nothing of a first one that took long.
+        """
+        self._faded[kind] = self._faded.get(kind, 0.0) + FADES
 
 
 class Deadline:
@@ -152,7 +154,7 @@ class Deadline:
             left_ns = self.due_ns - now - self._least_ns(option, state)
             expected = self._expected[option.number]
             if expected.risk(self._kind, left_ns) > self.allowed_risk:
-                expected.refused()
+                expected.refused(self._kind)
                 return False
         self._begun.append(now)
         return True

@@ -1,6 +1,7 @@
 """Kinds of outlines are looked at as long as they may win, and compare where all know the same."""
 
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
 from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.search import SAME
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import KINDS, Bench
@@ -67,3 +70,33 @@ def test_all_kinds_know_of_the_same_strays():
     _, every, _ = _first_look(step._every, readings)
     (strays,) = {any_pad.told.noise.strays for any_pad in every.values()}
     assert 0.008 < strays < 0.12
+
+
+@many
+@pytest.mark.slow
+def test_a_quick_search_ends_where_its_first_attempt_finds_no_more(monkeypatch):
+    """Of a kind that was looked at near its moments; otherwise all attempts follow."""
+    find, asked = Model._find, []
+
+    def noted(self, problem, table, begin, attempts, known):
+        found = find(self, problem, table, begin, attempts, known)
+        before = -np.inf if known is None else known.height
+        asked.append((attempts, known is not None and attempts[0] == 0, found[0].height - before))
+        return found
+
+    monkeypatch.setattr(Model, "_find", noted)
+    n_ended = {}
+    for quick in (False, True):
+        asked.clear()
+        step = Locate(quick=quick)
+        for frame in [*frames_of("gains 0.9"), *frames_of("gains 0.9", "rectangle")]:
+            step(frame.image)
+        anew = [attempts for attempts, is_anew, _ in asked if is_anew]
+        assert anew
+        assert set(anew) == {(0, 1) if quick else (0, 3)}
+        n_ended[quick] = 0
+        for (_, is_anew, gained), (after, *_) in pairwise(asked):
+            if quick and is_anew and gained <= SAME:
+                n_ended[quick] += 1
+                assert after != (1, 3)
+    assert n_ended[True] > 0

@@ -256,6 +256,22 @@ def test_a_refused_choice_is_tried_again_in_the_end() -> None:
     assert all(taken[-20:])
 
 
+def test_a_long_first_time_on_one_kind_of_frame_is_forgotten_among_others() -> None:
+    """What is loaded for the first frame must not shut out all that are like it."""
+    small, large = np.zeros((4, 4)), np.ones((4, 4))
+    small[0, 0], large[0, 0] = 1.0, 0.0
+    COSTS["best"] = lambda i: 50 * MS if i == 0 else MS
+    deadline = Deadline(TIME)
+    runner = pipeline(LADDER).runner(decider=deadline)
+    taken = []
+    for index in range(2000):
+        deadline.due_ns = TIME.now_ns + 3 * MS
+        seen = runner(Frame.of(large if index % 4 else small, 1.0, index=index))
+        taken.append(not seen.decisions)
+    assert not any(taken[1:20])
+    assert all(taken[-40:])
+
+
 @pytest.mark.slow
 def test_in_the_long_run_no_more_than_the_promised_share_is_late() -> None:
     """Times nobody can predict, heavy in the tail, beside a deadline that some exceed."""
