@@ -244,3 +244,63 @@ _set_origin = _slots["origin_cm"].__set__
 _set_quantity = _slots["quantity"].__set__
 _set_valid = _slots["valid"].__set__
 _set_count = _slots["_count"].__set__
+
+
+# -- made at once ------------------------------------------------------------------------------
+# While its parts are set a wire is open: Python then sets each by one instruction, where the slots'
+# setters are a call each. Both __setattr__ and __delattr__ must be plain for that.
+
+
+class _OpenImage(Image):
+    __slots__ = ()
+    __init__ = object.__init__
+    __setattr__ = object.__setattr__  # type: ignore[assignment]
+    __delattr__ = object.__delattr__  # type: ignore[assignment]
+
+
+class _OpenMask(Mask):
+    __slots__ = ()
+    __init__ = object.__init__
+    __setattr__ = object.__setattr__  # type: ignore[assignment]
+    __delattr__ = object.__delattr__  # type: ignore[assignment]
+
+
+def quick_image(
+    values: NDArray[Any],
+    pitch_cm: tuple[float, float],
+    origin_cm: tuple[float, float],
+    quantity: QuantityName,
+    valid: NDArray[np.bool_] | None = None,
+) -> Image:
+    """Return ``Image(values, pitch_cm, origin_cm, quantity, valid)`` in half the time.
+
+    Values must be whole numbers or of single or double precision: others are not made double.
+    """
+    values.setflags(False)  # type: ignore[call-arg]
+    if valid is not None:
+        valid.setflags(False)  # type: ignore[call-arg]
+    image: Any = _OpenImage()
+    image.values = values
+    image.pitch_cm = pitch_cm
+    image.origin_cm = origin_cm
+    image.quantity = quantity
+    image.valid = valid
+    image.__class__ = Image
+    return image  # type: ignore[no-any-return]
+
+
+def quick_mask(
+    values: NDArray[np.bool_],
+    pitch_cm: tuple[float, float],
+    origin_cm: tuple[float, float],
+    count: int | None = None,
+) -> Mask:
+    """Return ``Mask(values, pitch_cm, origin_cm, count)`` in half the time."""
+    values.setflags(False)  # type: ignore[call-arg]
+    mask: Any = _OpenMask()
+    mask.values = values
+    mask.pitch_cm = pitch_cm
+    mask.origin_cm = origin_cm
+    mask._count = count
+    mask.__class__ = Mask
+    return mask  # type: ignore[no-any-return]
