@@ -7,10 +7,10 @@ from typing import Annotated
 import numpy as np
 
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
-from tactile_graph_filters.morphology.erosion import make_plan, sweep, swept
+from tactile_graph_filters.morphology.erosion import BOOL, make_plan, sweep, swept
 from tactile_graph_filters.morphology.packed import combined
 
 
@@ -40,9 +40,10 @@ class Erode:
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the eroded mask."""
-        out = np.empty(mask.values.shape, np.bool_)
-        count = sweep.call(mask.values, self._plan, out)
-        return Mask(out, mask.pitch_cm, mask.origin_cm, count)
+        values = mask.values
+        out = np.empty(values.shape, BOOL)
+        count = sweep.call(values, self._plan, out)
+        return quick_mask(out, mask.pitch_cm, mask.origin_cm, count)
 
     def stacked(self, mask: MaskStack) -> MaskStack:
         """Return the eroded masks of several frames."""

@@ -9,9 +9,11 @@ from annotated_types import Ge, Le
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.packed import doubled
+
+BOOL = np.dtype(np.bool_)
 
 
 @compiled_later
@@ -56,11 +58,12 @@ def subdivide(
     """
     if factor == 1:
         return mask
-    rows, columns = mask.values.shape
-    out = np.empty((rows * factor, columns * factor), np.bool_)
-    expand.call(mask.values, factor, out)
+    values = mask.values
+    rows, columns = values.shape
+    out = np.empty((rows * factor, columns * factor), BOOL)
+    expand.call(values, factor, out)
     x, y = mask.pitch_cm
-    return Mask(out, (x / factor, y / factor), mask.origin_cm)
+    return quick_mask(out, (x / factor, y / factor), mask.origin_cm)
 
 
 def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:
