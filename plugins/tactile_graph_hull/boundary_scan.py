@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
-from tactile_graph.wires import Mask, Points
+from tactile_graph.wires import Mask, Points, quick_points
 from tactile_graph.wires.stacks import MaskStack, PointsStack
 from tactile_graph_hull.packed import centres_of, first_met, scanned_words
 from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
+WIDEST = MaskStack.WIDEST
 
 
 def boundary_scan(mask: Mask) -> Points:
@@ -37,9 +38,10 @@ def boundary_scan(mask: Mask) -> Points:
     values = mask.values
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)
-    if values.shape[1] <= MaskStack.WIDEST:
-        return Points(scanned_rows.call(values, *mask.pitch_cm, *mask.origin_cm))
-    return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
+    pitch_x, pitch_y = mask.pitch_cm
+    x0, y0 = mask.origin_cm
+    scanned = scanned_rows if values.shape[1] <= WIDEST else scanned_centres
+    return quick_points(scanned.call(values, pitch_x, pitch_y, x0, y0))
 
 
 def boundary_scan_stacked(mask: MaskStack) -> PointsStack:

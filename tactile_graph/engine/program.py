@@ -19,6 +19,7 @@ from tactile_graph.engine.guards import guarded
 from tactile_graph.engine.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.step_operation import Block, Call, Operation, State, step_operation
+from tactile_graph.engine.written import AFTER_FRAMES, Written
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
@@ -79,7 +80,24 @@ def make_program(
         if times_placed[item.slot] > 1 or reading.resumed:
             operation = _unless_settled(item.slot, operation)
         operations[item.slot] = operation
-    return [operations[slot] for slot in plan.main]
+    program = [operations[slot] for slot in plan.main]
+    if deciding is None and reading is AS_THEY_ARE:
+        alone = frozenset(slot for slot, times in times_placed.items() if times == 1)
+        program.append(_written_later(program, Written(plan, call_of, operations, alone)))
+    return program
+
+
+def _written_later(program: list[Operation], written: Written) -> Operation:
+    """Return what counts the frames, and at last puts the written program in the list's place."""
+    frames = 0
+
+    def operation(state: State) -> None:
+        nonlocal frames
+        frames += 1
+        if frames == AFTER_FRAMES:
+            program[:] = [written.program()]
+
+    return operation
 
 
 def _times_placed(plan: Plan) -> Counter[int]:
