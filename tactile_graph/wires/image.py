@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,12 @@ def _taken_by_machine_code(values: NDArray[Any]) -> NDArray[Any]:
 class _Gridded:
     """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
 
-    __slots__ = ("origin_cm", "pitch_cm", "values")
-    values: NDArray[Any]
+    __slots__ = ("origin_cm", "pitch_cm")
+    if TYPE_CHECKING:
+
+        @property
+        def values(self) -> NDArray[Any]: ...
+
     pitch_cm: tuple[float, float]
     origin_cm: tuple[float, float]
 
@@ -42,12 +47,12 @@ class _Gridded:
     @property
     def rows(self) -> int:
         """Number of rows."""
-        return int(self.values.shape[0])
+        return int(self.shape[0])
 
     @property
     def columns(self) -> int:
         """Number of columns."""
-        return int(self.values.shape[1])
+        return int(self.shape[1])
 
     @property
     def cell_area_cm2(self) -> float:
@@ -58,7 +63,7 @@ class _Gridded:
     def extent_cm(self) -> tuple[float, float, float, float]:
         """Left, right, bottom and top edge on the pad (y down), as matplotlib takes them."""
         x, y = self.origin_cm
-        rows, columns = self.values.shape
+        rows, columns = self.shape
         return (x, x + columns * self.pitch_cm[0], y + rows * self.pitch_cm[1], y)
 
     @property
@@ -90,11 +95,12 @@ class Image(_Gridded):
         False where a cell is missing or broken (its value is then 0); None where all are good.
     """
 
-    __slots__ = ("quantity", "valid")
+    __slots__ = ("quantity", "valid", "values")
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
     image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
     quantity: QuantityName
     valid: NDArray[np.bool_] | None
+    values: NDArray[Any]
 
     def __init__(
         self,
@@ -182,9 +188,13 @@ class Mask(_Gridded):
         Number of cells that are on, where whoever made the mask has counted them.
     """
 
-    __slots__ = ("_count",)
-    values: NDArray[np.bool_]
+    __slots__ = ("_cells", "_columns", "_count", "_words")
+    WIDEST: ClassVar[int] = 64
+    """Columns of a row that a machine word holds."""
+    _cells: NDArray[np.bool_] | None
     _count: int | None
+    _words: NDArray[np.uint64] | None
+    _columns: int
     columns_shown: ClassVar[tuple[str, ...]] = ("count", "area_cm2")
 
     def __init__(
@@ -195,10 +205,11 @@ class Mask(_Gridded):
         count: int | None = None,
     ) -> None:
         values.setflags(False)  # type: ignore[call-arg]
-        _set_values(self, values)
+        _set_cells(self, values)
         _set_pitch(self, pitch_cm)
         _set_origin(self, origin_cm)
         _set_count(self, count)
+        _set_words(self, None)
 
     def __reduce__(self) -> tuple[type[Mask], tuple[Any, ...]]:
         """Copy and pickle by what it is made of."""
@@ -207,6 +218,34 @@ class Mask(_Gridded):
     def with_values(self, values: NDArray[np.bool_]) -> Mask:
         """Return a mask on the same grid."""
         return Mask(values, self.pitch_cm, self.origin_cm)
+
+    @property
+    def values(self) -> NDArray[np.bool_]:
+        """Whether each cell is on, shape (rows, columns)."""
+        cells = self._cells
+        if cells is None:
+            assert self._words is not None
+            raw = self._words.astype("<u8", copy=False).view(np.uint8).reshape(-1, 8)
+            bits = np.unpackbits(raw, axis=-1, count=self._columns, bitorder="little")
+            cells = bits.view(np.bool_)
+            cells.setflags(False)  # type: ignore[call-arg]
+            _set_cells(self, cells)
+        return cells
+
+    @property
+    def words(self) -> NDArray[np.uint64] | None:
+        """The rows, bit c being column c; None where whoever made the mask did not pack them."""
+        return self._words
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        cells = self._cells
+        if cells is None:
+            assert self._words is not None
+            return len(self._words), self._columns
+        rows, columns = cells.shape
+        return rows, columns
 
     @property
     def count(self) -> int:
@@ -220,7 +259,8 @@ class Mask(_Gridded):
     @property
     def fraction(self) -> float:
         """Share of the cells that are on, 0 to 1."""
-        return self.count / self.values.size if self.values.size else 0.0
+        size = self._cells.size if self._cells is not None else math.prod(self.shape)
+        return self.count / size if size else 0.0
 
     @property
     def area_cm2(self) -> float:
@@ -237,12 +277,14 @@ class Mask(_Gridded):
 
 
 # The slots' own setters: the one way past the frozen __setattr__, at half a dataclass's cost.
-_slots: Mapping[str, Any] = {**vars(_Gridded), **vars(Image), **vars(Mask)}
+_slots: Mapping[str, Any] = {**vars(_Gridded), **vars(Mask), **vars(Image)}
 _set_values = _slots["values"].__set__
 _set_pitch = _slots["pitch_cm"].__set__
 _set_origin = _slots["origin_cm"].__set__
 _set_quantity = _slots["quantity"].__set__
 _set_valid = _slots["valid"].__set__
+_set_cells = _slots["_cells"].__set__
+_set_words = _slots["_words"].__set__
 _set_count = _slots["_count"].__set__
 
 
@@ -298,7 +340,39 @@ def quick_mask(
     """Return ``Mask(values, pitch_cm, origin_cm, count)`` in half the time."""
     values.setflags(False)  # type: ignore[call-arg]
     mask: Any = _OpenMask()
-    mask.values = values
+    mask._cells = values
+    mask.pitch_cm = pitch_cm
+    mask.origin_cm = origin_cm
+    mask._count = count
+    mask._words = None
+    mask.__class__ = Mask
+    return mask  # type: ignore[no-any-return]
+
+
+def packed_mask(
+    words: NDArray[np.uint64],
+    columns: int,
+    pitch_cm: tuple[float, float],
+    origin_cm: tuple[float, float],
+    count: int,
+) -> Mask:
+    """Return a mask whose rows are machine words; its cells are unpacked when asked for.
+
+    Parameters
+    ----------
+    words : ndarray of uint64, shape (rows,)
+        Bit c is column c; higher ones are 0. Takes ownership: the array becomes read-only.
+    columns : int
+        At most `Mask.WIDEST`.
+    pitch_cm, origin_cm : (float, float)
+    count : int
+        Number of bits that are 1.
+    """
+    words.setflags(False)  # type: ignore[call-arg]
+    mask: Any = _OpenMask()
+    mask._cells = None
+    mask._words = words
+    mask._columns = columns
     mask.pitch_cm = pitch_cm
     mask.origin_cm = origin_cm
     mask._count = count

@@ -9,11 +9,12 @@ from annotated_types import Ge, Le
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask, quick_mask
+from tactile_graph.wires import Mask, packed_mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
-from tactile_graph_filters.morphology.packed import doubled
+from tactile_graph_filters.morphology.packed import WORD, doubled, doubled_cells
 
 BOOL = np.dtype(np.bool_)
+HALF = Mask.WIDEST // 2
 
 
 @compiled_later
@@ -60,9 +61,13 @@ def subdivide(
         return mask
     values = mask.values
     rows, columns = values.shape
+    x, y = mask.pitch_cm
+    if factor == 2 and columns <= HALF:
+        words = np.empty(2 * rows, WORD)
+        count = doubled_cells.call(values, words)
+        return packed_mask(words, 2 * columns, (x / 2, y / 2), mask.origin_cm, count)
     out = np.empty((rows * factor, columns * factor), BOOL)
     expand.call(values, factor, out)
-    x, y = mask.pitch_cm
     return quick_mask(out, (x / factor, y / factor), mask.origin_cm)
 
 
