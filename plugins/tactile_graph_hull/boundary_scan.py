@@ -39,8 +39,9 @@ def boundary_scan(mask: Mask) -> Points:
     x0, y0 = mask.origin_cm
     words = mask.words
     if words is not None:
-        columns = mask.shape[1]
-        return quick_points(scanned_packed.call(words, columns, pitch_x, pitch_y, x0, y0))
+        usual = pitch_x.__class__ is pitch_y.__class__ is x0.__class__ is y0.__class__ is float
+        scan = scanned_packed.direct if usual else scanned_packed.call
+        return quick_points(scan(words, mask.shape[1], pitch_x, pitch_y, x0, y0))
     values = mask.values
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)

@@ -15,6 +15,9 @@ _USUAL_BYTES = frozenset({1, 4, 8})
 """Of a number; whatever takes others is looked at once more."""
 
 
+_WORD = np.dtype(np.uint64)
+
+
 def _taken_by_machine_code(values: NDArray[Any]) -> NDArray[Any]:
     """Return values of half or quadruple precision in double; others as they are."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
@@ -234,7 +237,10 @@ class Mask(_Gridded):
 
     @property
     def words(self) -> NDArray[np.uint64] | None:
-        """The rows, bit c being column c; None where whoever made the mask did not pack them."""
+        """The rows as machine words, bit c being column c; None if the mask was not made of them.
+
+        In order of memory, of the machine's own byte order.
+        """
         return self._words
 
     @property
@@ -368,6 +374,8 @@ def packed_mask(
     count : int
         Number of bits that are 1.
     """
+    if words.dtype is not _WORD or not words.flags.c_contiguous:
+        words = np.ascontiguousarray(words, np.uint64)  # kernels take them without a look
     words.setflags(False)  # type: ignore[call-arg]
     mask: Any = _OpenMask()
     mask._cells = None

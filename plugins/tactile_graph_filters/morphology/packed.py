@@ -25,7 +25,7 @@ _PAIRS = np.uint64(0x3333333333333333)
 _NIBBLES = np.uint64(0x0F0F0F0F0F0F0F0F)
 _BYTES = np.uint64(0x0101010101010101)
 _ALL = np.uint64(2**64 - 1)
-WORD = np.dtype(np.uint64)
+BOOL, WORD = np.dtype(np.bool_), np.dtype(np.uint64)
 Cells = NDArray[np.bool_]
 Around = NDArray[np.int64]
 """Of an element, for masks of one frame: row 0 is whether to dilate and how many rows it reaches,
@@ -114,11 +114,12 @@ def combined_mask(mask: Mask, element: Around) -> Mask | None:
         if not 0 < columns <= Mask.WIDEST:
             return None
         out = np.empty(rows, WORD)
-        count = combined_cells.call(values, element, out)
+        usual = values.dtype is BOOL and values.flags.c_contiguous
+        count = (combined_cells.direct if usual else combined_cells.call)(values, element, out)
     else:
         rows, columns = mask.shape
         out = np.empty(rows, WORD)
-        count = combined_rows.call(words, columns, element, out)
+        count = combined_rows.direct(words, columns, element, out)
     return packed_mask(out, columns, mask.pitch_cm, mask.origin_cm, count)
 
 

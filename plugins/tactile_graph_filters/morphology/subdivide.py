@@ -64,7 +64,8 @@ def subdivide(
     x, y = mask.pitch_cm
     if factor == 2 and columns <= HALF:
         words = np.empty(2 * rows, WORD)
-        count = doubled_cells.call(values, words)
+        usual = values.dtype is BOOL and values.flags.c_contiguous
+        count = (doubled_cells.direct if usual else doubled_cells.call)(values, words)
         return packed_mask(words, 2 * columns, (x / 2, y / 2), mask.origin_cm, count)
     out = np.empty((rows * factor, columns * factor), BOOL)
     expand.call(values, factor, out)

@@ -19,7 +19,7 @@ from tactile_graph_filters.nan import refuse_nan
 from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
 
-BOOL = np.dtype(np.bool_)
+BOOL, DOUBLE = np.dtype(np.bool_), np.dtype(np.float64)
 
 
 @compiled_later
@@ -203,7 +203,8 @@ class Threshold:
         if level is not None and image.valid is None and self._empty is None:
             values = image.values  # the usual case, by the shortest way
             out = np.empty(values.shape, BOOL)
-            count = at_least.call(values, level, out)
+            usual = values.dtype is DOUBLE and values.flags.c_contiguous
+            count = (at_least.direct if usual else at_least.call)(values, level, out)
             if count > 0:
                 return quick_mask(out, image.pitch_cm, image.origin_cm, count)
         in_volts = self._level_v is not None and image.quantity == "volt"
