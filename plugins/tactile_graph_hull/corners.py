@@ -41,6 +41,8 @@ def hull_polygon(xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: fl
     xy, flags = xy_cm, xy_cm.flags
     if xy.dtype is not DOUBLE or flags.writeable or not flags.c_contiguous:
         xy = as_points(np.ascontiguousarray(xy_cm, dtype=np.float64))
+    if xy.ndim != 2:
+        raise ValueError(f"points must be of shape (N, 2), got {xy.shape}")
     found = corners(xy, rounding_ulps)
     if len(found) == 0:
         found = _out_of_range(xy, corners, rounding_ulps)

@@ -374,8 +374,8 @@ def packed_mask(
     count : int
         Number of bits that are 1.
     """
-    if words.dtype is not _WORD or not words.flags.c_contiguous:
-        words = np.ascontiguousarray(words, np.uint64)  # kernels take them without a look
+    if words.dtype is not _WORD or words.ndim != 1 or not words.flags.c_contiguous:
+        words = np.ascontiguousarray(words, np.uint64).reshape(-1)  # kernels do not look at them
     words.setflags(False)  # type: ignore[call-arg]
     mask: Any = _OpenMask()
     mask._cells = None

@@ -203,7 +203,7 @@ class Threshold:
         if level is not None and image.valid is None and self._empty is None:
             values = image.values  # the usual case, by the shortest way
             out = np.empty(values.shape, BOOL)
-            usual = values.dtype is DOUBLE and values.flags.c_contiguous
+            usual = values.dtype is DOUBLE and values.ndim == 2 and values.flags.c_contiguous
             count = (at_least.direct if usual else at_least.call)(values, level, out)
             if count > 0:
                 return quick_mask(out, image.pitch_cm, image.origin_cm, count)

@@ -38,6 +38,8 @@ def circle_from(
     xy = xy_cm
     if xy.dtype is not DOUBLE or not xy.flags.c_contiguous:
         xy = np.ascontiguousarray(xy_cm, dtype=np.float64)
+    if xy.ndim != 2:
+        raise ValueError(f"points must be of shape (N, 2), got {xy.shape}")
     # A call that spreads out what may be nothing takes twice as long.
     status, x, y, radius, rms, iterations = fit(xy, *settings) if settings else fit(xy)
     if status:
