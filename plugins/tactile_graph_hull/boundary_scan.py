@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
-from tactile_graph.wires import Mask, Points
+from tactile_graph.wires import Mask, Points, packed_mask, quick_points
 from tactile_graph.wires.stacks import MaskStack, PointsStack
 from tactile_graph_hull.packed import centres_of, first_met, scanned_words
 from tactile_graph_hull.parts import several_parts
 
 BLOCK = 16  # cells looked at together
+WIDEST = MaskStack.WIDEST
+ONE = np.uint64(1)
 
 
 def boundary_scan(mask: Mask) -> Points:
@@ -34,12 +36,18 @@ def boundary_scan(mask: Mask) -> Points:
     outline by about half a cell. `boundary_mask` gives the same cells as a mask. Source: thesis
     3.1.2 and 4.2.3, figures 3.2 and 4.12.
     """
+    pitch_x, pitch_y = mask.pitch_cm
+    x0, y0 = mask.origin_cm
+    words = mask.words
+    if words is not None:
+        usual = pitch_x.__class__ is pitch_y.__class__ is x0.__class__ is y0.__class__ is float
+        scan = scanned_packed.direct if usual else scanned_packed.call
+        return quick_points(scan(words, mask.shape[1], pitch_x, pitch_y, x0, y0))
     values = mask.values
     if not values.flags.c_contiguous:
         values = np.ascontiguousarray(values)
-    if values.shape[1] <= MaskStack.WIDEST:
-        return Points(scanned_rows.call(values, *mask.pitch_cm, *mask.origin_cm))
-    return Points(scanned_centres.call(values, *mask.pitch_cm, *mask.origin_cm))
+    scanned = scanned_rows if values.shape[1] <= WIDEST else scanned_centres
+    return quick_points(scanned.call(values, pitch_x, pitch_y, x0, y0))
 
 
 def boundary_scan_stacked(mask: MaskStack) -> PointsStack:
@@ -139,6 +147,32 @@ def scanned_rows(
             word |= np.uint64(row[c]) << np.uint64(c)
         words[r] = word
     first_met(words, seen)
+    place, centres = np.empty(columns + 1, np.int64), np.empty((2 * (rows + columns), 2))
+    n = centres_of(seen, pitch_x, pitch_y, x0, y0, place, centres, 0)
+    return centres[:n]
+
+
+def _scanned_packed(
+    words: NDArray[np.uint64], columns: int, pitch_x: float, pitch_y: float, x0: float, y0: float
+) -> NDArray[np.float64]:
+    """Do the same to a mask whose rows are packed, bit c being column c."""
+    mask = packed_mask(words, columns, (1.0, 1.0), (0.0, 0.0), 0)
+    return _scanned_centres(mask.values, pitch_x, pitch_y, x0, y0)
+
+
+@compiled_twin_of(_scanned_packed)
+def scanned_packed(
+    words: NDArray[np.uint64], columns: int, pitch_x: float, pitch_y: float, x0: float, y0: float
+) -> NDArray[np.float64]:
+    """Do the same to a mask whose rows are packed, in loops."""
+    rows = words.shape[0]
+    within = np.uint64(0)
+    for c in range(columns):
+        within |= ONE << np.uint64(c)
+    seen = np.empty(rows, np.uint64)
+    first_met(words, seen)
+    for r in range(rows):  # a bit beyond the columns would be counted beyond their room
+        seen[r] &= within
     place, centres = np.empty(columns + 1, np.int64), np.empty((2 * (rows + columns), 2))
     n = centres_of(seen, pitch_x, pitch_y, x0, y0, place, centres, 0)
     return centres[:n]

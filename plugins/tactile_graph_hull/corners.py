@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Polygon
+from tactile_graph.wires import Polygon, quick_polygon
 from tactile_graph_hull.turn_of_points import LARGEST, SMALLEST
 
 Corners: TypeAlias = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
 
+DOUBLE = np.dtype(np.float64)
 EPS = 2.0**-52
 
 
@@ -37,11 +38,15 @@ def hull_polygon(xy_cm: NDArray[np.float64], corners: Corners, rounding_ulps: fl
     Degenerate
         If there are no points, or some are not finite.
     """
-    xy = as_points(np.ascontiguousarray(xy_cm, dtype=np.float64))
+    xy, flags = xy_cm, xy_cm.flags
+    if xy.dtype is not DOUBLE or flags.writeable or not flags.c_contiguous:
+        xy = as_points(np.ascontiguousarray(xy_cm, dtype=np.float64))
+    if xy.ndim != 2:
+        raise ValueError(f"points must be of shape (N, 2), got {xy.shape}")
     found = corners(xy, rounding_ulps)
     if len(found) == 0:
         found = _out_of_range(xy, corners, rounding_ulps)
-    return Polygon(found)
+    return quick_polygon(found)
 
 
 def _out_of_range(

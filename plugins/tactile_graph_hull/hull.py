@@ -45,7 +45,7 @@ def hull(points: Points, *, rounding_ulps: Annotated[float, Ge(0)] = 8.0) -> Pol
     `boundary_scan` gives them, else O(N log N). Source: A. M. Andrew 1979,
     10.1016/0020-0190(79)90072-3; thesis 3.1.4.
     """
-    return hull_polygon(points.xy_cm, chain_corners.call, rounding_ulps)
+    return hull_polygon(points.xy_cm, chain_corners.direct, float(rounding_ulps))
 
 
 def hull_stacked(points: PointsStack, *, rounding_ulps: float) -> Answered:

@@ -13,11 +13,12 @@ are compiled in numba's own way, with the same answers.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import numba
 from numba import types
 from numba.core.dispatcher import Dispatcher
+from numba.core.typing.typeof import Purpose, typeof
 
 TRIED = ("0.68",)
 """Versions of numba whose inner working is known to fit."""
@@ -39,6 +40,16 @@ def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
 
 def _numbas_own(loops: Callable[..., Any]) -> Dispatcher:
     return numba.njit(cache=True, error_model="numpy", nogil=True)(loops)
+
+
+def entry_point(entry: Any, args: tuple[Any, ...]) -> Callable[..., Any]:
+    """Return the machine code of an entry for arguments of the types of these, no others.
+
+    Where numba made none for these very types (it may take a whole number for a float), it is the
+    entry itself.
+    """
+    made = entry.overloads.get(tuple(typeof(arg, Purpose.argument) for arg in args))
+    return entry if made is None else cast("Callable[..., Any]", made.entry_point)
 
 
 def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> None:

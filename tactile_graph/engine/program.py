@@ -25,6 +25,7 @@ from tactile_graph.engine.operations.step_operation import (
 )
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
+from tactile_graph.engine.written import AFTER_FRAMES, Written
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
@@ -85,7 +86,30 @@ def make_program(
         if times_placed[item.slot] > 1 or reading.resumed:
             operation = _unless_settled(item.slot, operation)
         operations[item.slot] = operation
-    return [operations[slot] for slot in plan.main]
+    program = [operations[slot] for slot in plan.main]
+    if deciding is not None or reading is not AS_THEY_ARE:
+        return program
+    alone = frozenset(slot for slot, times in times_placed.items() if times == 1)
+    return [_written_later(program, Written(plan, call_of, operations, alone))]
+
+
+def _written_later(program: list[Operation], written: Written) -> Operation:
+    """Return one operation for a whole program: written out after some frames."""
+    frames = 0
+    at_once: Operation | None = None
+
+    def operation(state: State) -> None:
+        nonlocal frames, at_once
+        if at_once is not None:
+            at_once(state)
+            return
+        for one in program:
+            one(state)
+        frames += 1
+        if frames == AFTER_FRAMES:
+            at_once = written.program()
+
+    return operation
 
 
 def _times_placed(plan: Plan) -> Counter[int]:

@@ -21,7 +21,7 @@ class Points:
     xy_cm: NDArray[np.float64]
 
     def __init__(self, xy_cm: NDArray[np.float64]) -> None:
-        xy_cm.setflags(write=False)
+        xy_cm.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
         _set_xy(self, xy_cm)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
@@ -42,3 +42,18 @@ class Points:
 
 _slots: Any = vars(Points)
 _set_xy = _slots["xy_cm"].__set__
+
+
+class _OpenPoints(Points):  # as of images
+    __slots__ = ()
+    __init__ = object.__init__
+    __setattr__ = object.__setattr__  # type: ignore[assignment]
+
+
+def quick_points(xy_cm: NDArray[np.float64]) -> Points:
+    """Return ``Points(xy_cm)`` in half the time."""
+    xy_cm.setflags(False)  # type: ignore[call-arg]
+    points: Any = _OpenPoints()
+    points.xy_cm = xy_cm
+    points.__class__ = Points
+    return points  # type: ignore[no-any-return]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires.measure import Measure, axis_off_deg
 from tactile_graph.wires.measure import printed_angle_deg as printed_angle_deg
-from tactile_graph.wires.points import Points
+from tactile_graph.wires.points import Points, quick_points
 
 
 def _turned(
@@ -136,12 +136,12 @@ class Polygon:
     provides: ClassVar[Mapping[type, str]] = {Points: "points"}
 
     def __post_init__(self) -> None:
-        self.xy_cm.setflags(write=False)
+        self.xy_cm.setflags(False)  # type: ignore[call-arg]  # by keyword it takes longer
 
     @property
     def points(self) -> Points:
         """The corners as points."""
-        return Points(self.xy_cm)
+        return quick_points(self.xy_cm)
 
     @property
     def count(self) -> int:
@@ -183,5 +183,15 @@ class Polygon:
         """Return the corners, shape (N, 2); ``n`` is ignored."""
         return self.xy_cm
 
+
+def quick_polygon(xy_cm: NDArray[np.float64]) -> Polygon:
+    """Return ``Polygon(xy_cm)`` in half the time."""
+    xy_cm.setflags(False)  # type: ignore[call-arg]
+    polygon = _new(Polygon)
+    polygon.__dict__["xy_cm"] = xy_cm
+    return polygon
+
+
+_new = object.__new__
 
 Shape = Circle | Ellipse | Rectangle | Polygon

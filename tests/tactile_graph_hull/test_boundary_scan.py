@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 from helpers_modes import held
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Mask, packed_mask
 from tactile_graph_hull.boundary_mask import boundary_mask
-from tactile_graph_hull.boundary_scan import boundary_scan, scanned_centres, scanned_rows
+from tactile_graph_hull.boundary_scan import (
+    boundary_scan,
+    scanned_centres,
+    scanned_packed,
+    scanned_rows,
+)
 from tactile_graph_hull.mask_points import mask_points
 
 DRAWN = """
@@ -106,3 +111,16 @@ def test_masks_of_other_memory_layouts_are_taken():
     assert np.array_equal(boundary_scan(Mask(np.asfortranarray(values))).xy_cm, expected)
     mirrored = boundary_scan(Mask(values[:, ::-1])).xy_cm
     assert sorted((10 - mirrored[:, 0]).tolist()) == pytest.approx(expected[:, 0].tolist())
+
+
+@pytest.mark.parametrize("grid", [((0.65, 0.7), (1.5, -2.0)), ((1, 2), (0, 0))])
+@pytest.mark.parametrize("columns", [1, 30, 64])
+def test_packed_rows_have_the_boundary_of_their_cells(columns, grid):
+    values = np.random.default_rng(columns).random((20, columns)) < 0.3
+    words = np.array([sum(int(on) << c for c, on in enumerate(row)) for row in values], np.uint64)
+    mask = packed_mask(words, columns, *grid, int(values.sum()))
+    expected = boundary_scan(Mask(values, *grid)).xy_cm
+    given = (held(words), columns, *map(float, (*grid[0], *grid[1])))
+    np.testing.assert_array_equal(boundary_scan(mask).xy_cm, expected)
+    np.testing.assert_array_equal(scanned_packed.reference(*given), expected)
+    np.testing.assert_array_equal(scanned_packed.compiled(*given), expected)

@@ -7,11 +7,11 @@ from typing import Annotated
 import numpy as np
 
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
-from tactile_graph_filters.morphology.erosion import make_plan, sweep, swept
-from tactile_graph_filters.morphology.packed import combined
+from tactile_graph_filters.morphology.erosion import BOOL, make_plan, sweep, swept
+from tactile_graph_filters.morphology.packed import around, combined, combined_mask
 
 
 class Erode:
@@ -37,12 +37,18 @@ class Erode:
     def __init__(self, *, element: ElementSetting = "cross3", border: bool = False) -> None:
         self._element, self._border = parse_element(element), border
         self._plan = make_plan(self._element, border=border)
+        self._around = None if border else around(self._element, dilate=False)
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the eroded mask."""
-        out = np.empty(mask.values.shape, np.bool_)
-        count = sweep.call(mask.values, self._plan, out)
-        return Mask(out, mask.pitch_cm, mask.origin_cm, count)
+        if self._around is not None:
+            packed = combined_mask(mask, self._around)
+            if packed is not None:
+                return packed
+        values = mask.values
+        out = np.empty(values.shape, BOOL)
+        count = sweep.call(values, self._plan, out)
+        return quick_mask(out, mask.pitch_cm, mask.origin_cm, count)
 
     def stacked(self, mask: MaskStack) -> MaskStack:
         """Return the eroded masks of several frames."""

@@ -29,6 +29,8 @@ result plane, flip the result. Other rows are sweeps: target, source, down a, ri
 right b, whether the target is new: ``target[x] (&)= source[x + a] & source[x + b]``; a sweep
 whose source is -1 complements its target."""
 
+BOOL = np.dtype(np.bool_)
+
 _WORTH_DOUBLING = 4
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_later
+from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.wires import Mask, packed_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import Element
 
@@ -23,6 +24,12 @@ _ODD = np.uint64(0x5555555555555555)
 _PAIRS = np.uint64(0x3333333333333333)
 _NIBBLES = np.uint64(0x0F0F0F0F0F0F0F0F)
 _BYTES = np.uint64(0x0101010101010101)
+_ALL = np.uint64(2**64 - 1)
+BOOL, WORD = np.dtype(np.bool_), np.dtype(np.uint64)
+Cells = NDArray[np.bool_]
+Around = NDArray[np.int64]
+"""Of an element, for masks of one frame: row 0 is whether to dilate and how many rows it reaches,
+the others are its cells, as (down, right) from its origin."""
 
 
 def doubled(words: Words) -> Words:
@@ -86,3 +93,161 @@ def combined_each(words, offsets, dilate, within, out, counts):  # type: ignore[
             x = (x + (x >> _FOUR)) & _NIBBLES
             count += int((x * _BYTES) >> _TOP)
         counts[k] = count
+
+
+def around(element: Element, *, dilate: bool) -> Around | None:
+    """Return an element as kernels take it; None where it is wider than a word."""
+    rows, columns = element.reach
+    if columns >= Mask.WIDEST:
+        return None
+    table = np.array([(int(dilate), rows), *element.offsets.tolist()], np.int64)
+    table.setflags(write=False)
+    return table
+
+
+def combined_mask(mask: Mask, element: Around) -> Mask | None:
+    """Return a mask eroded, or dilated; cells outside count as off. None if it is too wide."""
+    words = mask.words
+    if words is None:
+        values = mask.values
+        rows, columns = values.shape
+        if not 0 < columns <= Mask.WIDEST:
+            return None
+        out = np.empty(rows, WORD)
+        usual = values.dtype is BOOL and values.flags.c_contiguous
+        count = (combined_cells.direct if usual else combined_cells.call)(values, element, out)
+    else:
+        rows, columns = mask.shape
+        out = np.empty(rows, WORD)
+        count = combined_rows.direct(words, columns, element, out)
+    return packed_mask(out, columns, mask.pitch_cm, mask.origin_cm, count)
+
+
+def _rows_of(values: Cells) -> Words:
+    """Return cells of shape (rows, columns) as words."""
+    rows, columns = values.shape
+    raw = np.zeros((rows, 8), np.uint8)
+    raw[:, : -(-columns // 8)] = np.packbits(values, axis=-1, bitorder="little")
+    return raw.view("<u8").reshape(rows).astype(WORD)
+
+
+def _doubled_plain(values: Cells, out: Words) -> int:
+    """Write each row of ``values`` into two of ``out``, each cell into two bits of a word.
+
+    Returns how many cells are then on.
+    """
+    out[:] = np.repeat(doubled(_rows_of(values)), 2)
+    return 4 * int(np.count_nonzero(values))
+
+
+@compiled_twin_of(_doubled_plain)
+def doubled_cells(values, out):  # type: ignore[no-untyped-def]
+    """Do the same in loops."""
+    count = 0
+    for r in range(values.shape[0]):
+        word = _word(values[r])
+        count += ones(word)
+        for shift, kept in _HALVES:
+            word = (word | (word << shift)) & kept
+        word |= word << _ONE
+        out[2 * r] = word
+        out[2 * r + 1] = word
+    return 4 * count
+
+
+@compiled_later
+def ones(word):  # type: ignore[no-untyped-def]
+    """Return how many bits of a word are 1."""
+    x = word - ((word >> _ONE) & _ODD)
+    x = (x & _PAIRS) + ((x >> _TWO) & _PAIRS)
+    x = (x + (x >> _FOUR)) & _NIBBLES
+    return int((x * _BYTES) >> _TOP)
+
+
+@compiled_later
+def _word(row):  # type: ignore[no-untyped-def]
+    """Return a row of cells as a word."""
+    word = np.uint64(0)
+    for c in range(row.shape[0]):
+        word |= np.uint64(row[c]) << np.uint64(c)
+    return word
+
+
+def _combined_plain(words: Words, columns: int, element: Around, out: Words) -> int:
+    """Write rows each the AND (OR) of those that an element reaches; return how many cells are on.
+
+    ``words`` and ``out`` are of shape (rows,).
+    """
+    dilate, reach = element[0].tolist()
+    rows, within = len(words), np.uint64((1 << columns) - 1)
+    given = np.zeros(rows + 2 * reach, WORD)
+    given[reach : reach + rows] = words
+    out[:] = 0 if dilate else within
+    for down, right in element[1:].tolist():
+        there = given[reach + down : reach + down + rows]
+        there = there >> np.uint64(right) if right >= 0 else there << np.uint64(-right)
+        out[:] = out | there if dilate else out & there
+    out &= within
+    return int(np.unpackbits(out.view(np.uint8)).sum())
+
+
+@compiled_twin_of(_combined_plain)
+def combined_rows(words, columns, element, out):  # type: ignore[no-untyped-def]
+    """Do the same in loops."""
+    given = _with_margin(words.shape[0], element[0, 1])
+    for r in range(words.shape[0]):
+        given[element[0, 1] + r] = words[r]
+    return _combined_into(given, columns, element, out)
+
+
+def _combined_cells_plain(values: Cells, element: Around, out: Words) -> int:
+    """Do the same to cells, shape (rows, columns)."""
+    return _combined_plain(_rows_of(values), values.shape[1], element, out)
+
+
+@compiled_twin_of(_combined_cells_plain)
+def combined_cells(values, element, out):  # type: ignore[no-untyped-def]
+    """Do the same to cells in loops."""
+    given = _with_margin(values.shape[0], element[0, 1])
+    for r in range(values.shape[0]):
+        given[element[0, 1] + r] = _word(values[r])
+    return _combined_into(given, values.shape[1], element, out)
+
+
+@compiled_later
+def _with_margin(rows, reach):  # type: ignore[no-untyped-def]
+    """Return room for rows, with empty ones above and below."""
+    given = np.empty(rows + 2 * reach, np.uint64)
+    for r in range(reach):
+        given[r] = np.uint64(0)
+        given[reach + rows + r] = np.uint64(0)
+    return given
+
+
+@compiled_later
+def _combined_into(given, columns, element, out):  # type: ignore[no-untyped-def]
+    """Combine rows that stand within a margin; return how many cells are on."""
+    rows, reach, dilate = out.shape[0], element[0, 1], element[0, 0] != 0
+    within = _ALL >> np.uint64(64 - columns)
+    for r in range(rows):
+        out[r] = np.uint64(0) if dilate else within
+    for i in range(1, element.shape[0]):
+        there, right = given[reach + element[i, 0] :], element[i, 1]
+        shift = np.uint64(abs(right))
+        if dilate and right >= 0:
+            for r in range(rows):
+                out[r] |= there[r] >> shift
+        elif dilate:
+            for r in range(rows):
+                out[r] |= there[r] << shift
+        elif right >= 0:
+            for r in range(rows):
+                out[r] &= there[r] >> shift
+        else:
+            for r in range(rows):
+                out[r] &= there[r] << shift
+    count = 0
+    for r in range(rows):
+        out[r] &= within
+        count += ones(out[r])
+    return count

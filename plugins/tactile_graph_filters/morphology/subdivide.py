@@ -9,9 +9,12 @@ from annotated_types import Ge, Le
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Mask, packed_mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
-from tactile_graph_filters.morphology.packed import doubled
+from tactile_graph_filters.morphology.packed import WORD, doubled, doubled_cells
+
+BOOL = np.dtype(np.bool_)
+HALF = Mask.WIDEST // 2
 
 
 @compiled_later
@@ -56,11 +59,17 @@ def subdivide(
     """
     if factor == 1:
         return mask
-    rows, columns = mask.values.shape
-    out = np.empty((rows * factor, columns * factor), np.bool_)
-    expand.call(mask.values, factor, out)
+    values = mask.values
+    rows, columns = values.shape
     x, y = mask.pitch_cm
-    return Mask(out, (x / factor, y / factor), mask.origin_cm)
+    if factor == 2 and columns <= HALF:
+        words = np.empty(2 * rows, WORD)
+        usual = values.dtype is BOOL and values.flags.c_contiguous
+        count = (doubled_cells.direct if usual else doubled_cells.call)(values, words)
+        return packed_mask(words, 2 * columns, (x / 2, y / 2), mask.origin_cm, count)
+    out = np.empty((rows * factor, columns * factor), BOOL)
+    expand.call(values, factor, out)
+    return quick_mask(out, (x / factor, y / factor), mask.origin_cm)
 
 
 def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:

@@ -55,8 +55,10 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     None where no cell is valid.
     """
     rows, columns = dead_lines(image)
-    usable = ~rows[:, None] & ~columns
-    values = image.values[usable if image.valid is None else usable & image.valid]
+    values = image.values
+    if image.valid is not None or rows.any() or columns.any():
+        usable = ~rows[:, None] & ~columns
+        values = values[usable if image.valid is None else usable & image.valid]
     if values.size == 0:
         return None
     seen = np.asarray(values, np.float64).ravel()

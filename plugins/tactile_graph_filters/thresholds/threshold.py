@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Image, Mask
+from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph.wires.stacks import Answered, ImageStack, MaskStack
 from tactile_graph_filters.nan import refuse_nan
 from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
+
+BOOL, DOUBLE = np.dtype(np.bool_), np.dtype(np.float64)
 
 
 @compiled_later
@@ -176,6 +178,8 @@ class Threshold:
         self.takes_hint = (
             "" if level == "auto" else "level: auto finds one above each frame's noise"
         )
+        fixed = None if self.takes or self._recorded is not None else self._other
+        self._fixed, self._fixed_in_volts = fixed, fixed if level_v is None else self._level_v
         self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
 
     def _reached(self, level: float | None) -> float | None:
@@ -195,6 +199,14 @@ class Threshold:
         RuleError
             If only a level in another unit is known than the image is in.
         """
+        level = self._fixed_in_volts if image.quantity == "volt" else self._fixed
+        if level is not None and image.valid is None and self._empty is None:
+            values = image.values  # the usual case, by the shortest way
+            out = np.empty(values.shape, BOOL)
+            usual = values.dtype is DOUBLE and values.ndim == 2 and values.flags.c_contiguous
+            count = (at_least.direct if usual else at_least.call)(values, level, out)
+            if count > 0:
+                return quick_mask(out, image.pitch_cm, image.origin_cm, count)
         in_volts = self._level_v is not None and image.quantity == "volt"
         level = self._level_v if in_volts else self._other
         if self.takes and image.quantity not in self.takes["image"]:

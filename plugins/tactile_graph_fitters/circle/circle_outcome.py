@@ -19,6 +19,8 @@ from tactile_graph_fitters.circle.principal_axes import (
     TOO_FEW,
 )
 
+DOUBLE = np.dtype(np.float64)
+
 Found: TypeAlias = tuple[int, float, float, float, float, int]
 """Status, centre x and y, radius, rms, iterations."""
 
@@ -33,8 +35,13 @@ def circle_from(
     Degenerate
         If ``fit`` finds none; the text says why and how many points there were.
     """
-    xy = np.ascontiguousarray(xy_cm, dtype=np.float64)
-    status, x, y, radius, rms, iterations = fit(xy, *settings)
+    xy = xy_cm
+    if xy.dtype is not DOUBLE or not xy.flags.c_contiguous:
+        xy = np.ascontiguousarray(xy_cm, dtype=np.float64)
+    if xy.ndim != 2:
+        raise ValueError(f"points must be of shape (N, 2), got {xy.shape}")
+    # A call that spreads out what may be nothing takes twice as long.
+    status, x, y, radius, rms, iterations = fit(xy, *settings) if settings else fit(xy)
     if status:
         if status != OUT_OF_RANGE:
             raise Degenerate(why(xy, status, radius, iterations))

@@ -41,7 +41,7 @@ def fit_circle(points: Points) -> FittedCircle:
     Points that are centres of boundary cells lie half a cell inside the outline: so does the
     circle.
     """
-    return circle_from(points.xy_cm, geometric_fit.call)
+    return circle_from(points.xy_cm, geometric_fit.direct)
 
 
 def fit_circle_stacked(points: PointsStack) -> Answered:

@@ -39,12 +39,11 @@ class FittedCircle(Circle):
     ) -> FittedCircle:
         """Return the same record, made at once: a frozen dataclass sets its fields one by one."""
         circle = object.__new__(cls)
-        circle.__dict__.update(
-            x_cm=x_cm,
-            y_cm=y_cm,
-            radius_cm=radius_cm,
-            rms_cm=rms_cm,
-            n_points=n_points,
-            iterations=iterations,
-        )
+        fields = circle.__dict__
+        fields["x_cm"] = x_cm
+        fields["y_cm"] = y_cm
+        fields["radius_cm"] = radius_cm
+        fields["rms_cm"] = rms_cm
+        fields["n_points"] = n_points
+        fields["iterations"] = iterations
         return circle

@@ -224,3 +224,18 @@ def test_numbas_own_functions_serve_entries_and_others_alike() -> None:
     assert alone(VALUES) == 5.0
     with pytest.raises(ValueError, match=r"shape \(5,\) from input of shape \(3,\)"):
         alone(VALUES[:3])
+
+
+def test_direct_calls_answer_as_calls_do_before_and_after_machine_code(
+    fresh: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernel = fresh().doubled
+    answers = [kernel.direct(VALUES, i) for i in range(3)]
+    assert answers == [6.0, 2.0, 8.0]
+    assert kernel.direct is not kernel.call  # nobody looks at its arguments any more
+    with pytest.raises(ValueError, match="too many"):
+        kernel.direct(VALUES, helpers_kernels.MOST + 1)
+    monkeypatch.setenv("TACTILE_GRAPH_KERNELS", "plain")
+    kernel.reset()
+    assert kernel.direct(VALUES, 1) == 2.0
+    assert kernel.direct == kernel._first_direct

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tactile_graph import Image
+from tactile_graph.wires import (
+    Image,
+    Mask,
+    Points,
+    Polygon,
+    packed_mask,
+    quick_image,
+    quick_mask,
+    quick_points,
+    quick_polygon,
+)
 
 
 @pytest.mark.parametrize("kind", [np.float16, np.longdouble])
@@ -22,3 +33,49 @@ def test_what_no_machine_code_takes_becomes_double(kind: Any) -> None:
 def test_other_numbers_are_taken_as_they_are(kind: Any) -> None:
     values = np.array([[0, 1]], dtype=kind)
     assert Image(values).values is values
+
+
+def test_wires_made_at_once_equal_those_of_their_classes_and_are_frozen() -> None:
+    grid, cells, xy = ((1.3, 1.2), (-0.1, 0.2)), np.eye(3) > 0, np.arange(6.0).reshape(3, 2)
+    valid = ~cells
+    pairs = [
+        (quick_mask(cells, *grid, 3), Mask(cells, *grid, 3)),
+        (quick_image(np.eye(3), *grid, "volt", valid), Image(np.eye(3), *grid, "volt", valid)),
+        (quick_points(xy), Points(xy)),
+        (quick_polygon(xy), Polygon(xy)),
+    ]
+    for quick, usual in pairs:
+        assert type(quick) is type(usual)
+        assert repr(quick) == repr(usual)
+        assert pickle.dumps(quick) == pickle.dumps(usual)
+        array = "values" if hasattr(quick, "values") else "xy_cm"
+        assert not getattr(quick, array).flags.writeable
+        with pytest.raises(AttributeError):
+            setattr(quick, array, None)
+
+
+@pytest.mark.parametrize("columns", [1, 7, 8, 33, 64])
+def test_a_mask_of_packed_rows_is_the_mask_of_its_cells(columns: int) -> None:
+    cells = np.random.default_rng(columns).random((5, columns)) < 0.5
+    words = np.array([sum(int(on) << c for c, on in enumerate(row)) for row in cells], np.uint64)
+    grid, count = ((1.0, 1.0), (0.0, 0.0)), int(cells.sum())
+    mask, usual = packed_mask(words, columns, *grid, count), Mask(cells, *grid)
+    before = (mask.shape, mask.count, mask.fraction, mask.area_cm2, mask.extent_cm)
+    np.testing.assert_array_equal(mask.values, cells)
+    after = (mask.shape, mask.count, mask.fraction, mask.area_cm2, mask.extent_cm)
+    expected = (usual.shape, usual.count, usual.fraction, usual.area_cm2, usual.extent_cm)
+    assert before == after == expected
+    assert mask.values is mask.values
+    assert not mask.values.flags.writeable
+    assert usual.words is None
+    again = pickle.loads(pickle.dumps(mask))
+    np.testing.assert_array_equal(again.values, cells)
+
+
+def test_packed_rows_are_laid_out_as_kernels_take_them() -> None:
+    spread = np.arange(6, dtype=np.int64)[::2]
+    mask = packed_mask(spread, 3, (1.0, 1.0), (0.0, 0.0), 2)
+    assert mask.words is not None
+    assert mask.words.flags.c_contiguous
+    assert mask.words.dtype == np.uint64
+    assert mask.words.tolist() == [0, 2, 4]

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
+from helpers_modes import compiled, held, plainly
 from tactile_graph.wires import Image
-from tactile_graph_filters.readings.dead_lines import dead_lines
+from tactile_graph_filters.readings.dead_lines import constant_lines, dead_lines
 
 
 def noisy() -> np.ndarray:
@@ -40,3 +44,20 @@ def test_lines_of_few_cells_are_never_called_dead() -> None:
     values = np.random.default_rng(1).normal(0.0, 1.0, (9, 3))
     values[4] = 0.0
     assert found(values) == ([], [])
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    arrays(
+        np.float64,
+        st.tuples(st.integers(1, 9), st.integers(1, 9)),
+        elements=st.sampled_from([0.0, -0.0, 1.0, 2.0, np.nan]),
+    )
+)
+def test_votes_find_what_sorting_finds(values: np.ndarray) -> None:
+    found = []
+    for way in (constant_lines.reference, plainly(constant_lines), compiled(constant_lines)):
+        rows, columns = np.empty(len(values), bool), np.empty(values.shape[1], bool)
+        way(held(values), rows, columns)
+        found.append((rows.tolist(), columns.tolist()))
+    assert found[0] == found[1] == found[2]

@@ -1,0 +1,258 @@
+"""A plan's program written out as one Python function: the same operations, without calls between.
+
+Between the steps of a short pipeline the engine's own calls add up to an eighth of a frame. Once
+enough frames have come to be worth the writing, their operations are put one behind the other as
+text, and Python compiles that. Nodes of one or two plain inputs, fields and guards are written out;
+whatever is more (lists, choices, sinks, what several may settle) is called as before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence, Set
+from keyword import iskeyword
+from time import perf_counter_ns
+from typing import Any
+
+from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
+from tactile_graph.engine.operations.step_operation import Call, Operation, step_label
+from tactile_graph.engine.outcomes.outcome import (
+    NO_VALUE,
+    Skipped,
+    failure,
+    nothing_returned,
+    raised,
+)
+from tactile_graph.engine.plan import Input, Item, Plan
+from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.graph import Node, NodeKind
+
+AFTER_FRAMES = 200
+"""Python compiles the text in the time that writing saves in some thousand frames."""
+DEEPEST = 12
+"""Guards within guards that are written out; Python's own limit is at twenty blocks."""
+
+
+class Written:
+    """The lines of a program, and the names they use.
+
+    Parameters
+    ----------
+    plan : Plan
+    call_of : callable
+        Gives each step node's callable of its ports.
+    operations : sequence of callable
+        Of each slot, for what is not written out.
+    alone : set of int
+        The slots that are settled in one place only.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        call_of: Callable[[Node], Call],
+        operations: Sequence[Operation],
+        alone: Set[int],
+    ) -> None:
+        self.plan, self.call_of, self.operations, self.alone = plan, call_of, operations, alone
+        self.lines: list[str] = []
+        self.names: dict[str, Any] = {
+            "clock": perf_counter_ns, "FROZEN": FROZEN, "NO_VALUE": NO_VALUE,
+            "raised": raised, "failure": failure, "settled": _settled, "field": _field,
+        }  # fmt: skip
+
+    def program(self) -> Operation:
+        """Return one function that settles a plan's main part as its operations do."""
+        known: set[int] = set()
+        for slot in self.plan.main:
+            self.settle(slot, 1, known)
+        text = "\n".join(["def program(state):", *self.lines])
+        exec(compile(text, f"<program of {self.plan.pipeline.name}>", "exec"), self.names)
+        program: Operation = self.names["program"]
+        return program
+
+    def write(self, depth: int, text: str) -> None:
+        """Add lines at a depth."""
+        self.lines += ["    " * depth + line for line in text.strip("\n").splitlines()]
+
+    def settle(self, slot: int, depth: int, known: set[int]) -> None:
+        """Settle a slot as ``v`` and whether it has a value as ``ok``, both with its number."""
+        item = self.plan.items[slot]
+        if depth > DEEPEST or slot not in self.alone or not _is_plain(item):
+            self.names[f"o{slot}"] = self.operations[slot]
+            self.write(depth, f"o{slot}(state)")
+            return
+        if item.view is not None:
+            self._field(item, depth, known)
+        elif item.node is not None and item.node.guard is not None:
+            self._guarded(item, item.node.guard, depth, known)
+        else:
+            self._called(item, depth, known)
+        self.write(depth, f"state[{slot}] = v{slot}")
+        known.add(slot)
+
+    def read(self, slot: int, depth: int, known: set[int]) -> None:
+        """Make a slot that is settled in the state known by its names."""
+        if slot not in known:
+            self.write(
+                depth, f"v{slot} = state[{slot}]\nok{slot} = v{slot}.__class__ not in NO_VALUE"
+            )
+            known.add(slot)
+
+    def _field(self, item: Item, depth: int, known: set[int]) -> None:
+        assert item.view is not None
+        slot, source = item.slot, item.source
+        self.read(source, depth, known)
+        get = f"v{source}.{'.'.join(item.view.path)}"
+        if item.view.item_path or any(map(iskeyword, item.view.path)):
+            self.names[f"get{slot}"] = field_getter(item.view)
+            get = f"get{slot}(v{source})"
+        self.write(
+            depth,
+            f"""
+if ok{source}:
+    try:
+        v{slot} = {get}
+    except Exception as error:
+        v{slot} = failure({item.name!r}, error, (v{source},), "")
+        ok{slot} = False
+    else:
+        ok{slot} = True
+        if v{slot}.__class__ not in FROZEN:
+            v{slot} = field({item.name!r}, v{slot})
+            ok{slot} = v{slot}.__class__ not in NO_VALUE
+else:
+    v{slot} = v{source}
+    ok{slot} = False
+""",
+        )
+
+    def _called(self, item: Item, depth: int, known: set[int]) -> None:
+        """Write what runs before a node's inputs are read, and the call of its step."""
+        assert item.node is not None
+        slot, time, what = item.slot, self.plan.n_slots + item.slot, step_label(item.node)
+        self.names[f"call{slot}"] = self.call_of(item.node)
+        for port in item.inputs:
+            for lazy in port.lazy:
+                self.settle(lazy, depth, known)
+        sources = [port.slots[0] for port in item.inputs]
+        for source in sources:
+            self.read(source, depth, known)
+        for n, source in enumerate(sources):
+            self.write(
+                depth,
+                f"""
+{"el" if n else ""}if not ok{source}:
+    v{slot} = v{source}
+    ok{slot} = False
+""",
+            )
+        values = ", ".join(f"v{source}" for source in sources)
+        self.write(
+            depth,
+            f"""
+else:
+    start = clock()
+    try:
+        v{slot} = call{slot}({values})
+    except Exception as error:
+        state[{time}] = clock() - start
+        v{slot} = raised({item.name!r}, error, ({values},), {what!r})
+        ok{slot} = False
+    else:
+        state[{time}] = clock() - start
+        ok{slot} = True
+        if v{slot}.__class__ not in FROZEN:
+            v{slot} = settled(v{slot}, {item.name!r}, {what!r})
+            ok{slot} = v{slot}.__class__ not in NO_VALUE
+""",
+        )
+
+    def _guarded(self, item: Item, guard: Guard, depth: int, known: set[int]) -> None:
+        slot = item.slot
+        for source in item.guard:
+            if self.plan.items[source].view is not None:
+                self.settle(source, depth, known)
+        for source in item.guard:
+            self.read(source, depth, known)
+        self.names[f"holds{slot}"] = guard.function
+        self.names[f"skip{slot}"] = _skipping(item.name, guard)
+        for n, source in enumerate(item.guard):
+            self.write(
+                depth,
+                f"""
+{"el" if n else ""}if not ok{source}:
+    v{slot} = v{source}
+    ok{slot} = False
+""",
+            )
+        values = ", ".join(f"v{source}" for source in item.guard)
+        self.write(
+            depth,
+            f"""
+else:
+    try:
+        ok{slot} = True if holds{slot}({values}) else False
+    except Exception as error:
+        v{slot} = failure({item.name!r}, error, ({values},), {f"when {guard.text}"!r})
+        ok{slot} = False
+    else:
+        if not ok{slot}:
+            v{slot} = skip{slot}({values})
+            ok{slot} = False
+if ok{slot}:
+""",
+        )
+        self._called(item, depth + 1, set(known))
+
+
+def _is_plain(item: Item) -> bool:
+    """Return whether an item's operation can be written out."""
+    if item.view is not None:
+        return True
+    node = item.node
+    if node is None or item.constant or node.kind is not NodeKind.STEP:
+        return False
+    if node.each or node.is_sink or (node.guard is not None and node.guard.groups):
+        return False
+    return _plain_ports(node, item.inputs)
+
+
+def _plain_ports(node: Node, ports: tuple[Input, ...]) -> bool:
+    """Return whether a step takes what its ports read by place, with nothing to settle between."""
+    if not all(p.required and not p.collects for p in ports):
+        return False
+    if len(ports) == 1:
+        return True
+    assert node.signature is not None
+    in_order = [p.name for p in node.signature.ports[:2]] == [p.name for p in ports]
+    return len(ports) == 2 and in_order and not any(p.lazy for p in ports)
+
+
+def _settled(value: Any, name: str, what: str) -> Any:
+    """Return what a step gave as a node's outcome."""
+    return nothing_returned(name, what) if value is None else freeze(value)
+
+
+def _field(name: str, value: Any) -> Any:
+    """Return a field that is not frozen by its type as an outcome."""
+    return Skipped(name, f"{name} is not known") if value is None else freeze(value)
+
+
+def _skipping(name: str, guard: Guard) -> Callable[..., Skipped]:
+    """Return what gives the skip for values of which a guard does not hold.
+
+    Frame after frame nothing lies on the pad: the last skip is kept for the very same value.
+    """
+    known: Any = guard  # no value is it
+    kept = Skipped(name, guard.reason)
+
+    def skip(*values: Any) -> Skipped:
+        nonlocal known, kept
+        if len(values) == 1 and values[0] is known:
+            return kept
+        kept = Skipped(name, guard.reason, values)
+        known = values[0] if len(values) == 1 and values[0].__class__ in IMMUTABLE else guard
+        return kept
+
+    return skip
