@@ -11,25 +11,31 @@ What would refute that it may be shipped, said before it was measured, on unseen
 pads or on the other kinds: the upper end of the 95 % interval (bootstrap over stretches of frames)
 of the error where something lies is more than a twentieth above today's; that of missed objects, or
 of answers where nothing lies, more than a hundredth of the frames; or that of the time not below
-today's.
+today's. And, since no frame of these holds a thing smaller than a few elements: that of small discs
+(of 0.5 to 1.1 cm, on the thesis pad) today's finds more than a hundredth within 2 cm that the tuned
+one does not.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from tuned import CASES, Told, markdown, run
 
-from tactile_graph import load
+from tactile_graph import Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
 
 PRODUCTS = {"adaptive": "mixture", "locate": "locate"}
 ERROR_MARGIN = 0.05
 """Of today's error."""
 SHARE_MARGIN = 0.01
+SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1), (100.0, 300.0, 1000.0)
+N_SMALL = 120
+FOUND_CM = 2.0
 PIPELINES = Path(__file__).parents[1] / "pipelines" / "tactile_graph_pipelines"
 
 
@@ -43,6 +49,38 @@ def refuted_by(told: Told) -> Iterator[str]:
             yield f"{name}: maybe {100 * its.high:+.1f} % of the frames"
     if told.ratio.high >= 1.0:
         yield f"it may take {told.ratio.high:.2f} of the time"
+
+
+def small_discs(n: int, seed: int) -> list[Frame]:
+    """Return frames of discs no larger than a few elements, one in each."""
+    things = [
+        [{"shape": "disc", "weight_g": weight_g, "radius_cm": radius_cm}]
+        for radius_cm in SMALL_CM
+        for weight_g in SMALL_G
+    ]
+    source = load("contacts").with_source("simulate", scene={"in_turn": things}, frames=n)
+    return list(source.frames(seed))
+
+
+def found_in(pipeline: Pipeline, frames: list[Frame]) -> list[bool]:
+    """Return for each frame of one object whether the answer lies within 2 cm of it."""
+    run = pipeline.runner()
+    found = []
+    for frame in frames:
+        (true,) = frame.truth or ()
+        place, answer = true.shape, run(frame).get(next(iter(pipeline.outputs)))
+        shape = getattr(answer, "shape", answer)
+        off_cm = [getattr(shape, k, math.nan) - getattr(place, k) for k in ("x_cm", "y_cm")]
+        found.append(math.hypot(*off_cm) < FOUND_CM)
+    return found
+
+
+def lost(today: Pipeline, tuned: Pipeline, frames: list[Frame]) -> Iterator[str]:
+    """Yield what speaks against shipping, of small discs."""
+    pairs = zip(found_in(today, frames), found_in(tuned, frames), strict=True)
+    n = sum(mine and not its for mine, its in pairs)
+    if n > SHARE_MARGIN * len(frames):
+        yield f"of {len(frames)} small discs {n} that today's finds are missed"
 
 
 def shipped(name: str, text: str) -> str:
@@ -65,6 +103,8 @@ def main() -> None:
         told, tuned = run(PRODUCTS[name], asked.frames, asked.seed)
         print("\n".join(markdown(list(told.values()))))
         against = [f"{on}: {why}" for on, its in told.items() for why in refuted_by(its)]
+        small = small_discs(N_SMALL, asked.seed + 3)
+        against += lost(load(name), tuned.pipeline, small)
         text = shipped(name, tuned.text)
         print(f"\n{text}")
         for why in against:

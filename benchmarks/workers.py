@@ -4,27 +4,30 @@
     python benchmarks/workers.py --frames 1000000 --repeated --only memory
 
 All read the same store and write JSON lines. Two processes apart, each a plain run over half of the
-frames with nothing between them, are the most that two cores can give. joblib and Dask's bag are
-given, as people write it, a function that reads a range of frames with the library and returns
-their lines; the lines are joined in order. Kernels are compiled before, and each is run once before
-it counts; times are of the whole command or call, workers' start included. Memory is the most that
-all processes of a run held together (proportional set size), sampled.
+frames with nothing between them, are what this machine's two cores can give: beside frames a second
+stands each way's ratio to one process and to these two. joblib and Dask's bag (a way whose package
+is not installed is told and left out) are given, as people write it, a function that reads a range
+of frames with the library and returns their lines; the lines are joined in order. Kernels are
+compiled before, and each is run once before it counts; times are of the whole command or call,
+workers' start included. Memory is the most that all processes of a run held together (proportional
+set size), sampled.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from throughput import GRID, discs
@@ -32,6 +35,7 @@ from throughput import GRID, discs
 MB = 1e6
 LOOK_S = 0.25
 PORTION = 1000
+ONE, APART = "one process", "two apart"
 REPEATED = 5000
 """Frames that are repeated to make many."""
 
@@ -164,28 +168,58 @@ def memory_of(*words: str) -> dict[str, float]:
     return {"seconds": spent, **parts}
 
 
-def speeds(store: str, args: argparse.Namespace, folder: Path) -> dict[str, float]:
-    """Return frames a second of each way, and check that all write the same."""
-    run = ("run", args.pipeline, store, "-o")
-    given = (store, args.pipeline, args.frames)
-    ways: dict[str, Callable[[str], Any]] = {
-        "one process": lambda out: ran(*run, out),
-        "--workers 1": lambda out: ran(*run, out, "--workers", "1"),
-        "--workers 2": lambda out: ran(*run, out, "--workers", "2"),
-        "two apart": lambda out: apart(*given, out),
-        "joblib, 1": lambda out: joblib_run(*given, 1, out),
-        "joblib, 2": lambda out: joblib_run(*given, 2, out),
-        "dask.bag, 2": lambda out: bag_run(*given, 2, out),
+class Way(NamedTuple):
+    """A way to have all frames done: what it takes a file's name for, and the package it needs."""
+
+    act: Callable[[str], Any]
+    needs: str = ""
+
+    @property
+    def missing(self) -> str:
+        """The package that is not installed; "" if the way can be gone."""
+        return self.needs if self.needs and importlib.util.find_spec(self.needs) is None else ""
+
+
+def ways_of(store: str, pipeline: str, n_frames: int) -> dict[str, Way]:
+    """Return the ways, in the order in which they are taken: what ratios are to comes first."""
+    run = ("run", pipeline, store, "-o")
+    given = (store, pipeline, n_frames)
+    return {
+        ONE: Way(lambda out: ran(*run, out)),
+        APART: Way(lambda out: apart(*given, out)),
+        "--workers 1": Way(lambda out: ran(*run, out, "--workers", "1")),
+        "--workers 2": Way(lambda out: ran(*run, out, "--workers", "2")),
+        "joblib, 1": Way(lambda out: joblib_run(*given, 1, out), needs="joblib"),
+        "joblib, 2": Way(lambda out: joblib_run(*given, 2, out), needs="joblib"),
+        "dask.bag, 2": Way(lambda out: bag_run(*given, 2, out), needs="dask"),
     }
-    found, contents = {}, set()
+
+
+def speeds(ways: Mapping[str, Way], n_frames: int, rounds: int, folder: Path) -> dict[str, float]:
+    """Return frames a second of each way that can be gone, and check that all write the same.
+
+    Prints a line for each, with the ratio to one process and to two apart.
+    """
+    found: dict[str, float] = {}
+    contents = set()
+    print(f"{'':12} {'frames/s':>9} {'of one':>7} {'of two apart':>13}", flush=True)
     for name, way in ways.items():
+        if way.missing:
+            print(f"{name:12} left out: {way.missing} is not installed", flush=True)
+            continue
         out = str(folder / "out.jsonl")
-        least = min(seconds(partial(way, out)) for _ in range(1 + args.rounds))
-        found[name] = args.frames / least
+        least_s = min(seconds(partial(way.act, out)) for _ in range(1 + rounds))
+        found[name] = n_frames / least_s
         contents.add(Path(out).read_bytes())
-        print(f"{name:12} {found[name]:9.0f} frames/s", flush=True)
+        print(f"{name:12} {found[name]:9.0f} {ratios(found, name)}", flush=True)
     print("all write the same" if len(contents) == 1 else "NOT all write the same", flush=True)
     return found
+
+
+def ratios(found: Mapping[str, float], name: str) -> str:
+    """Return a way's frames a second over those of one process and of two apart, once known."""
+    of_one, of_apart = (f"{found[name] / found[k]:.2f}" if k in found else "" for k in (ONE, APART))
+    return f"{of_one:>7} {of_apart:>13}"
 
 
 def main() -> None:
@@ -205,7 +239,9 @@ def main() -> None:
         store = str(folder / "frames.zarr")
         make_store(store, args.frames, args.repeated)
         if args.only != "memory":
-            found["frames a second"] = speeds(store, args, folder)
+            found["frames a second"] = speeds(
+                ways_of(store, args.pipeline, args.frames), args.frames, args.rounds, folder
+            )
         if args.only != "speed":
             run = ("run", args.pipeline, store, "-o", str(folder / "memory.jsonl"))
             found["megabytes"] = {

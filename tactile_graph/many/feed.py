@@ -101,15 +101,25 @@ class Feed:
     def begin(self, low: int) -> None:
         """Look through recordings that are read in place; read the first portion where frames are
         sent: the source then says how many there are."""
-        if self._ranges is not None and self._ranges.tell is not None:
-            try:
-                self._ranges.tell(self._said)
-            except Irregular as why:
-                self.send(str(why))
+        try:
+            self.look_through()
+        except Irregular as why:
+            self.send(str(why))
         if self._ranges is None:
             portions = self._sent(low)
             first = next(portions, None)
             self._begun = iter(()) if first is None else chain([first], portions)
+
+    def look_through(self) -> None:
+        """Look through recordings that are read in place.
+
+        Raises
+        ------
+        Irregular
+            If they cannot be.
+        """
+        if self._ranges is not None and self._ranges.tell is not None:
+            self._ranges.tell(self._said)
 
     def portions(self, low: int, n_workers: int) -> Iterator[Portion]:
         """Yield the portions from the frame at a place on."""

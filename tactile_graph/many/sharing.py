@@ -11,14 +11,18 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from tactile_graph.errors import DataError, TactileGraphError
 from tactile_graph.many.executor_kind import Place
 from tactile_graph.many.in_order import AHEAD, InOrder
 from tactile_graph.many.portion import Portion
 from tactile_graph.many.sent import PortionSize, sent
+from tactile_graph.steps.ranges import Irregular
 from tactile_graph.wires.frame import Frame
+
+if TYPE_CHECKING:
+    from tactile_graph.many.feed import Feed
 
 KILLER = "workers died of it each time: left out"
 MOST_KEPT = 2
@@ -78,11 +82,39 @@ class Sharing(Generic[T]):
             Whatever the work or the frames raise, when all before it was yielded.
         """
         size, watched = PortionSize(), _Watched(frames)
-        for portion, came in self._in_order.results(sent(watched, 0, size, n_before)):
-            size.took(portion.n_frames, came.seconds)
-            yield came.value()
+        for _, came in self._portions(sent(watched, 0, size, n_before), size):
+            yield came
         if watched.error is not None:
             raise watched.error
+
+    def over_feed(self, feed: Feed) -> Iterator[T]:
+        """Yield what each portion of a feed came to that workers read themselves.
+
+        Raises
+        ------
+        Irregular
+            If they cannot: everything is to be done again, by one process.
+        Exception
+            Whatever the work raises, when all before it was yielded.
+        """
+        done = feed.start
+        try:
+            portions = feed.portions(feed.start, self._in_order.n_workers)
+            for portion, came in self._portions(portions, feed.size):
+                done = portion.high
+                yield came
+        except Irregular as why:
+            feed.send(str(why))
+            raise
+        finally:
+            feed.end(done)
+
+    def _portions(
+        self, portions: Iterator[Portion], size: PortionSize
+    ) -> Iterator[tuple[Portion, T]]:
+        for portion, came in self._in_order.results(portions):
+            size.took(portion.n_frames, came.seconds)
+            yield portion, came.value()
 
     def over_tasks(self, n: int) -> Iterator[T]:
         """Yield what each of ``n`` tasks came to; a task's number is its portion's place."""

@@ -48,6 +48,15 @@ def test_whatever_may_be_worse_by_more_than_its_margin_is_told(its, why):
     assert list(make_adaptive.refuted_by(its)) == why
 
 
+def test_small_things_that_are_lost_speak_against_shipping():
+    small = make_adaptive.small_discs(8, 0)
+    today = load("locate-circle")
+    worse = loads(today.text.replace(" or footprint.rise > 1.5", ""))
+    (why,) = make_adaptive.lost(today, worse, small)
+    assert why.startswith("of 8 small discs ")
+    assert not [*make_adaptive.lost(worse, today, small)]
+
+
 def test_what_is_written_has_the_shipped_name_words_and_parent():
     own = load("adaptive")
     text = "# by tune\n" + own.text.replace("pipeline: adaptive", "pipeline: circle-ladder-tuned")

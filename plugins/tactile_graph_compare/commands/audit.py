@@ -17,16 +17,22 @@ from tactile_graph.cli.arguments import (
     source_options,
 )
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.many.options import place_for, side_by_side, workers_options
+from tactile_graph.cli.many.options import (
+    Shared,
+    say_in_one_process,
+    shared_for,
+    side_by_side,
+    workers_options,
+)
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
-    from tactile_graph.many import Place
+    from tactile_graph.many import Sharing
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.output.tables import Table
-    from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
+    from tactile_graph_compare.run.audit import Audit, Auditor, AuditPart, GuardAudit
 
 EPILOG = """\b
 Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM; what was done is
@@ -63,8 +69,9 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     auditor = Auditor(opened, tuple(asked.only), asked.sample, asked.seed)
     if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
-    place = place_for(asked.workers, asked.on, auditor.session.plan)
-    interrupted = _frames(auditor, span, asked.seed, place)
+    shared = shared_for(asked.workers, asked.on, auditor.session.plan, opened)
+    taking = _Taking(auditor, span, asked.seed, shared)
+    interrupted = taking.go()
     found = auditor.summarise(interrupted is not None)
     if not found.n_frames:
         raise UsageError(
@@ -73,8 +80,8 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
         )
     out = console()
     _show(found, out)
-    if place is not None:
-        out.print(side_by_side(place), style="dim", soft_wrap=True)
+    if taking.shared is not None:
+        out.print(side_by_side(taking.shared.place), style="dim", soft_wrap=True)
     if asked.json_path is not None:
         _write(found, asked.json_path)
         out.print(f"wrote {asked.json_path}", style="dim", soft_wrap=True)
@@ -98,54 +105,90 @@ class _Options:
     on: str | None
 
 
-def _frames(
-    auditor: Auditor, span: Span, seed: int, place: Place | None
-) -> KeyboardInterrupt | None:
-    """Take the frames; return what ended them before their end, if anything did."""
-    from tactile_graph.cli.interrupt import Interrupts
-    from tactile_graph.cli.output.progress import Bar
-    from tactile_graph.cli.terminal import console
-    from tactile_graph.steps.injected import Report
+@dataclass
+class _Taking:
+    """The frames of an audit, taken here or by workers.
 
-    report = Report()
-    bar = Bar(console(stderr=True), "audit")
-    with Interrupts() as interrupts:
-        try:
-            frames = span.of(auditor.pipeline.frames(seed, report))
-            for _ in _taken(auditor, frames, place, interrupts.held):
-                bar.at(auditor.n_seen, span.expected(report.n_expected))
-        except KeyboardInterrupt as error:
-            return error
-        finally:
-            bar.stop()
-    return None
+    Attributes
+    ----------
+    shared : Shared or None
+        Where workers are; None where the frames are taken here, after all maybe.
+    """
 
+    auditor: Auditor
+    span: Span
+    seed: int
+    shared: Shared | None
 
-def _taken(
-    auditor: Auditor, frames: Iterator[Frame], place: Place | None, held: Any
-) -> Iterator[None]:
-    """Take the frames, here or by workers; yield whenever some are done."""
-    if place is None:
-        for frame in frames:
+    def go(self) -> KeyboardInterrupt | None:
+        """Take the frames; return what ended them before their end, if anything did."""
+        from tactile_graph.cli.interrupt import Interrupts
+        from tactile_graph.cli.output.progress import Bar
+        from tactile_graph.cli.terminal import console
+        from tactile_graph.steps.injected import Report
+
+        self.report = Report()
+        bar = Bar(console(stderr=True), "audit")
+        with Interrupts() as interrupts:
+            try:
+                for _ in self._taken(interrupts.held):
+                    bar.at(self.auditor.n_seen, self.span.expected(self.report.n_expected))
+            except KeyboardInterrupt as error:
+                return error
+            finally:
+                bar.stop()
+        return None
+
+    def _taken(self, held: Any) -> Iterator[None]:
+        """Take the frames; yield whenever some are done."""
+        from tactile_graph.steps.ranges import Irregular
+
+        if self.shared is not None:
+            try:
+                yield from self._by_workers(self.shared, held)
+                return
+            except Irregular as why:
+                say_in_one_process(f"steps keep state, and {why}")
+                self.shared = None
+                with held:
+                    self.auditor.begin()
+        for frame in self._frames():
             with held:
-                auditor.add(frame)
+                self.auditor.add(frame)
             yield
-        return
-    from tactile_graph.cli.say import say
-    from tactile_graph.many import KILLER, Sharing
-    from tactile_graph_compare.run.audit import AuditWorker
-    from tactile_graph_compare.run.shared import N_BEFORE
 
-    sample = (frame for frame in frames if auditor.drawn())
-    with Sharing(place, AuditWorker, auditor.for_workers()) as workers:
-        for part in workers.over_frames(sample, N_BEFORE):
-            with held:
-                auditor.join(part)
-            yield
-            if part.error is not None:
-                raise part.error
-        for number in workers.left_out:
-            say(f"frame {number} of the sample: {KILLER}", err=True)
+    def _frames(self) -> Iterator[Frame]:
+        return self.span.of(self.auditor.pipeline.frames(self.seed, self.report))
+
+    def _by_workers(self, shared: Shared, held: Any) -> Iterator[None]:
+        from tactile_graph.cli.say import say
+        from tactile_graph.many import KILLER, Sharing
+        from tactile_graph_compare.run.audit import AuditWorker
+
+        auditor = self.auditor
+        given = auditor.for_workers(shared.reading(auditor.pipeline, self.span.start))
+        with Sharing(shared.place, AuditWorker, given) as workers:
+            for part in self._parts(shared, workers):
+                with held:
+                    auditor.join(part)
+                    if shared.in_place:
+                        auditor.n_seen += part.session.n
+                yield
+                if part.error is not None:
+                    raise part.error
+            of = "" if shared.in_place else " of the sample"
+            for number in workers.left_out:
+                say(f"frame {number}{of}: {KILLER}", err=True)
+
+    def _parts(self, shared: Shared, workers: Sharing[AuditPart]) -> Iterator[AuditPart]:
+        from tactile_graph_compare.run.shared import N_BEFORE
+
+        if not shared.in_place:
+            sample = (frame for frame in self._frames() if self.auditor.drawn())
+            return workers.over_frames(sample, N_BEFORE)
+        feed = shared.feed(self.auditor.pipeline, self.seed, self.report, self.span)
+        feed.look_through()
+        return workers.over_feed(feed)
 
 
 def _show(found: Audit, out: Any) -> None:

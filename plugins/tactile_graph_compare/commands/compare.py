@@ -12,19 +12,28 @@ import click
 
 from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.many.options import place_for, side_by_side, workers_options
+from tactile_graph.cli.many.options import (
+    Shared,
+    say_in_one_process,
+    shared_for,
+    side_by_side,
+    workers_options,
+)
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
+    from tactile_graph.many import Sharing
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.records.comparison import Comparison
-    from tactile_graph_compare.run.session import Session
+    from tactile_graph_compare.run.session import Part, Session
     from tactile_graph_compare.variants.prepare import PreparedVariant
     from tactile_graph_compare.variants.request import VariantRequest
+
+    _Came = tuple[Part, Exception | None]
 
 EPILOG = """\b
 A variant is a pipeline's name or file, or one with settings, as one quoted word:
@@ -210,9 +219,8 @@ class _Run:
         self.report: Report = Report()
         reference = options.reference and referred(prepared, options.reference)
         self.session: Session = Session(prepared, options.seed, reference=reference)
-        self.place = place_for(options.workers, options.on, self.session.plan)
-        if self.place is not None:
-            self.notes = [*notes, side_by_side(self.place)]
+        self.pipeline = prepared[0].pipeline
+        self.shared = shared_for(options.workers, options.on, self.session.plan, self.pipeline)
         # What is written to stdout for programs owns it; people are then told on stderr.
         self.people = console(stderr="-" in options.files.values())
         self.stderr = console(stderr=True)
@@ -236,11 +244,9 @@ class _Run:
         from tactile_graph.cli.output.progress import Bar
 
         bar = Bar(self.stderr, "compare")
-        source = self.session.prepared[0].pipeline.frames(self.options.seed, self.report)
-        frames: Iterator[Frame] = self.span.of(source)
         try:
             bar.now(self.span.expected(None))
-            for _ in self._noted(frames, held):
+            for _ in self._noted(held):
                 bar.at(self.session.n, self.span.expected(self.report.n_expected))
         except KeyboardInterrupt as error:
             return error, None
@@ -250,28 +256,53 @@ class _Run:
             bar.stop()
         return None, None
 
-    def _noted(self, frames: Iterator[Frame], held: Any) -> Iterator[None]:
-        """Note the frames, here or by workers; yield whenever some are done."""
-        session = self.session
-        if self.place is None:
-            for frame in session.warmed(frames):
-                with held:
-                    session.add(frame)
-                yield
-            return
-        from tactile_graph.many import KILLER, Sharing
-        from tactile_graph_compare.run.shared import N_BEFORE, Given, SessionWorker
+    def _source(self) -> Iterator[Frame]:
+        return self.span.of(self.pipeline.frames(self.options.seed, self.report))
 
-        given = Given(session.prepared, session.seed, session.reference)
-        with Sharing(self.place, SessionWorker, given) as workers:
-            for part, error in workers.over_frames(frames, N_BEFORE):
+    def _noted(self, held: Any) -> Iterator[None]:
+        """Note the frames, here or by workers; yield whenever some are done."""
+        from tactile_graph.steps.ranges import Irregular
+
+        if self.shared is not None:
+            try:
+                yield from self._noted_by_workers(self.shared, held)
+                return
+            except Irregular as why:
+                say_in_one_process(f"steps keep state, and {why}")
+                self.shared = None
+                with held:
+                    self.session.begin()
+        for frame in self.session.warmed(self._source()):
+            with held:
+                self.session.add(frame)
+            yield
+
+    def _noted_by_workers(self, shared: Shared, held: Any) -> Iterator[None]:
+        from tactile_graph.many import KILLER, Sharing
+        from tactile_graph_compare.run.shared import Given, SessionWorker
+
+        session = self.session
+        reading = shared.reading(self.pipeline, self.span.start)
+        given = Given(session.prepared, session.seed, session.reference, reading)
+        with Sharing(shared.place, SessionWorker, given) as workers:
+            for part, error in self._parts(shared, workers):
                 with held:
                     session.join(part)
                 yield
                 if error is not None:
                     raise error
+            first = 0 if shared.in_place else self.span.start
             for number in workers.left_out:
-                self.report.trouble(f"frame {self.span.start + number}", KILLER)
+                self.report.trouble(f"frame {first + number}", KILLER)
+
+    def _parts(self, shared: Shared, workers: Sharing[_Came]) -> Iterator[_Came]:
+        from tactile_graph_compare.run.shared import N_BEFORE
+
+        if not shared.in_place:
+            return workers.over_frames(self._source(), N_BEFORE)
+        feed = shared.feed(self.pipeline, self.options.seed, self.report, self.span)
+        feed.look_through()
+        return workers.over_feed(feed)
 
     # -- the end -----------------------------------------------------------------------------
 
@@ -279,8 +310,11 @@ class _Run:
         from tactile_graph_compare.output.shown import show
         from tactile_graph_compare.run.summarise import summarise
 
+        notes = self.notes
+        if self.shared is not None:
+            notes = [*notes, side_by_side(self.shared.place)]
         comparison = summarise(
-            self.session, self.report, interrupted is not None, self.notes, self.span.start
+            self.session, self.report, interrupted is not None, notes, self.span.start
         )
         if interrupted is not None:
             n = self.session.n

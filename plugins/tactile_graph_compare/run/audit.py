@@ -15,14 +15,14 @@ import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.inspect import NO_VALUE, as_data
-from tactile_graph.many import Portion
+from tactile_graph.many import Portion, Reading
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.run.session import WARM_FRAMES, Part, Session
-from tactile_graph_compare.run.shared import noted
+from tactile_graph_compare.run.shared import Noting
 from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.ablations import Ablation, ablations_of
 from tactile_graph_compare.variants.prepare import PreparedVariant
@@ -133,6 +133,7 @@ class _Given(NamedTuple):
     pipeline: Pipeline
     asked: tuple[str, ...]
     seed: int
+    reading: Reading | None
 
 
 class _Noted(NamedTuple):
@@ -162,13 +163,11 @@ class AuditWorker:
 
     def __init__(self, given: _Given) -> None:
         self._auditor = Auditor(given.pipeline, given.asked, seed=given.seed)
-        self._warm = False
+        self._noting = Noting(self._auditor.session, given.reading)
 
     def __call__(self, portion: Portion) -> AuditPart:
         """Return what was noted of a portion's frames."""
-        part = self._auditor.part(portion, self._warm)
-        self._warm = True
-        return part
+        return self._auditor.part(portion, self._noting)
 
 
 class Auditor:
@@ -227,9 +226,23 @@ class Auditor:
 
     # -- by workers ------------------------------------------------------------------------------
 
-    def for_workers(self) -> _Given:
-        """Return what `AuditWorker` is made of; frames of the sample alone go there."""
-        return _Given(self.pipeline, self.asked, self.seed)
+    def begin(self) -> None:
+        """Take frames anew, from the first."""
+        self.session.begin()
+        for guard in self.guards:
+            guard.begin()
+        self.n_seen = 0
+        self._waiting = []
+
+    def for_workers(self, reading: Reading | None = None) -> _Given:
+        """Return what `AuditWorker` is made of; frames of the sample alone go there.
+
+        Parameters
+        ----------
+        reading : Reading, optional
+            By which workers read the frames themselves, where a step keeps state.
+        """
+        return _Given(self.pipeline, self.asked, self.seed, reading)
 
     def join(self, part: AuditPart) -> None:
         """Take in what a worker noted of the frames that come next."""
@@ -238,11 +251,11 @@ class Auditor:
         for guard, its in zip(self.guards, part.guards, strict=True):
             guard.join(its)
 
-    def part(self, portion: Portion, warm: bool) -> AuditPart:
+    def part(self, portion: Portion, noting: Noting) -> AuditPart:
         """Return what is noted of a portion's frames, of which all are of the sample."""
         for guard in self.guards:
             guard.begin()
-        error = noted(self.session, portion, self._take, warm)
+        error = noting(portion, self._take)
         return AuditPart(self.session.part(), [g.noted() for g in self.guards], error)
 
     def _take(self, frame: Frame) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from tactile_graph import Result
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.frames import Choice
+from tactile_graph_compare.run.stories import Stories
 
 
 class Seen(NamedTuple):
@@ -20,7 +21,14 @@ class Seen(NamedTuple):
     reused: bool
 
 
-Held = Result | Seen
+class Told(NamedTuple):
+    """What is kept of a frame that was run elsewhere, and cannot be run again alone."""
+
+    frame: Frame
+    stories: Stories
+
+
+Held = Result | Seen | Told
 """What is kept of a frame."""
 
 
@@ -71,6 +79,8 @@ class FrameChooser:
         apart : mapping
             (variant, reference) -> quantity -> how far they lie apart.
         """
+        if not self.most:
+            return
         if self.n_regular and position % self._stride == 0:
             self._regular[position] = result
             self._thin()
@@ -92,11 +102,19 @@ class FrameChooser:
         """Return one that keeps as many frames, and has none yet."""
         return FrameChooser(self.n_regular, self.most)
 
-    def as_sent(self) -> FrameChooser:
-        """Return one that can be pickled: of results it holds what they are made of again."""
+    def as_sent(self, told: Callable[[Result], Told] | None = None) -> FrameChooser:
+        """Return one that can be pickled.
+
+        Parameters
+        ----------
+        told : callable, optional
+            Makes of a result what is sent. Without it that is what results are made of again.
+        """
 
         def seen(held: Held) -> Held:
-            return held if isinstance(held, Seen) else Seen(held.frame, held.reused)
+            if isinstance(held, Seen | Told):
+                return held
+            return Seen(held.frame, held.reused) if told is None else told(held)
 
         def all_seen(of: dict[Any, _Worst]) -> dict[Any, _Worst]:
             return {key: replace(at, result=seen(at.result)) for key, at in of.items()}

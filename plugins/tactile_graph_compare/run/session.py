@@ -14,8 +14,9 @@ from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.plugins.registry import selected
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.run.agreement_log import AgreementLog
-from tactile_graph_compare.run.frame_choice import FrameChooser, Held, Seen
+from tactile_graph_compare.run.frame_choice import FrameChooser, Held, Seen, Told
 from tactile_graph_compare.run.logs import MergedLog, Noted, VariantLog
+from tactile_graph_compare.run.stories import as_sent, stories_of_all
 from tactile_graph_compare.score.agreement import Differences
 from tactile_graph_compare.variants.merge import merge
 from tactile_graph_compare.variants.prepare import PreparedVariant
@@ -156,6 +157,12 @@ class Session:
         self.last = time.perf_counter()
         return result
 
+    def without_state(self) -> Runner[Result]:
+        """Forget what steps keep, and return what runs frames that are not noted."""
+        self.runners = self._runners(self.merged.pipeline.runner(seed=self.seed))
+        self._runner = None
+        return self.runners[0]
+
     def pass_over(self, frame: Frame) -> None:
         """Run a frame and note nothing of it: the next may be equal to it."""
         self._runner_for(frame)(frame)
@@ -169,7 +176,7 @@ class Session:
             self.n,
             [log.noted() for log in self.logs],
             self.agreement.noted(),
-            self.chooser.as_sent(),
+            self.chooser.as_sent(self._told_for_the_way if self.stateful else None),
             self.merged_log.noted(),
         )
 
@@ -183,10 +190,18 @@ class Session:
         self.merged_log.join(part.merged)
         self.last = time.perf_counter()
 
-    def whole(self, held: Held) -> Result:
-        """Return the result of a frame that is kept, run again if it was run elsewhere."""
-        if not isinstance(held, Seen):
+    def told(self, held: Held) -> Told:
+        """Return a frame that is kept, spelled out."""
+        if isinstance(held, Told):
             return held
+        result = self._run_again(held) if isinstance(held, Seen) else held
+        return Told(result.frame, stories_of_all(result, self.logs))
+
+    def _told_for_the_way(self, result: Result) -> Told:
+        """Return a result spelled out: where it was run alone knows what was before it."""
+        return Told(result.frame, as_sent(stories_of_all(result, self.logs)))
+
+    def _run_again(self, held: Seen) -> Result:
         runner = self.runners[0]
         runner.forget()
         result = runner(held.frame)

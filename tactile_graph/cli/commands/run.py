@@ -191,6 +191,7 @@ class _Run:
     def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
         """Let workers run it, and leave the command; say why if they cannot."""
         from tactile_graph.cli.many.many_run import Asked, InOneRow, ManyRun, division_for
+        from tactile_graph.cli.many.options import BY_RECORDING
         from tactile_graph.cli.terminal import console
         from tactile_graph.many.executor_kind import place_of
 
@@ -205,8 +206,7 @@ class _Run:
             say.print(f"in one process: {division.why_not}", style="yellow", soft_wrap=True)
             return
         if division.by_recording:
-            text = "each recording by one worker: state starts anew with each"
-            say.print(text, style="yellow", soft_wrap=True)
+            say.print(BY_RECORDING, style="yellow", soft_wrap=True)
         try:
             code = ManyRun(asked, division, ranges).go()
         except InOneRow as why:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pickle
 import tempfile
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.output.outputs import Output
@@ -18,20 +18,14 @@ from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS
 from tactile_graph.engine.tables.columns import columns_of
 from tactile_graph.exporter import Writer, write_block
-from tactile_graph.many.division import Division, Settling
 from tactile_graph.many.portion import Portion
+from tactile_graph.many.reading import Reader, Reading
 from tactile_graph.many.sharing import for_the_way, ready
-from tactile_graph.plugins.registry import installed
-from tactile_graph.steps.ranges import Irregular, Ranges
-from tactile_graph.wires.frame import Frame
-from tactile_graph.wires.frame_stack import FrameStack
+from tactile_graph.steps.ranges import Irregular
 
 if TYPE_CHECKING:
     from tactile_graph.api.result import Result
     from tactile_graph.engine.runner import Runner
-
-FARTHER = 4
-"""Times that is gone back when state was not settled by as many frames as it remembers."""
 
 
 class Job(NamedTuple):
@@ -47,9 +41,8 @@ class Job(NamedTuple):
         Of the name of the file that is written.
     full, long : bool
         As of `Output`.
-    source : tuple of (str, dict), optional
-        Source step and settings, where workers read the frames themselves.
-    division : Division
+    reading : Reading, optional
+        Where workers read the frames themselves.
     start : int
         Place in the source of the run's first frame.
     is_long : bool
@@ -63,8 +56,7 @@ class Job(NamedTuple):
     ending: str
     full: bool
     long: bool
-    source: tuple[str, dict[str, Any]] | None
-    division: Division
+    reading: Reading | None
     start: int
     is_long: bool
 
@@ -119,10 +111,7 @@ class _Bench:
         self.job = job
         self.columns = columns_of(job.pipeline, job.asked)
         self.runner = self._new_runner()
-        self.ranges: Ranges | None = None
-        if job.source is not None:
-            step, settings = job.source
-            self.ranges = installed().step(step).target.ranges(**settings)  # type: ignore[attr-defined]
+        self.reader = Reader(None, {}) if job.reading is None else job.reading.reader()
 
     def _new_runner(self) -> Runner[Result]:
         return self.job.pipeline.runner(self.job.asked, self.job.seed, self.job.verify)
@@ -156,43 +145,11 @@ class _Bench:
 
     def _results(self, portion: Portion) -> Iterator[Result | Block[Result]]:
         if self.runner.stateful:
-            self.runner = self._settled(portion)
-        frames, pipeline = self._frames(portion), self.job.pipeline
+            self.runner = self.reader.settled(portion, self._new_runner)
+        frames, pipeline = self.reader.frames(portion), self.job.pipeline
         if portion.high - self.job.start >= WORTH_BLOCKS:
-            return pipeline.blocks(self._stacks(portion) or frames, self.runner)
+            return pipeline.blocks(self.reader.stacks(portion) or frames, self.runner)
         return pipeline.results(frames, self.runner)
-
-    def _settled(self, portion: Portion) -> Runner[Result]:
-        """Return a runner whose state is that of one that ran all frames before."""
-        memory = self.job.division.memory
-        back = sum(memory.values())
-        while True:
-            low = max(portion.start, portion.low - back)
-            runner, settling = self._new_runner(), Settling(memory)
-            before = Portion(low, portion.low, without=portion.without)
-            for frame in self._frames(before) if memory else ():
-                settling.add(runner(frame))
-            if settling.done or low == portion.start or not memory:
-                return runner
-            back *= FARTHER
-
-    def _stacks(self, portion: Portion) -> Iterable[Frame | FrameStack] | None:
-        """Return a portion's frames in stacks where they are to be had so, and are all wanted."""
-        if portion.sent is not None:
-            return portion.given()
-        read = None if self.ranges is None else self.ranges.read_in_stacks
-        wanted = portion.without.isdisjoint(range(portion.low, portion.high))
-        return read(portion.low, portion.high) if read is not None and wanted else None
-
-    def _frames(self, portion: Portion) -> Iterator[Frame]:
-        if portion.sent is not None:
-            yield from portion.frames()[1]
-            return
-        assert self.ranges is not None  # or they would have been sent
-        frames = self.ranges.read(portion.low, portion.high)
-        for place, frame in enumerate(frames, portion.low):
-            if place not in portion.without:
-                yield frame
 
     @contextmanager
     def _written(self) -> Iterator[tuple[Writer, list[bytes]]]:

@@ -26,9 +26,10 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
 from tactile_graph.many.division import Division, division_of
 from tactile_graph.many.executor_kind import Place
-from tactile_graph.many.feed import Feed, absolute, ranges_of
+from tactile_graph.many.feed import Feed, ranges_of
 from tactile_graph.many.in_order import InOrder
 from tactile_graph.many.portion import Portion, packed
+from tactile_graph.many.reading import Reading
 from tactile_graph.many.sharing import KILLER
 from tactile_graph.provenance import provenance, sidecar, write_provenance
 from tactile_graph.steps.injected import Report
@@ -270,10 +271,10 @@ class ManyRun:
         asked, source = self.asked, self.asked.pipeline.source
         reading = None
         if self.feed.in_place and source is not None:
-            reading = (source.name, absolute(source.signature.arguments(source.settings)))
+            reading = Reading.of(source, self.division, asked.span.start)
         return Job(
             asked.pipeline, asked.outputs, asked.seed, asked.verify, asked.output.ending,
-            asked.output.full, asked.output.long, reading, self.division, asked.span.start,
+            asked.output.full, asked.output.long, reading, asked.span.start,
             is_long(asked.span.expected(self.report.n_expected)),
         )  # fmt: skip
 

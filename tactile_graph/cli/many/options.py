@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
 if TYPE_CHECKING:
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.cli.arguments import Span
     from tactile_graph.engine.plan import Plan
-    from tactile_graph.many.executor_kind import Place
+    from tactile_graph.many import Feed, Place, Reading
+    from tactile_graph.many.division import Division
+    from tactile_graph.steps.injected import Report
+    from tactile_graph.steps.ranges import Ranges
 
+BY_RECORDING = "each recording by one worker: state starts anew with each"
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -54,15 +60,88 @@ def place_for(workers: int | None, on: str | None, plan: Plan) -> Place | None:
     place = place_asked(workers, on)
     if place is None:
         return None
-    from tactile_graph.cli.terminal import console
     from tactile_graph.many.division import one_process_only
 
     why_not = one_process_only(plan)
     if why_not:
-        said = console(stderr=True)
-        said.print(f"in one process: {why_not}", style="yellow", soft_wrap=True)
+        say_in_one_process(why_not)
         return None
     return place
+
+
+def say_in_one_process(why: object) -> None:
+    """Tell people why workers are asked for in vain."""
+    from tactile_graph.cli.terminal import console
+
+    console(stderr=True).print(f"in one process: {why}", style="yellow", soft_wrap=True)
+
+
+class Shared(NamedTuple):
+    """Who has the frames of a command, and how they are divided.
+
+    Attributes
+    ----------
+    place : Place
+    division : Division
+    ranges : Ranges, optional
+        By which workers read frames themselves whose state hangs on those before; else they are
+        sent.
+    """
+
+    place: Place
+    division: Division
+    ranges: Ranges | None = None
+
+    @property
+    def in_place(self) -> bool:
+        """Whether workers read the frames themselves."""
+        return self.ranges is not None
+
+    def reading(self, pipeline: Pipeline, start: int) -> Reading | None:
+        """Return how workers read the frames from a place on; None if they are sent."""
+        from tactile_graph.many import Reading
+
+        if self.ranges is None or pipeline.source is None:
+            return None
+        return Reading.of(pipeline.source, self.division, start)
+
+    def feed(self, pipeline: Pipeline, seed: int, report: Report, span: Span) -> Feed:
+        """Return the portions that workers read themselves."""
+        from tactile_graph.many import Feed
+
+        ends = (span.start, span.stop)
+        return Feed(pipeline, seed, report, ends, self.division, self.ranges)
+
+
+def shared_for(
+    workers: int | None, on: str | None, plan: Plan, pipeline: Pipeline
+) -> Shared | None:
+    """Return where workers are asked for, and how they have frames of a plan; else say why not.
+
+    Parameters
+    ----------
+    workers, on
+        As they were given.
+    plan : Plan
+        What is run.
+    pipeline : Pipeline
+        Whose source gives the frames.
+    """
+    place = place_asked(workers, on)
+    if place is None:
+        return None
+    from tactile_graph.cli.terminal import console
+    from tactile_graph.many.division import division_of
+    from tactile_graph.many.feed import ranges_of
+
+    ranges = ranges_of(pipeline.source) if plan.stateful else None
+    division = division_of(plan, ranges)
+    if division.why_not:
+        say_in_one_process(division.why_not)
+        return None
+    if division.by_recording:
+        console(stderr=True).print(BY_RECORDING, style="yellow", soft_wrap=True)
+    return Shared(place, division, ranges)
 
 
 def side_by_side(place: Place) -> str:

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import json
+import pickle
+from dataclasses import replace
 from itertools import islice
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers_many import place
 from tactile_graph import Frame, load
-from tactile_graph.many import Sharing
+from tactile_graph.inspect import as_data
+from tactile_graph.many import Feed, Reading, Sharing
+from tactile_graph.many.division import division_of
+from tactile_graph.many.feed import ranges_of
 from tactile_graph.plugins.registry import installed
+from tactile_graph.steps.injected import Report
 from tactile_graph_compare.output.export import as_json
+from tactile_graph_compare.records.frames import NodeStory
 from tactile_graph_compare.run.audit import Audit, Auditor, AuditWorker
+from tactile_graph_compare.run.chosen_frames import chosen_frames
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.run.shared import N_BEFORE, Given, SessionWorker
+from tactile_graph_compare.run.stories import as_sent
 from tactile_graph_compare.run.summarise import summarise
 from tactile_graph_compare.variants.prepare import prepare
 from tactile_graph_compare.variants.request import VariantRequest
@@ -83,6 +94,70 @@ def test_an_audit_by_workers_finds_what_one_process_does() -> None:
         return [audit.n_frames, audit.n_seen, rows, [g.differences for g in audit.guards]]
 
     assert told(one.summarise()) == told(joined.summarise())
+
+
+# -- steps that keep state ---------------------------------------------------------------------
+
+
+def recordings(folder: Path) -> list[Path]:
+    """Write two recordings of objects that pass."""
+    paths = [folder / "a.npz", folder / "b.npz"]
+    for seed, path in enumerate(paths):
+        source = load("contacts").with_source("simulate", scene="passing", frames=20)
+        given = [*source.frames(seed)]
+        grid = {k: getattr(given[0].image, k) for k in ("pitch_cm", "origin_cm", "quantity")}
+        np.savez(path, values=np.stack([f.image.values for f in given]), **grid)
+    return paths
+
+
+def tracking(paths: list[Path]) -> Session:
+    pipelines = [load(name).with_source("recording", path=paths) for name in ("tracks", "contacts")]
+    return Session(prepare([VariantRequest(p) for p in pipelines], installed()))
+
+
+@pytest.mark.slow
+def test_frames_shown_of_recordings_are_as_they_were_behind_those_before(tmp_path: Path) -> None:
+    paths = recordings(tmp_path)
+    one, joined = tracking(paths), tracking(paths)
+    pipeline = one.prepared[0].pipeline
+    for k, frame in enumerate(one.warmed(iter(pipeline.frames(0)))):
+        if k == 20:
+            one.without_state()
+        one.add(frame)
+    ranges = ranges_of(pipeline.source)
+    division = division_of(one.plan, ranges)
+    assert division.by_recording
+    assert pipeline.source is not None
+    reading = Reading.of(pipeline.source, division)
+    feed = Feed(pipeline, 0, Report(), (0, None), division, ranges)
+    given = Given(joined.prepared, joined.seed, joined.reference, reading)
+    with Sharing(place(), SessionWorker, given) as workers:
+        for part, error in workers.over_feed(feed):
+            assert error is None
+            joined.join(pickle.loads(pickle.dumps(part)))
+    shown = [
+        [
+            (c.position, label, name, s.state, s.reason, as_data(s.value))
+            for c in chosen_frames(s_)
+            for label, of in c.stories.items()
+            for name, s in of.items()
+        ]
+        for s_ in (one, joined)
+    ]
+    assert shown[0] == shown[1]
+    assert len({row[0] for row in shown[0]}) >= 4
+    told = [summarise(s) for s in (one, joined)]
+    assert without_times(json.loads(as_json(told[0]))) == without_times(
+        json.loads(as_json(told[1]))
+    )
+
+
+def test_a_value_that_cannot_be_sent_is_left_out() -> None:
+    story = NodeStory("a", "a", "ran", "", "", 1.0, lambda: 0)
+    kept = replace(story, value=2.0)
+    sent = as_sent({"v": {"a": story, "b": kept}})["v"]
+    assert (sent["a"].value, sent["a"].state) == (None, "ran")
+    assert sent["b"] is kept
 
 
 class Fake:
