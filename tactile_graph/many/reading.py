@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, TypeVar
 
-from tactile_graph.engine.outcomes import Outcomes
+from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.many.division import Division, Settling
 from tactile_graph.many.feed import absolute
 from tactile_graph.many.portion import Portion
