@@ -52,7 +52,10 @@ SOFT = 0.03
 """Depth, of the usual one, over which touching begins."""
 GAIN_SPREAD = 0.12
 STAGES = ((0.15, 8.0, 30), (0.1, 4.0, 30), (0.06, 2.0, 30), (0.04, 1.0, 40), (SOFT, 1.0, 60))
-"""First descent: softness, how much wider variances are taken, steps."""
+"""First descent: softness, how much wider variances are taken, steps.
+
+What a soft relief misses at its rim is added to the variances: still cells vary by so little that
+else no relief at all fits better than one laid a little wrongly, and from there none comes back."""
 AGAIN = ((SOFT, 1.0, 40), (SOFT, 1.0, 40))
 STARTS, FOLLOWED, OBJECTS = 6, 2, 6
 """Turns begun with for each object, how many of them are followed, and of how many objects."""
@@ -397,7 +400,8 @@ def learned(seen: Seen, reads: Reads, relief: Relief | None = None, place: int =
     trust = np.ones(len(seen.values))
     for i, (soft, wider, n_steps) in enumerate(stages):
         relief.soft = soft * relief.usual
-        weights = reads.weights(seen.values) / wider
+        missed = (soft - SOFT) * relief.usual
+        weights = 1.0 / (wider / reads.weights(seen.values) + missed**2)
         descend(relief, seen, weights * trust[:, None, None], reads, n_steps)
         last = i == len(stages) - 1
         refit(relief, seen, weights, reads,
