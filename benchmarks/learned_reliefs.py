@@ -60,6 +60,10 @@ NOTHING = 0.012
 """Readings below this share of full scale are none."""
 MARGIN = 3
 """Cells around a footprint that are looked at."""
+LARGE, LEANING = 300, np.arange(-6.0, 6.1, 1.5)
+"""Cells of a large press, and how far off the middle of what it touches it may lie."""
+CUT, WIDER = 0.75, 1.3
+"""How much more is kept than one press shows, where the edge cuts more than this share of them."""
 STIFF = 0.3
 """What a kink of the relief costs."""
 SOFT = 0.03
@@ -173,6 +177,11 @@ class Relief:
     picture: Values
     deep: Values
 
+    def trust(self, seen: Seen) -> Values:
+        """Return what presses count while their relief is learned: little where they fit badly."""
+        each = self.misfits / seen.cells()
+        return np.where(each <= 3.0 * np.quantile(each, 0.3), 1.0, 0.02)
+
     def start(self, x: float, y: float, turn: float, total: float) -> Values:
         """Return a press to begin with."""
         return np.array([x, y, turn, self.deep @ [1.0, math.log(total)], 0.0, 0.0])
@@ -193,7 +202,7 @@ def shifts(box: NDArray[np.int64], shape: tuple[int, ...]) -> Values:
 def alike(picture: Values, seen: Seen, k: int) -> Values:
     """Return for each of `TURNS` the correlation of a press with a picture, and where."""
     box, values = seen.boxes[k], np.maximum(seen.values[k], 0.0)
-    stride = 2 if box[2] * box[3] > 300 else 1
+    stride = 2 if box[2] * box[3] > LARGE else 1
     return likeness(picture, values, box, TURNS, shifts(box, values.shape), seen.centres[k], stride)
 
 
@@ -214,6 +223,7 @@ def laid(seen: Seen, place: int) -> tuple[Values, Values]:
     fullness = area * np.where(odd, 0.5, 1.0) * np.where(seen.cut(), 0.1, 1.0)
     first = int(np.argsort(-fullness)[place])
     radius = 1.05 * np.hypot(seen.boxes[:, 2], seen.boxes[:, 3]).max() / 2.0 + 1.5
+    radius *= WIDER if seen.cut().mean() > CUT else 1.0
     nodes = 2 * math.ceil(radius * NODES) + 1
     poses = np.column_stack([seen.centres, np.zeros(len(sums))])
     picture = picture_of(seen, poses, nodes, (np.arange(len(sums)) == first).astype(float))
@@ -231,13 +241,22 @@ def laid(seen: Seen, place: int) -> tuple[Values, Values]:
 
 
 def starts(relief: Relief, seen: Seen, k: int, n: int) -> list[Values]:
-    """Return presses to begin with: turns about which the pictures are most alike."""
-    found = alike(relief.picture, seen, k)
-    score = found[:, 0]
-    peaks = np.flatnonzero((score >= np.roll(score, 1)) & (score >= np.roll(score, -1)))
+    """Return presses to begin with: turns about which the pictures are most alike.
+
+    A large object that leans touches far off its middle: half as many begin as far off as that.
+    """
     total = float(np.maximum(seen.values[k], 0.0).sum())
-    return [relief.start(*found[t, 1:], TURNS[t], total)
-            for t in peaks[np.argsort(-score[peaks])][:n]]  # fmt: skip
+    far = [alike(relief.picture, seen, k)]
+    if seen.cells()[k] > LARGE:
+        far.append(likeness(relief.picture, np.maximum(seen.values[k], 0.0), seen.boxes[k], TURNS,
+                            LEANING, seen.centres[k], 2))  # fmt: skip
+    out = []
+    for found, most in zip(far, (n, n // 2), strict=False):
+        score = found[:, 0]
+        peaks = np.flatnonzero((score >= np.roll(score, 1)) & (score >= np.roll(score, -1)))
+        out += [relief.start(*found[t, 1:], TURNS[t], total)
+                for t in peaks[np.argsort(-score[peaks])][:most]]  # fmt: skip
+    return out
 
 
 def stepped(
@@ -345,23 +364,28 @@ def descend(relief: Relief, seen: Seen, weights: Values, reads: Reads, n_steps: 
     relief.presses = x[ends[-1] :].reshape(base.shape) * unit + base
 
 
-def deepest(relief: Relief, shape: tuple[int, ...]) -> Values:
-    """Return how deep each node was ever pressed; minus infinity where none was on the pad."""
+def deepest(relief: Relief, seen: Seen) -> Values:
+    """Return how deep each node was ever pressed; minus infinity where none was looked at.
+
+    Presses that fit badly count for nothing: they tell of places where they never were.
+    """
     half = (len(relief.depth) - 1) / 2.0
     at = (np.arange(len(relief.depth)) - half) / NODES
     v, u = np.meshgrid(at, at, indexing="ij")
     out = np.full(u.shape, -np.inf)
-    for x0, y0, turn, deep, lean_u, lean_v in relief.presses:
+    trusted = relief.trust(seen) == 1.0
+    for press, box in zip(relief.presses[trusted], seen.boxes[trusted], strict=True):
+        x0, y0, turn, deep, lean_u, lean_v = press
         x = x0 + u * math.cos(turn) - v * math.sin(turn)
         y = y0 + u * math.sin(turn) + v * math.cos(turn)
-        on = (x > 0) & (x < shape[1]) & (y > 0) & (y < shape[0])
+        on = (x > box[1]) & (x < box[1] + box[3]) & (y > box[0]) & (y < box[0] + box[2])
         out = np.where(on, np.maximum(out, deep - lean_u * u - lean_v * v), out)
     return out
 
 
-def extend(relief: Relief, shape: tuple[int, ...], within: int = 8) -> None:
+def extend(relief: Relief, seen: Seen, within: int = 8) -> None:
     """Let the relief go on beyond what was touched, as smoothly as it comes, never touching."""
-    below, depth = deepest(relief, shape), relief.depth
+    below, depth = deepest(relief, seen), relief.depth
     learned = depth < below - 0.02 * relief.usual
     free = ~learned & (distance_transform_edt(~learned) <= within)
     number = np.where(free, np.cumsum(free.ravel()).reshape(free.shape) - 1, -1)
@@ -421,12 +445,10 @@ def learned(seen: Seen, reads: Reads, relief: Relief | None = None, place: int =
         last = i == len(stages) - 1
         refit(relief, seen, weights, reads,
               "" if last else "everywhere" if i == len(stages) - 2 else "turns")  # fmt: skip
-        each = relief.misfits / seen.cells()
-        trust = np.where(each <= 3.0 * np.quantile(each, 0.3), 1.0, 0.02)
-    shape = seen.values.shape[1:]
-    extend(relief, shape)
+        trust = relief.trust(seen)
+    extend(relief, seen)
     descend(relief, seen, weights * trust[:, None, None], reads, 30)
-    extend(relief, shape)
+    extend(relief, seen)
     refit(relief, seen, weights, reads, "")
     return relief
 

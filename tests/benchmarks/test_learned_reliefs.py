@@ -91,7 +91,8 @@ def test_a_relief_goes_on_as_it_rises_and_never_touches(bowl):
     press = np.array([[10.0, 6.0, 0.0, 0.4, 0.0, 0.0]])
     unlearned = np.where(bowl < 0.4, bowl, 0.45)
     relief = Relief(unlearned, press, 0.4, 0.01, np.ones(1), bowl, np.zeros(2))
-    extend(relief, SHAPE)
+    seen = Seen(np.zeros((1, *SHAPE)), np.array([[0, 0, *SHAPE]]), press[:, :2])
+    extend(relief, seen)
     touched = bowl < 0.39
     np.testing.assert_array_equal(relief.depth[touched], bowl[touched])
     beyond = relief.depth[30, 36:41]  # from 2 to 3.3 cells
