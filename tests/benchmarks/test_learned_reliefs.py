@@ -146,7 +146,7 @@ def test_one_object_is_learned_and_told_from_another():
 @pytest.mark.slow
 def test_a_small_object_that_reads_full_scale_is_learned():
     pad = Pad(STRIP, np.random.default_rng(6))
-    coin = Thing("coin", disc(0.9), 0.9)
+    coin = Thing("coin", disc(0.8), 0.6)
     shown = np.array([pad.press(coin).image.values for _ in range(12)], float)
     seen = Seen.of(shown, STRIP.full_scale)
     assert np.median(seen.values.max(axis=(1, 2))) > 0.99
