@@ -10,16 +10,18 @@ from what is expected are learned. The cover is taken for a bed of springs, whic
 An object's presses are first laid on each other by their pictures; relief and presses are then
 fitted in turns, those that fit badly being looked for anew and trusted less. Beyond what any press
 touched a relief goes on as it rises at its rim. A press is named by fitting every object's relief
-to it, and is as far from an object as its misfit is over the median misfit of that object's own.
-Strangers are found where that is more than all but a share of the known presses have: limits on the
-test readings, as in the curves of `identify_objects`. An object's relief is learned from its own
-presses alone, gains and variances from those of all objects, the stranger's among them.
+to it, and is as far from an object as its misfit, still cells left out, is over the median misfit
+of that object's own. Strangers are found where that is more than all but a share of the known
+presses have: limits on the test readings, as in the curves of `identify_objects`, and one that
+accepts 95 % of the presses learned. An object's relief is learned from its own presses alone, gains
+and variances from those of all objects, the stranger's among them.
 
 That reliefs can be learned from 25 presses is refuted by less than 85 % of strangers found where
 5 % are lost or less than 95 % nearest to their own, on any one pad. Settings were chosen on
 catalogue 1 of the strip and the capacitive pad, how far an object's usual misfit counts on
 catalogue 11 of the strip, what is missed by a soft relief and by still cells on catalogue 2 of the
-strip. Measured before these two were: 11 and 12 of the strip, 11 of the capacitive pad.
+strip, what tells where a relief was touched and where large objects begin on catalogue 2 of the
+capacitive pad. Measured besides: 11, 12, 41 and 42 of the strip, 11 and 41 of the capacitive pad.
 """
 
 from __future__ import annotations
