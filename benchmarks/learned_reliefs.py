@@ -21,7 +21,8 @@ That reliefs can be learned from 25 presses is refuted by less than 85 % of stra
 catalogue 1 of the strip and the capacitive pad, how far an object's usual misfit counts on
 catalogue 11 of the strip, what is missed by a soft relief and by still cells on catalogue 2 of the
 strip, what tells where a relief was touched and where large objects begin on catalogue 2 of the
-capacitive pad. Measured besides: 11, 12, 41 and 42 of the strip, 11 and 41 of the capacitive pad.
+capacitive pad. Measured besides: 11, 12, 41 and 42 of the strip, 11 and 41 of the capacitive pad,
+41 of the resistive one.
 """
 
 from __future__ import annotations
