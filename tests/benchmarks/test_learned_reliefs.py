@@ -93,13 +93,34 @@ def test_a_relief_goes_on_as_it_rises_and_never_touches(bowl):
     press = np.array([[10.0, 6.0, 0.0, 0.4, 0.0, 0.0]])
     unlearned = np.where(bowl < 0.4, bowl, 0.45)
     relief = Relief(unlearned, press, 0.4, 0.01, np.ones(1), bowl, np.zeros(2))
-    extend(relief, SHAPE)
+    seen = Seen(np.zeros((1, *SHAPE)), np.array([[0, 0, *SHAPE]]), press[:, :2])
+    extend(relief, seen)
     touched = bowl < 0.39
     np.testing.assert_array_equal(relief.depth[touched], bowl[touched])
     beyond = relief.depth[30, 36:41]  # from 2 to 3.3 cells
     assert (np.diff(beyond) > 0.0).all()
     assert beyond[-1] > 0.6
     assert relief.depth[~touched].min() >= 0.39
+
+
+def test_presses_that_fit_badly_tell_of_no_place(bowl):
+    presses = np.array([[10.0, 6.0, 0.0, deep, 0.0, 0.0] for deep in (0.4, 0.4, 0.4, 9.0)])
+    relief = Relief(bowl, presses, 0.4, 0.01, np.array([1.0, 1.0, 1.0, 50.0]), bowl, np.zeros(2))
+    boxes = np.array([[2, 5, 8, 10]] * 4)
+    below = learned_reliefs.deepest(relief, Seen(np.zeros((4, *SHAPE)), boxes, presses[:, :2]))
+    assert below.max() == 0.4
+    assert below[30, 30 + 4 * NODES] == 0.4
+    assert below[30, 30 + 6 * NODES] == -np.inf  # beside the box
+
+
+def test_still_cells_have_their_misfit_by_themselves():
+    values = np.zeros((1, *SHAPE))
+    values[0, 4:6, 4:8] = 0.5
+    values[0, 0, :] = 0.01
+    seen = Seen(values, np.array([[0, 0, *SHAPE]]), np.array([[6.0, 5.0]]))
+    misfits, n_felt = learned_reliefs.still(seen, np.full(values.shape, 200.0**2))
+    assert misfits[0] == pytest.approx(20 * 2.0**2)
+    assert n_felt[0] == 8
 
 
 def test_strangers_are_found_where_no_more_than_a_share_are_lost():
@@ -122,3 +143,15 @@ def test_one_object_is_learned_and_told_from_another():
         far = learned_reliefs.distances(reliefs, reads, Seen.of(more, STRIP.full_scale))
         assert (far.argmin(axis=1) == k).all()
         assert (far[:, 1 - k] > 3.0 * far[:, k]).all()
+
+
+@pytest.mark.slow
+def test_a_small_object_that_reads_full_scale_is_learned():
+    pad = Pad(STRIP, np.random.default_rng(6))
+    coin = Thing("coin", disc(0.8), 0.6)
+    shown = np.array([pad.press(coin).image.values for _ in range(12)], float)
+    seen = Seen.of(shown, STRIP.full_scale)
+    assert np.median(seen.values.max(axis=(1, 2))) > 0.99
+    reads = Reads(STRIP, np.ones(shown.shape[1:]), 0.98, np.array([0.0015, 0.1, 0.02]) ** 2)
+    relief = learned_reliefs.learned(seen, reads)
+    assert np.median(relief.misfits / seen.cells()) < 2.0
