@@ -148,7 +148,8 @@ def streamed(n: int, seed: int) -> Frames:
     return list(stream(n, seed).frames)
 
 
-COUNTED = ("footprint.mask.count", "footprint.mask.fraction", "footprint.rise")
+COUNTED = ("footprint.mask.count", "footprint.mask.fraction", "footprint.rise",
+           "footprint.together")  # fmt: skip
 CIRCLES = ("cells.share", *COUNTED[:2], "even.uneven", "even.n_cells", "even.centre_std_cm",
            "even.radius_std_cm", "likely.centre_std_cm", "likely.surprise", "likely.fits",
            "quick.centre_std_cm", "quick.surprise", "quick.fits", "quick.posterior.alike",

@@ -27,6 +27,7 @@ class _Gridded:
     """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
 
     __slots__ = ("origin_cm", "pitch_cm")
+    fields_told: ClassVar[tuple[str, ...]] = ("origin_cm", "pitch_cm", "values")
     if TYPE_CHECKING:
 
         @property
@@ -99,6 +100,7 @@ class Image(_Gridded):
     """
 
     __slots__ = ("quantity", "valid", "values")
+    fields_told: ClassVar[tuple[str, ...]] = ("quantity", "valid", *_Gridded.fields_told)
     columns_shown: ClassVar[tuple[str, ...]] = ("total", "peak")
     image_unit: ClassVar[tuple[str, ...]] = ("total", "peak")
     quantity: QuantityName

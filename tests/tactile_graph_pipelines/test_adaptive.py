@@ -72,7 +72,7 @@ def test_on_an_empty_pad_only_the_gates_run() -> None:
         assert ran(result) == {"cells", "footprint"}
         outcome = result.outcome("siemens")
         assert isinstance(outcome, Skipped)
-        asked = "footprint.mask.count = 0, footprint.rise = 0"
+        asked = "footprint.together = 0, footprint.rise = 0"
         assert outcome.reason == f"when touched is false ({asked})"
         assert isinstance(result.outcome("circle"), Skipped)
 

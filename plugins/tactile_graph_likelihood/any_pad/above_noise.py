@@ -8,6 +8,7 @@ import numpy as np
 from annotated_types import Gt
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise
@@ -19,6 +20,12 @@ from tactile_graph_pads.pad import Pad, load_pad
 SHOWS = 4.0
 """Standard deviations of noise above zero from which on a reading is one."""
 
+
+NEAR = 2
+"""Rows and columns that elements may lie apart and still be together: a void may be between."""
+
+MOST_TOGETHER = 9
+"""More are not counted: whether it is one, a few or many says whether it may be noise."""
 
 TINY = float(np.finfo(np.float64).tiny)
 MOST_RISE = 1e6
@@ -80,17 +87,47 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     return Risen(np.where(kept, above, 0.0), least, shows, noise.zero, its)
 
 
+def _together_plain(shows: NDArray[np.bool_]) -> int:
+    """Return the most of some cells, shape (rows, columns), within `NEAR` of one of them."""
+    wide = np.pad(shows.astype(np.int64), NEAR)
+    window = (2 * NEAR + 1, 2 * NEAR + 1)
+    counts = np.lib.stride_tricks.sliding_window_view(wide, window).sum(axis=(2, 3))
+    return min(int(counts[shows].max(initial=0)), MOST_TOGETHER)
+
+
+@compiled_twin_of(_together_plain)
+def together(shows):  # type: ignore[no-untyped-def]
+    """Do the same in loops, which end as soon as there are enough."""
+    rows, columns = shows.shape
+    most = 0
+    for r in range(rows):
+        for c in range(columns):
+            if not shows[r, c]:
+                continue
+            count = 0
+            for i in range(max(0, r - NEAR), min(rows, r + NEAR + 1)):
+                for j in range(max(0, c - NEAR), min(columns, c + NEAR + 1)):
+                    count += shows[i, j]
+            if count >= MOST_TOGETHER:
+                return MOST_TOGETHER
+            most = max(most, count)
+    return most
+
+
 class Showing(NamedTuple):
     """A footprint of what rises above the noise; a port that takes a mask takes it as it is.
 
     ``level`` is what its cells reach, in the image's unit. ``rise`` is how far the largest reading
     rises, in what noise reaches: 1 is on the edge, 0 where nothing shows. In a twentieth of frames
-    of 256 untouched cells one comes to 1.0, as the noise is told by few of them.
+    of 256 untouched cells one comes to 1.0, as the noise is told by few of them. ``together`` is
+    the most cells within two rows and columns of one of them, itself counted, as far as 9: those
+    that noise lets show lie apart.
     """
 
     mask: Mask
     level: float
     rise: float
+    together: int
 
 
 # Set from outside: within a NamedTuple every name is a field.
@@ -125,7 +162,7 @@ class AboveNoise:
         self._pad, self._deviations = load_pad(pad), deviations
 
     def __call__(self, image: Image) -> Showing:
-        """Return the footprint, its level, and how far it rises.
+        """Return the footprint, its level, how far it rises, and how many of it lie together.
 
         Parameters
         ----------
@@ -139,11 +176,12 @@ class AboveNoise:
         """
         found = risen(image, self._pad, self._deviations)
         mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
+        near = together.call(found.shows)
         if isinstance(found.least, float):
             most = float(found.above[found.shows].max()) if mask.count else 0.0
             rise = most / max(found.least, TINY)
-            return Showing(mask, found.zero + found.least, min(rise, MOST_RISE))
+            return Showing(mask, found.zero + found.least, min(rise, MOST_RISE), near)
         level = found.zero + float(np.max(found.least))
         with np.errstate(over="ignore"):
             rises = found.above[found.shows] / np.maximum(found.least[found.shows], TINY)
-        return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE))
+        return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE), near)

@@ -124,7 +124,8 @@ def _record(value: Any, full: bool) -> Any:
     if dataclasses.is_dataclass(value):
         names = [f.name for f in dataclasses.fields(value)]
     else:
-        names = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
+        slots = [n for kind in type(value).__mro__ for n in getattr(kind, "__slots__", ())]
+        names = getattr(value, "fields_told", slots)  # a slot may hold the making of a field
     shown = [n for n in dict.fromkeys(names) if not n.startswith("_")]
     shape = shape_kind(type(value))
     data = {} if shape is None or "kind" in shown else {"kind": shape.__name__}

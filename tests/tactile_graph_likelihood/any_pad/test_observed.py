@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
+from tactile_graph_likelihood.any_pad.above_noise import AboveNoise, together
 from tactile_graph_likelihood.any_pad.observed import (
     ceiling_of,
     least_that_shows,
@@ -174,3 +175,24 @@ def test_the_rise_is_told_in_what_noise_reaches():
     alone = np.zeros((16, 16))
     alone[2, 2] = 1.0
     assert np.isfinite(AboveNoise()(image_of(alone)).rise)
+
+
+def test_cells_that_noise_lets_show_lie_apart_and_those_of_an_object_together():
+    values = np.zeros((16, 16))
+    values[[1, 1, 9, 14], [1, 13, 7, 2]] = 1.0
+    assert AboveNoise()(image_of(values)).together == 1
+    values = values.copy()
+    values[1, 3] = values[3, 1] = 1.0  # a void between
+    assert AboveNoise()(image_of(values)).together == 3
+    values = values.copy()
+    values[4:9, 8:12] = 1.0
+    assert AboveNoise()(image_of(values)).together == 9
+    assert AboveNoise()(image_of(np.zeros((16, 16)))).together == 0
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (3, 2), (16, 16), (5, 40)])
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.1, 0.5, 1.0])
+def test_how_many_lie_together_is_counted_alike_in_loops(shape, share):
+    shows = np.random.default_rng(11).random(shape) < share
+    ways = together.reference(shows), plainly(together)(shows), together.compiled(shows)
+    assert len(set(ways)) == 1

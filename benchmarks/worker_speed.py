@@ -1,7 +1,7 @@
 """Frames a second of `run --workers`, beside joblib and Dask's bag over the same function.
 
-    python benchmarks/workers.py                           # circle-3, 20,000 frames
-    python benchmarks/workers.py --frames 1000000 --repeated --only memory
+    python benchmarks/worker_speed.py                           # circle-3, 20,000 frames
+    python benchmarks/worker_speed.py --frames 1000000 --repeated --only memory
 
 All read the same store and write JSON lines. Two processes apart, each a plain run over half of the
 frames with nothing between them, are what this machine's two cores can give: beside frames a second

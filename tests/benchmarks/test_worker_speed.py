@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from workers import APART, ONE, Way, ratios, speeds, ways_of
+from worker_speed import APART, ONE, Way, ratios, speeds, ways_of
 
 
 def writes(text: str, seconds: float = 0.0) -> Callable[[str], object]:
