@@ -48,6 +48,7 @@ def test_whatever_may_be_worse_by_more_than_its_margin_is_told(its, why):
     assert list(make_adaptive.refuted_by(its)) == why
 
 
+@pytest.mark.slow  # much is compiled
 def test_small_things_that_are_lost_speak_against_shipping():
     small = make_adaptive.small_discs(8, 0)
     today = load("locate-circle")

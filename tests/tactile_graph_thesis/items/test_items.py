@@ -35,6 +35,15 @@ RESTORED = tuple(i.id for i in items() if i.id.startswith(("figure-5.", "table-5
 LONG = (
     *(*SCHEDULE, *RESTORED, "restoration-filters", "load-prior", "noise-models"),
     *("direct-ellipse", "finer-pad", "figure-4.22", "figure-4.38", "heavier-smaller", "hysteresis"),
+    *(
+        "boundary-operators",
+        "figure-2.19",
+        "figure-4.30",
+        "figure-4.39",
+        "one-pad",
+        "rotation-order",
+    ),
+    *("stack-order", "table-4.9"),
 )
 VERDICTS: dict[str, list[bool]] = yaml.safe_load(
     (Path(__file__).parent / "verdicts.yaml").read_text(encoding="utf-8")

@@ -72,6 +72,7 @@ def test_without_lines_the_image_is_blurred_and_with_them_it_is_not() -> None:
     assert rms(made, "smooth") > 1.5 * rms(made, "lined")
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_ways_see_the_same_and_end_the_lower_the_hotter_they_began() -> None:
     made = [figure_5_8(2, way) for way in ("thesis", "annealed", "restore")]  # type: ignore[arg-type]
     for one in made[1:]:
