@@ -75,6 +75,7 @@ def test_one_that_knows_objects_by_grams_says_so_before_it_computes(
         load(name).run(disc((16, 16), quantity))
 
 
+@pytest.mark.slow  # many are loaded
 def test_a_source_that_says_its_unit_is_refused_when_it_is_loaded() -> None:
     with pytest.raises(PipelineError, match=r"takes gram at port .*, got kilopascal; .*learn"):
         load("identify-any").with_source("recording", path="any.npz", quantity="kilopascal")

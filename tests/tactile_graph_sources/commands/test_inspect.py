@@ -56,6 +56,7 @@ def mat(tmp_path: Path) -> Path:
     return tmp_path / "mat.npz"
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.usefixtures("nothing_tried")
 def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
     found = looked(mat)

@@ -54,6 +54,7 @@ def test_a_pipe_is_told_to_be_saved_first(tmp_path: Path) -> None:
     assert refused(tmp_path / "pipes") == "there is no such file; did you mean 'pipe'?"
 
 
+@pytest.mark.slow  # much is packed
 def test_an_archive_of_nearly_nothing_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
     path = tmp_path / "bomb.npz"
     shape = {"descr": "<f8", "fortran_order": False, "shape": (300, 400, 400)}
