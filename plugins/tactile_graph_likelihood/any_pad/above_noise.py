@@ -89,6 +89,8 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
 
 def _together_plain(shows: NDArray[np.bool_]) -> int:
     """Return the most of some cells, shape (rows, columns), within `NEAR` of one of them."""
+    if not shows.any():
+        return 0
     wide = np.pad(shows.astype(np.int64), NEAR)
     window = (2 * NEAR + 1, 2 * NEAR + 1)
     counts = np.lib.stride_tricks.sliding_window_view(wide, window).sum(axis=(2, 3))
