@@ -86,6 +86,7 @@ def commands(name: str) -> list[list[str]]:
     return [shlex.split(line)[1:] for line in re.findall(r"^    (tactile-graph .*)", doc, re.M)]
 
 
+@pytest.mark.slow  # many processes
 @pytest.mark.parametrize("name", NAMES)
 def test_the_command_in_the_first_lines_of_each_runs(
     all_seven: Registry, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

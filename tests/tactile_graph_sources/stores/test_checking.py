@@ -46,6 +46,7 @@ def test_a_store_that_is_as_it_was_written_is_right(store: Path) -> None:
     assert check(store, repair=True) == (ABOUT, (), ())
 
 
+@pytest.mark.slow  # many stores
 @pytest.mark.parametrize("name", ["", "values", "time_s", "gap", "notes", "number"])
 def test_metadata_are_written_anew(store: Path, name: str) -> None:
     whole = plain(store)
@@ -73,6 +74,7 @@ def test_what_was_said_of_the_group_besides_stays(store: Path) -> None:
     }
 
 
+@pytest.mark.slow  # many stores
 @pytest.mark.parametrize("name", ["time_s", "gap", "notes", "notes_end", "number"])
 @pytest.mark.parametrize("gone", [False, True])
 def test_arrays_other_than_the_values_are_written_anew_from_the_journal(

@@ -31,6 +31,7 @@ def test_without_an_id_all_are_listed() -> None:
     assert all(i.id in listed and i.study in listed and i.title in listed for i in items())
 
 
+@pytest.mark.slow  # much is compiled
 def test_a_table_is_shown_beside_the_thesis_and_written(tmp_path: Path) -> None:
     result = run("table-4.5", "-o", tmp_path / "new", "--readings", 20)
     assert result.exit_code == 0
