@@ -14,6 +14,7 @@ from typing import Any
 
 from tactile_graph.engine.deadlines.allowed import Deciding, ladder, where_allowed
 from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.operations.first_of import first_of
 from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.operations.guards import guarded
 from tactile_graph.engine.operations.step_operation import (
@@ -23,7 +24,7 @@ from tactile_graph.engine.operations.step_operation import (
     State,
     step_operation,
 )
-from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, failure
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.written import AFTER_FRAMES, Written
 from tactile_graph.pipeline.conditions import Guard
@@ -145,7 +146,9 @@ def _operation(
     blocks = [tuple(operations[s] for s in port.lazy) for port in item.inputs]
     time = plan.n_slots + item.slot
     if node.kind is NodeKind.FIRST_OF:
-        body = _first_of(item, blocks) if deciding is None else ladder(item, blocks, deciding)
+        choices = [(port.slots[0], block) for port, block in zip(item.inputs, blocks, strict=True)]
+        rungs = choices if deciding is None else ladder(item.slot, choices, deciding)
+        body = first_of(item.slot, rungs)
     elif node.kind is NodeKind.PASS:
         body = _pass(item, blocks)
     elif node.kind is NodeKind.GIVEN:
@@ -219,26 +222,6 @@ def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
         if value.__class__ in IMMUTABLE:
             known, kept = value, field
         return field
-
-    return operation
-
-
-def _first_of(item: Item, blocks: list[Block]) -> Operation:
-    slot = item.slot
-    choices = [(port.slots[0], block) for port, block in zip(item.inputs, blocks, strict=True)]
-
-    def operation(state: State) -> None:
-        failed = value = None
-        for source, block in choices:
-            for settle in block:
-                settle(state)
-            value = state[source]
-            if value.__class__ not in NO_VALUE:
-                state[slot] = value
-                return
-            if failed is None and value.__class__ is Failed:
-                failed = value
-        state[slot] = value if failed is None else failed
 
     return operation
 

@@ -99,6 +99,18 @@ class Written:
             )
             known.add(slot)
 
+    def _handed_on(self, slot: int, sources: Sequence[int], depth: int) -> None:
+        """Write that what lacks a value is handed on; what is done otherwise follows as ``else``."""
+        for n, source in enumerate(sources):
+            self.write(
+                depth,
+                f"""
+{"el" if n else ""}if not ok{source}:
+    v{slot} = v{source}
+    ok{slot} = False
+""",
+            )
+
     def _field(self, item: Item, depth: int, known: set[int]) -> None:
         assert item.view is not None
         slot, source = item.slot, item.source
@@ -138,15 +150,7 @@ else:
         sources = [port.slots[0] for port in item.inputs]
         for source in sources:
             self.read(source, depth, known)
-        for n, source in enumerate(sources):
-            self.write(
-                depth,
-                f"""
-{"el" if n else ""}if not ok{source}:
-    v{slot} = v{source}
-    ok{slot} = False
-""",
-            )
+        self._handed_on(slot, sources, depth)
         values = ", ".join(f"v{source}" for source in sources)
         self.write(
             depth,
@@ -177,15 +181,7 @@ else:
             self.read(source, depth, known)
         self.names[f"holds{slot}"] = guard.function
         self.names[f"skip{slot}"] = _skipping(item.name, guard)
-        for n, source in enumerate(item.guard):
-            self.write(
-                depth,
-                f"""
-{"el" if n else ""}if not ok{source}:
-    v{slot} = v{source}
-    ok{slot} = False
-""",
-            )
+        self._handed_on(slot, item.guard, depth)
         values = ", ".join(f"v{source}" for source in item.guard)
         self.write(
             depth,

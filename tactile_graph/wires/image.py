@@ -23,6 +23,12 @@ def _taken_by_machine_code(values: NDArray[Any]) -> NDArray[Any]:
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
+def cells_of(words: NDArray[np.uint64], columns: int) -> NDArray[np.bool_]:
+    """Return the cells of rows that are words, bit c being column c: a further axis of them."""
+    raw = words.astype("<u8", copy=False).view(np.uint8).reshape(*words.shape, 8)
+    return np.unpackbits(raw, axis=-1, count=columns, bitorder="little").view(np.bool_)
+
+
 class _Gridded:
     """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
 
@@ -230,9 +236,7 @@ class Mask(_Gridded):
         cells = self._cells
         if cells is None:
             assert self._words is not None
-            raw = self._words.astype("<u8", copy=False).view(np.uint8).reshape(-1, 8)
-            bits = np.unpackbits(raw, axis=-1, count=self._columns, bitorder="little")
-            cells = bits.view(np.bool_)
+            cells = cells_of(self._words, self._columns)
             cells.setflags(False)  # type: ignore[call-arg]
             _set_cells(self, cells)
         return cells

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.wires.image import Image, Mask
+from tactile_graph.wires.image import Image, Mask, cells_of
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Polygon
 
@@ -208,7 +208,7 @@ class MaskStack(Stack):
     """
 
     item = Mask
-    WIDEST = 64
+    WIDEST = Mask.WIDEST
     """Columns that go into a word."""
 
     def __init__(
@@ -265,9 +265,7 @@ class MaskStack(Stack):
 
     def _cells(self, words: Any) -> NDArray[np.bool_]:
         """Return the cells of rows, a further axis of them."""
-        raw = self._little(words).view(np.uint8).reshape(*words.shape, 8)
-        bits = np.unpackbits(raw, axis=-1, count=self._shape[2], bitorder="little")
-        return _frozen(bits.view(np.bool_))
+        return _frozen(cells_of(words, self._shape[2]))
 
     @property
     def words(self) -> NDArray[np.uint64] | None:

@@ -19,6 +19,7 @@ from tactile_graph.cli.arguments import (
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import (
     Shared,
+    Sourced,
     say_in_one_process,
     shared_for,
     side_by_side,
@@ -29,10 +30,9 @@ from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
-    from tactile_graph.many import Sharing
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.output.tables import Table
-    from tactile_graph_compare.run.audit import Audit, Auditor, AuditPart, GuardAudit
+    from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
 EPILOG = """\b
 Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM; what was done is
@@ -164,11 +164,13 @@ class _Taking:
         from tactile_graph.cli.say import say
         from tactile_graph.many import KILLER, Sharing
         from tactile_graph_compare.run.audit import AuditWorker
+        from tactile_graph_compare.run.shared import N_BEFORE
 
         auditor = self.auditor
         given = auditor.for_workers(shared.reading(auditor.pipeline, self.span.start))
+        where = Sourced(auditor.pipeline, self.seed, self.report, self.span)
         with Sharing(shared.place, AuditWorker, given) as workers:
-            for part in self._parts(shared, workers):
+            for part in shared.parts(workers, where, self._sample, N_BEFORE):
                 with held:
                     auditor.join(part)
                     if shared.in_place:
@@ -180,15 +182,8 @@ class _Taking:
             for number in workers.left_out:
                 say(f"frame {number}{of}: {KILLER}", err=True)
 
-    def _parts(self, shared: Shared, workers: Sharing[AuditPart]) -> Iterator[AuditPart]:
-        from tactile_graph_compare.run.shared import N_BEFORE
-
-        if not shared.in_place:
-            sample = (frame for frame in self._frames() if self.auditor.drawn())
-            return workers.over_frames(sample, N_BEFORE)
-        feed = shared.feed(self.auditor.pipeline, self.seed, self.report, self.span)
-        feed.look_through()
-        return workers.over_feed(feed)
+    def _sample(self) -> Iterator[Frame]:
+        return (frame for frame in self._frames() if self.auditor.drawn())
 
 
 def _show(found: Audit, out: Any) -> None:

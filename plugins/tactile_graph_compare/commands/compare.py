@@ -14,6 +14,7 @@ from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import (
     Shared,
+    Sourced,
     say_in_one_process,
     shared_for,
     side_by_side,
@@ -25,15 +26,12 @@ from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
-    from tactile_graph.many import Sharing
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
     from tactile_graph_compare.records.comparison import Comparison
-    from tactile_graph_compare.run.session import Part, Session
+    from tactile_graph_compare.run.session import Session
     from tactile_graph_compare.variants.prepare import PreparedVariant
     from tactile_graph_compare.variants.request import VariantRequest
-
-    _Came = tuple[Part, Exception | None]
 
 EPILOG = """\b
 A variant is a pipeline's name or file, or one with settings, as one quoted word:
@@ -279,13 +277,14 @@ class _Run:
 
     def _noted_by_workers(self, shared: Shared, held: Any) -> Iterator[None]:
         from tactile_graph.many import KILLER, Sharing
-        from tactile_graph_compare.run.shared import Given, SessionWorker
+        from tactile_graph_compare.run.shared import N_BEFORE, Given, SessionWorker
 
         session = self.session
         reading = shared.reading(self.pipeline, self.span.start)
         given = Given(session.prepared, session.seed, session.reference, reading)
+        where = Sourced(self.pipeline, self.options.seed, self.report, self.span)
         with Sharing(shared.place, SessionWorker, given) as workers:
-            for part, error in self._parts(shared, workers):
+            for part, error in shared.parts(workers, where, self._source, N_BEFORE):
                 with held:
                     session.join(part)
                 yield
@@ -294,15 +293,6 @@ class _Run:
             first = 0 if shared.in_place else self.span.start
             for number in workers.left_out:
                 self.report.trouble(f"frame {first + number}", KILLER)
-
-    def _parts(self, shared: Shared, workers: Sharing[_Came]) -> Iterator[_Came]:
-        from tactile_graph_compare.run.shared import N_BEFORE
-
-        if not shared.in_place:
-            return workers.over_frames(self._source(), N_BEFORE)
-        feed = shared.feed(self.pipeline, self.options.seed, self.report, self.span)
-        feed.look_through()
-        return workers.over_feed(feed)
 
     # -- the end -----------------------------------------------------------------------------
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import numpy as np
-
 from tactile_graph.steps.rules import Grid
-from tactile_graph.wires import Mask, quick_mask
+from tactile_graph.wires import Mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
-from tactile_graph_filters.morphology.erosion import BOOL, make_plan, sweep, swept
+from tactile_graph_filters.morphology.erosion import make_plan, swept, swept_mask
 from tactile_graph_filters.morphology.packed import around, combined, combined_mask
 
 
@@ -40,14 +38,8 @@ class Dilate:
 
     def __call__(self, mask: Mask) -> Annotated[Mask, Grid.like("mask")]:
         """Return the dilated mask."""
-        if self._around is not None:
-            packed = combined_mask(mask, self._around)
-            if packed is not None:
-                return packed
-        values = mask.values
-        out = np.empty(values.shape, BOOL)
-        count = sweep.call(values, self._plan, out)
-        return quick_mask(out, mask.pitch_cm, mask.origin_cm, count)
+        packed = None if self._around is None else combined_mask(mask, self._around)
+        return swept_mask(mask, self._plan) if packed is None else packed
 
     def stacked(self, mask: MaskStack) -> MaskStack:
         """Return the dilated masks of several frames."""

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.wires import Mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import Element
 
@@ -165,6 +166,13 @@ def _sweep_plain(values: NDArray[np.bool_], plan: Plan, out: NDArray[np.bool_]) 
     done = planes[result, inner].reshape(rows, stride)[:, :columns]
     np.not_equal(done, bool(flip_out), out=out)
     return int(np.count_nonzero(out))
+
+
+def swept_mask(mask: Mask, plan: Plan) -> Mask:
+    """Return a mask eroded (or dilated) by a plan."""
+    out = np.empty(mask.values.shape, BOOL)
+    count = sweep.call(mask.values, plan, out)
+    return quick_mask(out, mask.pitch_cm, mask.origin_cm, count)
 
 
 def swept(masks: MaskStack, plan: Plan) -> MaskStack:

@@ -9,6 +9,7 @@ from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, packed_mask
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import Element
+from tactile_graph_filters.morphology.erosion import BOOL
 
 Words = NDArray[np.uint64]
 _HALVES = (
@@ -25,7 +26,7 @@ _PAIRS = np.uint64(0x3333333333333333)
 _NIBBLES = np.uint64(0x0F0F0F0F0F0F0F0F)
 _BYTES = np.uint64(0x0101010101010101)
 _ALL = np.uint64(2**64 - 1)
-BOOL, WORD = np.dtype(np.bool_), np.dtype(np.uint64)
+WORD = np.dtype(np.uint64)
 Cells = NDArray[np.bool_]
 Around = NDArray[np.int64]
 """Of an element, for masks of one frame: row 0 is whether to dilate and how many rows it reaches,

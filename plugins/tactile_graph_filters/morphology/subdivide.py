@@ -11,9 +11,9 @@ from tactile_graph.compiled import compiled_later
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask, packed_mask, quick_mask
 from tactile_graph.wires.stacks import MaskStack
+from tactile_graph_filters.morphology.erosion import BOOL
 from tactile_graph_filters.morphology.packed import WORD, doubled, doubled_cells
 
-BOOL = np.dtype(np.bool_)
 HALF = Mask.WIDEST // 2
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
+from tactile_graph_likelihood.any_pad.clump import NEAR
 from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise
 from tactile_graph_likelihood.any_pad.learned_pad import Taught, taught
 from tactile_graph_likelihood.geometry.outlines import Values
@@ -19,10 +20,6 @@ from tactile_graph_pads.pad import Pad, load_pad
 
 SHOWS = 4.0
 """Standard deviations of noise above zero from which on a reading is one."""
-
-
-NEAR = 2
-"""Rows and columns that elements may lie apart and still be together: a void may be between."""
 
 MOST_TOGETHER = 9
 """More are not counted: whether it is one, a few or many says whether it may be noise."""

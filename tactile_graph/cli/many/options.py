@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
@@ -11,13 +11,15 @@ if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.cli.arguments import Span
     from tactile_graph.engine.plan import Plan
-    from tactile_graph.many import Feed, Place, Reading
+    from tactile_graph.many import Place, Reading, Sharing
     from tactile_graph.many.division import Division
     from tactile_graph.steps.injected import Report
     from tactile_graph.steps.ranges import Ranges
+    from tactile_graph.wires.frame import Frame
 
 BY_RECORDING = "each recording by one worker: state starts anew with each"
 F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T")
 
 
 def workers_options(command: F) -> F:
@@ -76,6 +78,25 @@ def say_in_one_process(why: object) -> None:
     console(stderr=True).print(f"in one process: {why}", style="yellow", soft_wrap=True)
 
 
+class Sourced(NamedTuple):
+    """Where a command's frames come from.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+        Whose source gives them.
+    seed : int
+    report : Report
+        Takes what is to be said of them.
+    span : Span
+    """
+
+    pipeline: Pipeline
+    seed: int
+    report: Report
+    span: Span
+
+
 class Shared(NamedTuple):
     """Who has the frames of a command, and how they are divided.
 
@@ -105,12 +126,38 @@ class Shared(NamedTuple):
             return None
         return Reading.of(pipeline.source, self.division, start)
 
-    def feed(self, pipeline: Pipeline, seed: int, report: Report, span: Span) -> Feed:
-        """Return the portions that workers read themselves."""
+    def parts(
+        self,
+        workers: Sharing[T],
+        given: Sourced,
+        sent: Callable[[], Iterator[Frame]],
+        n_before: int,
+    ) -> Iterator[T]:
+        """Yield what the workers make of each portion.
+
+        Parameters
+        ----------
+        workers : Sharing
+        given : Sourced
+            By which workers read the frames themselves.
+        sent : callable
+            Returns the frames where they are sent instead.
+        n_before : int
+            How many of those before a portion are sent with it.
+
+        Raises
+        ------
+        Irregular
+            If workers cannot read them: everything is to be done again, by one process.
+        """
+        if not self.in_place:
+            return workers.over_frames(sent(), n_before)
         from tactile_graph.many import Feed
 
-        ends = (span.start, span.stop)
-        return Feed(pipeline, seed, report, ends, self.division, self.ranges)
+        ends = (given.span.start, given.span.stop)
+        feed = Feed(given.pipeline, given.seed, given.report, ends, self.division, self.ranges)
+        feed.look_through()
+        return workers.over_feed(feed)
 
 
 def shared_for(

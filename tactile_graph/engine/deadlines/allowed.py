@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactile_graph.engine.deadlines.options import Decider, Option, Options
 from tactile_graph.engine.operations.step_operation import Block, Operation, State
-from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
-from tactile_graph.engine.plan import Item
+from tactile_graph.engine.outcomes.outcome import NO_VALUE
 
 
 @dataclass(frozen=True)
@@ -33,29 +33,17 @@ def where_allowed(option: Option, body: Operation, decider: Decider) -> Operatio
     return operation
 
 
-def ladder(item: Item, blocks: list[Block], deciding: Deciding) -> Operation:
-    """Give the first choice that is allowed and comes out with a value; see ``first_of``."""
-    slot, choices = item.slot, deciding.options.choices
-    rungs = []
-    for place, (port, block) in enumerate(zip(item.inputs, blocks, strict=True)):
-        source, option = port.slots[0], choices.get((slot, place))
-        whole = _whole(block)
-        body = whole if option is None else _rung(source, option, whole, deciding.decider)
-        rungs.append((source, body))
-
-    def operation(state: State) -> None:
-        failed = value = None
-        for source, settle in rungs:
-            settle(state)
-            value = state[source]
-            if value.__class__ not in NO_VALUE:
-                state[slot] = value
-                return
-            if failed is None and value.__class__ is Failed:
-                failed = value
-        state[slot] = value if failed is None else failed
-
-    return operation
+def ladder(
+    slot: int, choices: Sequence[tuple[int, Block]], deciding: Deciding
+) -> list[tuple[int, Block]]:
+    """Return the choices of a ``first_of``, each left undone where it is not allowed."""
+    options, rungs = deciding.options.choices, []
+    for place, (source, block) in enumerate(choices):
+        option = options.get((slot, place))
+        if option is not None:
+            block = (_rung(source, option, _whole(block), deciding.decider),)
+        rungs.append((source, block))
+    return rungs
 
 
 def _whole(block: Block) -> Operation:
