@@ -100,7 +100,7 @@ class Written:
             known.add(slot)
 
     def _handed_on(self, slot: int, sources: Sequence[int], depth: int) -> None:
-        """Write that what lacks a value is handed on; what is done otherwise follows as ``else``."""
+        """Write that what lacks a value is handed on; what is done else is to follow."""
         for n, source in enumerate(sources):
             self.write(
                 depth,
