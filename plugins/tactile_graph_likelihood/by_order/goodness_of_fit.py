@@ -128,7 +128,7 @@ def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
     log_order(along, ends, sigma, t, table, levels)
     sums = touch_moments(share, t, box, states, noise)
     sums += order_moments(along, ends, sigma, table, levels)
-    residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
+    residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
     first = 0
     for k in range(n):
         first = k if k == 0 or ends[k - 1] == k else first
@@ -137,9 +137,9 @@ def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
         mark = math.log(max(along[k], LEAST_SHARE)) / sigma
         u, z = levels[k] - mark, mark + t / sigma
         tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-        i, j = order[k, 0], order[k, 1]
+        i, j = order[k, 0] - box[0], order[k, 1] - box[1]
         residuals[i, j] = u if z > SURE else 0.0
         leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
     surprise = (sums[0] - sums[1] - 0.5 * p.shape[0]) / math.sqrt(sums[2])
-    lean, fall = trend(leaning, box[0], box[1], dome(share))
+    lean, fall = trend(leaning, dome(share))
     return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)

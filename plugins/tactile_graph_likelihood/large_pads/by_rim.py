@@ -1,6 +1,6 @@
 """What a large outline says, by its rim element by element and what it covers whole at once.
 
-Log likelihood, slopes and information, and goodness of fit, where a face is even and without foam.
+Log likelihood, slopes and information, where a face is even and without foam.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, covered, window
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.large_pads.covered_whole import (
     NODES,
@@ -25,26 +25,9 @@ from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
     ON,
-    ROOT_TWO_PI,
     SIGMA,
-    SQRT_HALF,
-    STRAYS,
     UNKNOWN,
-    VOIDS,
-    bare,
     terms,
-)
-from tactile_graph_likelihood.single.goodness_of_fit import (
-    SEEN,
-    SURE,
-    GoodnessOfFit,
-    dome,
-    goodness_of_fit,
-    moments_of_strays,
-    moments_of_term,
-    neighbours_alike,
-    standardised,
-    trend,
 )
 from tactile_graph_likelihood.single.information import (
     NO_SCORE,
@@ -185,104 +168,3 @@ def _score_of_covered(whole: CoveredWhole, load: float, least: float, scatter: S
         on = score_of(ON, whole.readings[k], load, scatter)
         total = summed(total, on, whole.weights[k])
     return total
-
-
-@compiled_as_is
-def goodness_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> GoodnessOfFit:
-    """Return what `goodness_of_fit` does, where a face is even and without foam."""
-    rows, columns = problem.states.shape
-    box = window(problem.kind, problem.corners, p, problem.grid, rows, columns, 0.0)
-    if box[2] <= 0 or box[3] <= 0:
-        return goodness_of_fit(problem, p)
-    share = covered(problem.kind, problem.corners, p, problem.grid, box)
-    residuals, leaning = _residuals(problem, p, box, share)
-    lean, fall = trend(leaning, 0, 0, dome(share))
-    surprise = surprise_by_rim(problem, whole, p)
-    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)
-
-
-@compiled_as_is
-def _residuals(problem: Problem, p: Values, box: Box, share: Values) -> tuple[Values, Values]:
-    """Return a window's residuals, and the same freed of their bias from showing at all."""
-    noise, load = noise_at(problem, p), p[unknowns(problem.kind, problem.corners)]
-    residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
-    last, mu, z, tail, density = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(box[2]):
-        for j in range(box[3]):
-            its, row, column = share[i, j], box[0] + i, box[1] + j
-            if its <= 0.0 or problem.states[row, column] != ON:
-                continue
-            if its != last:
-                last, mu = its, math.log(its) + load
-                z = _level(mu, noise)
-                tail, density = _normal(z)
-            u = (problem.logs[row, column] - mu) / noise[SIGMA]
-            residuals[i, j] = u if z > SURE else 0.0
-            leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
-    return residuals, leaning
-
-
-@compiled_as_is
-def _level(mu: float, noise: Values) -> float:
-    """Return the deviations of ln gain by which an expected load exceeds the least."""
-    z: float = (mu - noise[LEAST]) / noise[SIGMA]
-    return min(max(z, -40.0), 40.0)
-
-
-@compiled_as_is
-def _normal(z: float) -> tuple[float, float]:
-    """Return the standard normal distribution and its density."""
-    return 0.5 * math.erfc(-SQRT_HALF * z), math.exp(-0.5 * z * z) / ROOT_TWO_PI
-
-
-@compiled_as_is
-def surprise_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> float:
-    """Return `goodness_of_fit`'s surprise, where a face is even and without foam.
-
-    The likelihood is relative to that of a bare pad, and all elements that are covered whole have
-    the same mean and variance of what they add.
-    """
-    kind, corners, grid, states = problem.kind, problem.corners, problem.grid, problem.states
-    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
-    rows, columns = states.shape
-    known, count, mean, variance = 0, 0, 0.0, 0.0
-    for i in range(rows):
-        for j in range(columns):
-            known += 1 if states[i, j] != UNKNOWN else 0
-    box = window(kind, corners, p, grid, rows, columns, 0.0)
-    numbers, xy = drawn_as(kind, corners, p)
-    runs = runs_of(numbers, xy, grid, box, 0.0)
-    share = np.empty(rim_count(runs))
-    rim_shares(numbers, xy, grid, box, runs, share)
-    at = 0
-    for i in range(box[2]):
-        row = box[0] + i
-        for part in range(2):
-            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
-                its = share[at]
-                at += 1
-                if its > 0.0 and states[row, column] != UNKNOWN:
-                    one, spread = _moments_at(math.log(its) + load, noise)
-                    mean += one
-                    variance += spread
-                    known -= 1
-        for column in range(runs[i, 1], runs[i, 2]):
-            count += 1 if states[row, column] != UNKNOWN else 0
-    one, spread = _moments_at(load, noise)
-    bare_mean, bare_spread = moments_of_strays(noise[STRAYS])
-    mean += count * one + (known - count) * bare_mean
-    variance += count * spread + (known - count) * bare_spread
-    got = log_likelihood_by_rim(problem, whole, p) + bare(states, noise)
-    surprise: float = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
-    return surprise
-
-
-@compiled_as_is
-def _moments_at(mu: float, noise: Values) -> tuple[float, float]:
-    """Return mean and variance of the term of an element that expects a load's logarithm."""
-    z = _level(mu, noise)
-    tail, density = _normal(z)
-    present, strays = 1.0 - noise[VOIDS], noise[STRAYS]
-    level = math.log((1.0 - strays) * present / (noise[SIGMA] * ROOT_TWO_PI))
-    _, one, spread = moments_of_term(z, tail, density, level, present, math.log(1.0 - strays))
-    return one, spread

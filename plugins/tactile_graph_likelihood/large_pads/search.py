@@ -10,10 +10,8 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import TURN
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
-from tactile_graph_likelihood.large_pads.by_rim import goodness_by_rim
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
-    covered_around,
     empty_for,
     keep_current,
     nothing_covered,
@@ -151,15 +149,6 @@ def _height(problem: Problem, p: Values) -> float:
 
 
 @compiled_as_is
-def fit_of(problem: Problem, p: Values) -> GoodnessOfFit:
-    """Return how well the image fits a large or small outline."""
-    whole = covered_around(problem, p)
-    if whole.runs.shape[0] == 0:
-        return goodness_of_fit(problem, p)
-    return goodness_by_rim(problem, whole, p)
-
-
-@compiled_as_is
 def find_mode_on_large_pad(
     problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
     height: float,
@@ -182,7 +171,7 @@ def find_mode_on_large_pad(
             for k in range(n):
                 root[k, :] = its_root[k]
         if height > -math.inf:
-            fit = fit_of(problem, p)
+            fit = goodness_of_fit(problem, p)
             if fit.surprise > POOR or (again and fit.surprise > UNLIKELY):
                 return height, False, fit
     return height, last < ATTEMPTS, fit

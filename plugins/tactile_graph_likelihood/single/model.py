@@ -22,11 +22,11 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import covered_around
-from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad, fit_of, settled
+from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad, settled
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
@@ -254,7 +254,7 @@ class Model:
             if (height := settled.call(problem, p, root)) > -math.inf:
                 top = Mode(p, root, height)
                 evidence = height + _log_volume(problem.kind, top)
-                fit = fit_of.call(problem, p)
+                fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
                 return self.normal_around(likeliest, len(p))
             whole = covered_around.call(problem, mode.p)

@@ -27,8 +27,8 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI
-from tactile_graph_likelihood.single.evaluate import goodness_at, log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import (
     FEWEST,
     KEPT,
@@ -419,7 +419,7 @@ def sample_around(
         for k in range(n):
             for m in range(n):
                 draws.covariance[k, m] += beyond.slack[k, m]
-        fit = goodness_at(problem, whole, draws.mean)
+        fit = goodness_of_fit(problem, draws.mean)
     likeliest, top = mode.p.copy(), mode.height
     if kind == OVAL:
         top += log_stretch(mode.p)
