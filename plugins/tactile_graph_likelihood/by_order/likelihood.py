@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
-from tactile_graph_likelihood.geometry.covered import Box, window
+from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -37,7 +37,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 
 Order = NDArray[np.int64]
 
@@ -197,12 +197,8 @@ def order_log_likelihood(problem: OrderProblem, p: Values) -> float:
     p : ndarray, shape (K,)
         The outline's numbers, and t.
     """
-    kind, corners, grid, noise = problem.kind, problem.corners, problem.grid, problem.noise
-    rows, columns = problem.states.shape
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
-    if box[2] <= 0 or box[3] <= 0:
-        return 0.0
-    share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+    kind, corners, noise = problem.kind, problem.corners, problem.noise
+    box, share = shares_around(kind, corners, p, problem.grid, noise, problem.states.shape)
     t = p[unknowns(kind, corners)]
     along = shares_along(share, box, problem.order)
     levels = np.empty(problem.order.shape[0])

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import window
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -30,7 +30,7 @@ from tactile_graph_likelihood.single.information import (
     score_of,
     steps_of,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -88,19 +88,16 @@ class Coverage(NamedTuple):
 
 
 @compiled_as_is
-def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
-    """Add what one of some outlines brings to each element to what the others do."""
+def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> Box:
+    """Add what one of some outlines brings to each element to what the others do; return where."""
     kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
-    grid, noise, (rows, cols) = problem.grid, problem.noise, problem.load.shape
-    box = window(kind, corners, p, grid, rows, cols, foam_margin(grid, noise))
-    if box[2] <= 0 or box[3] <= 0:
-        return
-    own = shares_of(kind, corners, p, grid, noise, box, rows, cols)
+    box, own = shares_around(kind, corners, p, problem.grid, problem.noise, problem.load.shape)
     scale = math.exp(p[unknowns(kind, corners)])
-    for i in range(box[2]):
-        for j in range(box[3]):
+    for i in range(own.shape[0]):
+        for j in range(own.shape[1]):
             problem.load[box[0] + i, box[1] + j] += scale * own[i, j]
             problem.share[box[0] + i, box[1] + j] += own[i, j]
+    return box
 
 
 @compiled_as_is
@@ -153,36 +150,36 @@ def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
 @compiled_as_is
 def gain(problem: JointProblem, outlines: Outlines) -> float:
     """Return what outlines add to the log likelihood of an image where others already lie."""
-    kinds, corners, points = outlines
-    grid, logs, states, noise = problem.grid, problem.logs, problem.states, problem.noise
-    rows, cols = states.shape
-    margin = foam_margin(grid, noise)
-    r0, c0, r1, c1 = rows, cols, 0, 0
-    for k in range(kinds.shape[0]):
-        box = window(kinds[k], corners[k], points[k], grid, rows, cols, margin)
+    (r0, c0), r1, c1 = problem.states.shape, 0, 0
+    laid = copied(problem)
+    for k in range(outlines.kinds.shape[0]):
+        box = add_outline(laid, outlines, k)
         if box[2] > 0 and box[3] > 0:
             r0, c0 = min(r0, box[0]), min(c0, box[1])
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    expected, total = np.empty((r1 - r0, c1 - c0)), np.empty((r1 - r0, c1 - c0))
-    for i in range(r1 - r0):
-        for j in range(c1 - c0):
-            expected[i, j] = problem.load[r0 + i, c0 + j]
-            total[i, j] = problem.share[r0 + i, c0 + j]
-    before = terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total)
-    for k in range(kinds.shape[0]):
-        kind, n = kinds[k], corners[k]
-        box = window(kind, n, points[k], grid, rows, cols, margin)
-        if box[2] <= 0 or box[3] <= 0:
-            continue
-        own = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
-        scale = math.exp(points[k, unknowns(kind, n)])
-        for i in range(box[2]):
-            for j in range(box[3]):
-                expected[box[0] - r0 + i, box[1] - c0 + j] += scale * own[i, j]
-                total[box[0] - r0 + i, box[1] - c0 + j] += own[i, j]
-    return terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total) - before
+    box = r0, c0, r1 - r0, c1 - c0
+    return log_likelihood_within(laid, box) - log_likelihood_within(problem, box)
+
+
+@compiled_as_is
+def copied(problem: JointProblem) -> JointProblem:
+    """Return the same problem with a load and a coverage of its own, to lay outlines on."""
+    return JointProblem(
+        problem.grid, problem.logs, problem.states, problem.noise, problem.prior,
+        problem.load.copy(), problem.share.copy(),
+    )  # fmt: skip
+
+
+@compiled_as_is
+def log_likelihood_within(problem: JointProblem, box: Box) -> float:
+    """Return the log likelihood of a window's readings, by the load and coverage that lie there."""
+    r0, c0, rows, columns = box
+    load = problem.load[r0 : r0 + rows, c0 : c0 + columns].copy()
+    share = problem.share[r0 : r0 + rows, c0 : c0 + columns].copy()
+    logs, states = problem.logs, problem.states
+    return terms(load, 0.0, r0, c0, logs, states, problem.noise) - overlap(share)
 
 
 @compiled_as_is

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -26,7 +25,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
@@ -299,14 +298,9 @@ def unexplained(
 @compiled_as_is
 def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
     """Return how surprising an image is, and what patterns it leaves over, at a posterior mean."""
-    kind, corners, grid, states = problem.kind, problem.corners, problem.grid, problem.states
-    rows, columns = states.shape
-    noise = noise_at(problem, p)
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
-    share = np.zeros((max(box[2], 0), max(box[3], 0)))
-    if box[2] > 0 and box[3] > 0:
-        share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
-    load = p[unknowns(kind, corners)]
+    kind, corners, states = problem.kind, problem.corners, problem.states
+    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
+    box, share = shares_around(kind, corners, p, problem.grid, noise, states.shape)
     left = unexplained(share, load, box[0], box[1], problem.logs, states, noise, p.shape[0])
     lean, fall = trend(left.leaning, dome(share))
     return GoodnessOfFit(left.surprise, neighbours_alike(left.residuals), lean, fall)
