@@ -13,8 +13,8 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, window
-from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
-from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
+from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, log_prior
+from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
@@ -127,23 +127,17 @@ def smallest(kind: int, corners: int, prior: Values) -> float:
 
 @compiled_as_is
 def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
-    """Return the log prior density of all outlines and their loads, -inf where it is zero.
-
-    The angle of each may be any, as that of one of its equal descriptions.
-    """
+    """Return the log prior density of all outlines and their loads, -inf where it is zero."""
     kinds, corners, points = outlines
     noise, prior = problem.noise, problem.prior
     total = 0.0
-    loose = prior.copy()
     for k in range(kinds.shape[0]):
         load = points[k, unknowns(kinds[k], corners[k])]
         if load < lightest(noise) or points[k, 2] < smallest(kinds[k], corners[k], prior):
             return -math.inf
         off = (load - prior[MIDDLE]) / prior[SPREAD]
         total -= 0.5 * (off * off + LN_TWO_PI) + math.log(prior[SPREAD])
-        if period(kinds[k], corners[k]) > 0.0:
-            loose[TURN] = points[k, 2 + sizes(kinds[k])]
-        total += log_prior(kinds[k], corners[k], points[k], loose)
+        total += log_prior(kinds[k], corners[k], points[k], prior)
     return total
 
 

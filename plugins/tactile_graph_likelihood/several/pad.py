@@ -93,7 +93,7 @@ class Expected:
         states = np.where(states == OVER, ON, states).astype(np.uint8)
         prior = np.zeros(11)
         prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_cm
-        prior[6] = self.whole
+        prior[6:8] = self.whole, math.nan
         prior[9:] = float(np.median(logs[states == ON])) + LIGHT_EDGE, LOADS
         bare = np.zeros(states.shape)
         return JointProblem(grid, logs, states, noise, prior, bare, bare)

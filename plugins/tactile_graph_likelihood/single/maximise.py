@@ -9,14 +9,14 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
-from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, period, sizes
+from tactile_graph_likelihood.geometry.outline_prior import pulled_in
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
 from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.evaluate import information_at, log_likelihood_at
 from tactile_graph_likelihood.single.information import STEP, Information, add_prior, steps_of
 from tactile_graph_likelihood.single.log_posterior import log_rest
-from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
+from tactile_graph_likelihood.single.problem import Problem, with_elements
 
 ROUNDS, HALVINGS = 25, 6
 TIED, SLIDING, HELD = 0.01, 2.0, 6.0
@@ -50,8 +50,8 @@ def maximise(
     Parameters
     ----------
     problem, whole, p
-        As in `evaluate.log_likelihood_at`; the prior's `TURN` is not looked at, and ``whole`` is
-        kept up with the point.
+        As in `evaluate.log_likelihood_at`; of a prior for any angle. ``whole`` is kept up with the
+        point.
     root : ndarray, shape (K, K)
         Written: the lower root of the information at the top.
     enough : float
@@ -68,14 +68,9 @@ def maximise(
     step, trial = np.empty(n), np.empty(n)
     out = Information(np.empty(n), np.empty((n, n)))
     kind, corners, prior = problem.kind, problem.corners, problem.prior
-    loose = prior.copy()
-    near = with_prior(problem, loose)
-    turn = 2 + sizes(kind) if period(kind, corners) > 0.0 else -1
     pulled_in(kind, corners, p, prior)
-    if turn >= 0:
-        loose[TURN] = p[turn]
     keep_current(problem, whole, p)
-    now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
+    now, new = log_rest(problem, p) + log_likelihood_at(problem, whole, p), -math.inf
     tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
@@ -93,9 +88,7 @@ def maximise(
             for k in range(n):
                 trial[k] = p[k] + share * step[k]
             pulled_in(kind, corners, trial, prior)
-            if turn >= 0:
-                loose[TURN] = trial[turn]
-            new = log_rest(near, trial)
+            new = log_rest(problem, trial)
             if new > -math.inf:
                 new += log_likelihood_at(problem, whole, trial)
             if new > now:

@@ -14,14 +14,12 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, inverted, squared_length
-from tactile_graph_likelihood.geometry.outline_prior import TURN
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
     ELLIPSE,
     OVAL,
     RECTANGLE,
     Values,
-    period,
     sizes,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
@@ -41,7 +39,7 @@ from tactile_graph_likelihood.single.importance import (
 )
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
-from tactile_graph_likelihood.single.problem import Problem, over_the_edge, with_prior
+from tactile_graph_likelihood.single.problem import Problem, over_the_edge, turned_as
 
 SHIFTS = (-1.2, -0.8, -0.4, -0.15, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
@@ -398,10 +396,7 @@ def sample_around(
     if height == -math.inf:
         maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
     plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
-    prior = problem.prior.copy()
-    if period(kind, problem.corners) > 0.0:
-        prior[TURN] = p[2 + sizes(kind)]
-    near = with_prior(problem, prior)
+    near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
     mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
     draws = Draws(
