@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,14 +35,16 @@ from tactile_graph_likelihood.any_pad.turn_on import (
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
+    CLEAR,
     EVEN,
     FIRST,
     WIDER,
+    Pattern,
+    asked_by,
     chances,
     log_of,
     mixed,
 )
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import Likeliest, Model, Start
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
@@ -52,17 +53,8 @@ from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import SAME
 
-
-class Pattern(NamedTuple):
-    """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
-
-    lean: float
-    fall: float
-    alike: float
-
-
-FAINT, CLEAR = Pattern(1.0, 0.4, 2.5), Pattern(1.5, 1.5, 2.5)
-"""Patterns from which on another pressure is worth its time, and where a quick answer will do."""
+FAINT = Pattern(1.0, 0.4, 2.5)
+"""From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
 
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
@@ -295,7 +287,8 @@ class AnyPad:
             even = model.likeliest(readings, before=even)
         found = {EVEN: even}
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
-        for part in [] if large or hidden else asked_by(even.fit, CLEAR if self.quick else FAINT):
+        least = CLEAR if self.quick else FAINT
+        for part in [] if large or hidden else asked_by([even.fit], FIRST, least):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
@@ -368,10 +361,7 @@ class AnyPad:
         """
         unevenness = self.told.noise.sigma * float(readings.grid[2]) ** 1.5
         inflation = pressed * variance_inflation(its.neighbours, readings.touched)
-        its = on_any_pad(its, evidence, inflation, unevenness, hidden)
-        if readings.stretch == 1.0:
-            return its
-        return stretched(its, float(readings.grid[1]), readings.stretch)
+        return stretched(on_any_pad(its, evidence, inflation, unevenness, hidden), readings)
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
         own = int(self.quick) if part == EVEN else len(PRESSURES[part])
@@ -414,13 +404,6 @@ class AnyPad:
         p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
         mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
         return model.posterior_around(readings, mode, loose)
-
-
-def asked_by(fit: GoodnessOfFit, least: Pattern) -> list[str]:
-    """Return which pressures may explain what an even face leaves over."""
-    fall, alike = fit.fall >= least.fall, fit.neighbours >= least.alike
-    asked = {"lean": fit.lean >= least.lean, "fall": fall, "foam": fall or alike}
-    return [part for part in FIRST if asked[part]]
 
 
 def shared_by(tops: Iterable[Likeliest], touched: int) -> float:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
 from tactile_graph_likelihood.single.posterior import Posterior, normal_reach
+from tactile_graph_likelihood.single.readings import Readings
 
 USUAL, ALONG = 0.36, 1.25
 """Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that
@@ -103,8 +104,11 @@ def on_any_pad(
     return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
 
 
-def stretched(found: AnyPadPosterior, top_cm: float, stretch: float) -> AnyPadPosterior:
-    """Return a posterior whose places lie so many times further below the top."""
+def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
+    """Return a posterior on cells that are as high as they are, not as high as they are wide."""
+    top_cm, stretch = float(readings.grid[1]), readings.stretch
+    if stretch == 1.0:
+        return found
     mean, points, likeliest = found.mean.copy(), found.points.copy(), found.most_likely.copy()
     covariance = found.covariance.copy()
     for y in (mean[1:2], points[:, 1], likeliest[1:2]):

@@ -16,7 +16,7 @@ from tactile_graph_filters.readings.decouple import Decouple
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -137,7 +137,7 @@ class FootprintByOrder:
         states = found.states
         if siemens.valid is not None:
             states = np.where(siemens.valid, states, UNKNOWN).astype(np.uint8)
-        return _touching(found._replace(logs=siemens.filled(0.0), states=states))
+        return _touching(found._replace(logs=siemens.filled(0.0)), states)
 
     def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
         gap = self.model.gap_cm
@@ -149,11 +149,11 @@ class FootprintByOrder:
         found = readings_of(image.with_values(values - lift + 1.0), gap, 0.0, 0.0)
         on = touched.values & (found.states == ON)
         states = np.where(on, ON, np.where(found.states == ON, OFF, found.states)).astype(np.uint8)
-        return _touching(found._replace(states=states))
+        return _touching(found, states)
 
 
-def _touching(found: Readings) -> Readings:
-    count = int((found.states == ON).sum())
-    if count == 0:
+def _touching(readings: Readings, states: States) -> Readings:
+    found = readings.with_states(states)
+    if found.touched == 0:
         raise Degenerate("no element is touched: no outline fits")
-    return found._replace(touched=count)
+    return found

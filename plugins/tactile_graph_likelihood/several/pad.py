@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
+from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
@@ -19,7 +20,6 @@ from tactile_graph_likelihood.several.joint_posterior import (
     add_outline,
 )
 from tactile_graph_likelihood.several.ladder import LEAST_PIECE
-from tactile_graph_likelihood.several.partings import components
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN

@@ -6,13 +6,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
+from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNKNOWN, States
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 
 FAINT = 0.015
@@ -69,6 +70,17 @@ class Readings(NamedTuple):
         rows, columns = self.states.shape
         gap = self.grid[2] - self.grid[3]
         return columns * self.grid[2] - gap, rows * self.grid[2] - gap
+
+    @property
+    def shows(self) -> NDArray[np.bool_]:
+        """Which elements read a load, if only that they read the most."""
+        found: NDArray[np.bool_] = (self.states == ON) | (self.states == OVER)
+        return found
+
+    def with_states(self, states: States) -> Readings:
+        """Return readings of other states, and of as many touched elements as show by them."""
+        found = self._replace(states=states)
+        return found._replace(touched=int(np.count_nonzero(found.shows)))
 
 
 @compiled_later
