@@ -43,8 +43,8 @@ def touched_beside(problem: Problem, p: Values) -> bool:
     """
     grid, (rows, columns) = problem.grid, problem.states.shape
     box = window(problem.kind, problem.corners, p, grid, rows, columns, grid[2])
-    numbers, xy = drawn_as(problem.kind, problem.corners, p)
-    near, wide = runs_of(numbers, xy, grid, box, 0.0), runs_of(numbers, xy, grid, box, grid[2])
+    drawn = drawn_as(problem.kind, problem.corners, p)
+    near, wide = runs_of(drawn, grid, box, 0.0), runs_of(drawn, grid, box, grid[2])
     known, on = 0, 0
     for i in range(box[2]):
         for column in range(wide[i, 0], wide[i, 3]):
