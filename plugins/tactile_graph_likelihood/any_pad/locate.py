@@ -30,16 +30,7 @@ AnyPadSettings = Annotated[
 
 
 class Located:
-    """What the three have in common.
-
-    Parameters
-    ----------
-    quick : bool
-        Whether the most likely outline will do, with a normal distribution around it: about half
-        of the time on pads of up to 1024 elements. Pressures other than an even one are looked at
-        where its pattern is clear; a fainter one widens the distribution.
-    settings : FootprintSettings
-    """
+    """What the three have in common; parameters as of `LocateDisc`."""
 
     stateless = True
     _kind = DISC

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 
-from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
-from tactile_graph_likelihood.single.posterior import Posterior, normal_reach
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes
+from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
 USUAL, ALONG = 0.36, 1.25
@@ -43,18 +42,10 @@ class AnyPadPosterior(Posterior):
 
     usual_std_cm: float = math.inf
 
-    @cached_property
-    def reach(self) -> float:
-        """Squared Mahalanobis distance within which 90 % of the posterior lies.
-
-        That of the weighted points, but no less than that of a normal distribution that is known
-        from as many.
-        """
-        n = unknowns.call(self.kind, self.corners)
-        return max(
-            self.reach_of_points(n),
-            normal_reach(n, (EVENLY if n == 3 else 1.0) * self.equal_points),
-        )
+    @property
+    def independent_points(self) -> float:
+        """How many points, each by itself, would tell the covariance as well."""
+        return (EVENLY if self.kind == DISC else 1.0) * self.equal_points
 
     @property
     def fits(self) -> bool:

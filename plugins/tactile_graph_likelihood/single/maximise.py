@@ -148,10 +148,7 @@ def _share_of_step(step: Values, widths: Values, stride: float) -> float:
 
 @compiled_as_is
 def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: bool) -> float:
-    """Maximise, if softly with elements that feel a little beyond their edge first.
-
-    Otherwise a touched element that is not covered would not pull at all.
-    """
+    """Maximise, if softly with elements that feel a little beyond their edge first."""
     if softly:
         maximise(softened(problem), None, p, root, ROUGH, math.inf)
     return maximise(problem, None, p, root, ENOUGH, math.inf)
@@ -160,7 +157,17 @@ def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: boo
 @compiled_as_is
 def softened(problem: Problem) -> Problem:
     """Return the problem with elements that feel a little beyond their edge, and no strays."""
-    soft, strict = problem.grid.copy(), problem.noise.copy()
-    soft[4], soft[5] = SOFT, problem.grid[2]
-    strict[STRAYS] = NO_STRAYS
+    soft, strict = soft_and_strict(problem.grid, problem.noise)
     return with_elements(problem, soft, strict)
+
+
+@compiled_as_is
+def soft_and_strict(grid: Values, noise: Values) -> tuple[Values, Values]:
+    """Return the grid of elements that feel a little beyond their edge, and a noise of no strays.
+
+    Otherwise a touched element that no outline covers would not pull at all.
+    """
+    soft, strict = grid.copy(), noise.copy()
+    soft[4], soft[5] = SOFT, grid[2]
+    strict[STRAYS] = NO_STRAYS
+    return soft, strict

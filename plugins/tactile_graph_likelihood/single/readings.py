@@ -132,6 +132,20 @@ def _loaded(values: Values, least: float, logs: Values, states: States) -> float
     return 0.0 if math.isnan(typical) else 2.0 * math.exp(typical)
 
 
+def grid_of(image: Image, gap_cm: float) -> Values:
+    """Return where an image's elements lie, as `Readings` has it.
+
+    Raises
+    ------
+    RuleError
+        If the gap between elements leaves none.
+    """
+    (x, y), pitch, half = image.origin_cm, image.pitch_cm[0], 0.5 * gap_cm
+    if not gap_cm < pitch:
+        raise RuleError(f"gap_cm: must be below the pitch of {pitch:g} cm, got {gap_cm:g}")
+    return np.array([x + half, y + half, pitch, pitch - gap_cm, 0.0, 0.0])
+
+
 def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT) -> Readings:
     """Return an image's readings.
 
@@ -159,8 +173,7 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
     across, down = image.pitch_cm
     if abs(across - down) > 1e-9 * across:
         raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
-    if not gap_cm < across:
-        raise RuleError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    grid = grid_of(image, gap_cm)
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
     if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
@@ -175,9 +188,6 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
         touched = int((states == ON).sum())
     if touched == 0:
         raise Degenerate(_why(float(values.max(initial=0.0)), least))
-    x, y = image.origin_cm
-    half = 0.5 * gap_cm
-    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
     return Readings(grid, logs, states, touched)
 
 

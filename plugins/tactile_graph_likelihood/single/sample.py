@@ -251,12 +251,24 @@ def _with_side_moved(
 
 
 @compiled_as_is
-def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
-    """Write a proposal; return whether its covariance is positive."""
+def no_proposals(most: int, n: int, points: int) -> Proposals:
+    """Return space for so many proposals of so many numbers each, and for points."""
+    return Proposals(
+        np.empty((most, n)), np.zeros((most, n, n)), np.empty(most), np.zeros(most),
+        np.empty((most, points)),
+    )  # fmt: skip
+
+
+@compiled_as_is
+def propose(proposals: Proposals, k: int, centre: Values, covariance: Values, level: float) -> bool:
+    """Write a proposal; return whether its covariance is positive.
+
+    ``level`` is the logarithm of the density in the middle, were its scale one.
+    """
     root = proposals.roots[k]
     if not cholesky(covariance, root):
         return False
-    proposals.levels[k] = 0.0
+    proposals.levels[k] = level
     for i in range(centre.shape[0]):
         proposals.centres[k, i] = centre[i]
         proposals.levels[k] -= math.log(root[i, i])
@@ -264,7 +276,7 @@ def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -
 
 
 @compiled_as_is
-def _draw(proposals: Proposals, k: int, step: Values, point: Values) -> None:
+def draw(proposals: Proposals, k: int, step: Values, point: Values) -> None:
     """Write the point of a proposal that a step of standard Student's t leads to."""
     for i in range(point.shape[0]):
         place = proposals.centres[k, i]
@@ -287,7 +299,7 @@ def _add_densities(proposals: Proposals, k: int, points: Values, first: int, las
 
 
 @compiled_as_is
-def _next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
+def next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
     """Return the covariance of the next proposal, and write its centre."""
     n = centre.shape[0]
     tempered, found = np.empty(count), np.empty((n, n))
@@ -324,10 +336,7 @@ def importance_sample(
         Points used, log evidence, number of equal weights; -inf and 0 if no point is possible.
     """
     kind, n, most, block = problem.kind, mode.shape[0], plan.table.shape[0], plan.block
-    proposals = Proposals(
-        np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n)), np.empty(PROPOSALS),
-        np.zeros(PROPOSALS), np.empty((PROPOSALS, most)),
-    )  # fmt: skip
+    proposals = no_proposals(PROPOSALS, n, most)
     centre, wanted = mode.copy(), FIRST * covariance
     draws.mean[:] = mode
     least = block * (1 if kind == DISC else 2 if kind == OVAL else 4)
@@ -344,13 +353,13 @@ def importance_sample(
                     for m in range(n):
                         wanted[k, m] += beyond.wider[k, m]
             elif made > 0:
-                wanted = _next_covariance(draws, count, covariance, centre)
-            if not _propose(proposals, made, centre, wanted):
+                wanted = next_covariance(draws, count, covariance, centre)
+            if not propose(proposals, made, centre, wanted, 0.0):
                 break
             renewed, before = count, 0
             made += 1
         for i in range(count, count + block):
-            _draw(proposals, made - 1, plan.table[i], draws.points[i])
+            draw(proposals, made - 1, plan.table[i], draws.points[i])
             here = log_rest(problem, draws.points[i])
             if here > -math.inf:
                 here += log_likelihood_at(problem, whole, draws.points[i])
