@@ -46,7 +46,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import Likeliest, Model, Start
+from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
@@ -165,32 +165,23 @@ class AnyPad:
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
         return replace(self._with(noise, *estimated), whole=whole)
 
-    def posterior(self, readings: Readings, start: Start = None) -> Posterior:
-        """Return the posterior of the outline.
-
-        Parameters
-        ----------
-        readings : Readings
-            As `observed` gives them.
-        start : Shape or ndarray, optional
-            Where to begin: an outline of this kind.
+    def posterior(self, readings: Readings) -> Posterior:
+        """Return the posterior of the outline by readings as `observed` gives them.
 
         Raises
         ------
-        ValueError
-            If ``start`` is of another kind.
         Degenerate
             If no outline of this kind is possible.
         """
-        readings, even = self.first(readings, start)
-        return self.around(readings, self.completed(readings, even, start is None))
+        readings, even = self.first(readings)
+        return self.around(readings, self.completed(readings, even))
 
-    def first(self, readings: Readings, start: Start = None) -> tuple[Readings, Likeliest]:
+    def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
         """Return the even face's most likely outline by one attempt, and readings as it has them.
 
         See `cleared`.
         """
-        return self.cleared(readings, self._fit(EVEN).likeliest(readings, start=start))
+        return self.cleared(readings, self._fit(EVEN).likeliest(readings))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
         """Return readings free of a law's improbable bend and of a hollow, and the outline anew.
@@ -254,18 +245,8 @@ class AnyPad:
             return near
         return self._fit(EVEN).likeliest(readings, before=near)
 
-    def completed(
-        self, readings: Readings, even: Likeliest, anywhere: bool = True
-    ) -> dict[str, Likeliest]:
-        """Return the most likely outlines by pressure, once one is found of an even face.
-
-        Parameters
-        ----------
-        readings : Readings
-        even : Likeliest
-            By one attempt.
-        anywhere : bool
-            Whether the outline may be another clump's than it was found at.
+    def completed(self, readings: Readings, even: Likeliest) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, once one attempt found one of an even face.
 
         Raises
         ------
@@ -275,7 +256,7 @@ class AnyPad:
         large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
         if even.unsure and not large:
             even = model.likeliest(readings, before=even)
-        if anywhere and readings.touched <= FEW:
+        if readings.touched <= FEW:
             even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)

@@ -16,7 +16,6 @@ from tactile_graph_likelihood.geometry.outlines import (
     ELLIPSE,
     FREE,
     OVAL,
-    REGULAR,
     Values,
     packed,
     unknowns,
@@ -182,7 +181,7 @@ class Model:
         attempt = 0 if readings.states.size > LARGE_PAD else NEAR
         return self._find(problem, self._begin(point, problem), [attempt])
 
-    def normal_of(self, readings: Readings, start: Start = None) -> Posterior:
+    def normal_of(self, readings: Readings) -> Posterior:
         """Return the posterior as if it were normal around its mode.
 
         Raises
@@ -190,8 +189,7 @@ class Model:
         Degenerate
             If nothing is touched, or no outline of this kind is possible.
         """
-        problem = self._problem(readings, None)
-        top = self._find(problem, self._begin(start, problem), range(ATTEMPTS))
+        top = self._find(self._problem(readings, None), NO_START, range(ATTEMPTS))
         if top.evidence == -math.inf:
             raise self.impossible(readings)
         return self.normal_around(top, len(top.mode.p))
@@ -367,9 +365,7 @@ class Model:
                 to_oval.call(begin)
             return begin
         kind, corners, p = packed(start)
-        if kind == FREE and self.kind == REGULAR and corners == self.corners:
-            p = _as_regular(start)
-        elif kind != self.kind or (kind == FREE and corners != self.corners):
+        if kind != self.kind or (kind == FREE and corners != self.corners):
             raise ValueError(f"start: a {type(start).__name__} is not of the shape to be fitted")
         load = moments.call(problem.grid, problem.logs, problem.states)[6]
         begin = np.concatenate([p, [load], problem.guess[:, 0]])
@@ -413,10 +409,3 @@ def _table(count: int, n: int, seed: int) -> Values:
     table = even_points(count, n, seed)
     table.setflags(write=False)
     return table
-
-
-def _as_regular(start: Shape) -> Values:
-    x, y = start.x_cm, start.y_cm
-    corners = start.outline_cm() - (x, y)
-    radius = float(np.hypot(*corners.T).mean())
-    return np.array([x, y, radius, math.atan2(-corners[0, 1], corners[0, 0])])
