@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
 from tactile_graph_likelihood.geometry.covered import Box
-from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     OFF,
@@ -216,17 +215,6 @@ def shares_along(share: Values, box: Box, order: Order) -> Values:
         if 0 <= i < box[2] and 0 <= j < box[3]:
             along[k] = share[i, j]
     return along
-
-
-@compiled_as_is
-def order_log_densities(problem: OrderProblem, points: Values) -> Values:
-    """Return `order_log_likelihood` plus the outline's log prior of many points, shape (N, K)."""
-    out = np.empty(points.shape[0])
-    for k in range(points.shape[0]):
-        out[k] = log_prior(problem.kind, problem.corners, points[k], problem.prior)
-        if out[k] > -math.inf:
-            out[k] += order_log_likelihood(problem, points[k])
-    return out
 
 
 def order_of(logs: Values, states: States) -> tuple[Order, Order]:

@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.linear import squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
 from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
@@ -19,14 +18,16 @@ from tactile_graph_likelihood.several.joint_posterior import (
     gain,
     log_rest_of,
 )
-from tactile_graph_likelihood.single.importance import FREEDOM, weigh
+from tactile_graph_likelihood.single.importance import weigh
 from tactile_graph_likelihood.single.sample import (
     Draws,
     Plan,
     draw,
+    log_evidence_of,
     next_covariance,
     no_proposals,
     propose,
+    take_block,
 )
 
 PROPOSALS = 4
@@ -61,20 +62,19 @@ def sample_beside(
     (table, block, worth), most = plan, plan.table.shape[0]
     turn = 2 + sizes(kinds[0]) if period(kinds[0], corners[0]) > 0.0 else -1
     half, angle = 0.5 * period(kinds[0], corners[0]), outline.points[0, turn]
-    proposals, off, work = no_proposals(PROPOSALS, n, most), np.empty(n), np.empty(n)
+    proposals = no_proposals(PROPOSALS, n, most)
     draws = Draws(points, np.empty(most), weights, np.empty(n), np.empty((n, n)))
-    constant = math.lgamma(0.5 * (FREEDOM + n)) - math.lgamma(0.5 * FREEDOM)
-    constant -= 0.5 * n * math.log(FREEDOM * math.pi)
     centre, wanted, trial = outline.points[0, :n].copy(), FIRST * covariance, np.zeros((1, WIDTH))
     tried = Outlines(kinds, corners, trial)
     count, made, evidence, equal = 0, 0, -math.inf, 0.0
     while count + block <= most:
+        before = count
         if made < PROPOSALS:
             if made > 0:
                 wanted = next_covariance(draws, count, covariance, centre)
-            if not propose(proposals, made, centre, wanted, constant):
+            if not propose(proposals, made, centre, wanted):
                 break
-            made += 1
+            made, before = made + 1, 0
         for i in range(count, count + block):
             draw(proposals, made - 1, table[i], points[i])
             for k in range(n):
@@ -85,17 +85,10 @@ def sample_beside(
             if here > -math.inf:
                 here += gain(problem, tried)
             draws.logs_p[i] = here
-        proposals.drawn[made - 1] += block
+        take_block(proposals, made, points, before, count, block)
         count += block
-        for c in range(made):
-            for i in range(count):
-                for k in range(n):
-                    off[k] = points[i, k] - proposals.centres[c, k]
-                far = squared_length(proposals.roots[c], off, work)
-                log = proposals.levels[c] - 0.5 * (FREEDOM + n) * math.log1p(far / FREEDOM)
-                proposals.densities[c, i] = log
         shares = proposals.drawn / count
         evidence, equal = weigh(draws.logs_p, proposals.densities, shares, made, count, weights)
         if equal <= 0.0 or (equal >= worth and count >= 2 * block):
             break
-    return count, evidence, equal
+    return count, log_evidence_of(proposals, evidence, n), equal

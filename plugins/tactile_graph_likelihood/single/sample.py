@@ -34,7 +34,7 @@ from tactile_graph_likelihood.single.importance import (
     t_constant,
     t_density,
     temper,
-    weigh_by_density,
+    weigh,
     weighted_moments,
 )
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
@@ -251,6 +251,14 @@ def _with_side_moved(
 
 
 @compiled_as_is
+def no_draws(count: int, n: int) -> Draws:
+    """Return space for so many points of so many numbers each."""
+    return Draws(
+        np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
+    )
+
+
+@compiled_as_is
 def no_proposals(most: int, n: int, points: int) -> Proposals:
     """Return space for so many proposals of so many numbers each, and for points."""
     return Proposals(
@@ -260,15 +268,12 @@ def no_proposals(most: int, n: int, points: int) -> Proposals:
 
 
 @compiled_as_is
-def propose(proposals: Proposals, k: int, centre: Values, covariance: Values, level: float) -> bool:
-    """Write a proposal; return whether its covariance is positive.
-
-    ``level`` is the logarithm of the density in the middle, were its scale one.
-    """
+def propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
+    """Write a proposal; return whether its covariance is positive."""
     root = proposals.roots[k]
     if not cholesky(covariance, root):
         return False
-    proposals.levels[k] = level
+    proposals.levels[k] = 0.0
     for i in range(centre.shape[0]):
         proposals.centres[k, i] = centre[i]
         proposals.levels[k] -= math.log(root[i, i])
@@ -296,6 +301,36 @@ def _add_densities(proposals: Proposals, k: int, points: Values, first: int, las
             off[m] = points[i, m] - proposals.centres[k, m]
         far = squared_length(proposals.roots[k], off, work)
         proposals.densities[k, i] = level * t_density(far, n)
+
+
+@compiled_as_is
+def take_block(
+    proposals: Proposals, made: int, points: Values, before: int, count: int, block: int
+) -> None:
+    """Count a block of points as drawn from the last proposal, and write their densities.
+
+    Parameters
+    ----------
+    proposals : Proposals
+        Written.
+    made : int
+        How many there are.
+    points : ndarray, shape (N, K)
+    before : int
+        Points whose densities under the last proposal are known.
+    count, block : int
+        Points before the block, and in it.
+    """
+    proposals.drawn[made - 1] += block
+    for c in range(made):
+        _add_densities(proposals, c, points, before if c == made - 1 else count, count + block)
+
+
+@compiled_as_is
+def log_evidence_of(proposals: Proposals, mean_weight: float, n: int) -> float:
+    """Return the log evidence, given the logarithm of the mean of n numbers' weights."""
+    evidence: float = mean_weight - proposals.levels[0] - t_constant(n)
+    return evidence
 
 
 @compiled_as_is
@@ -354,7 +389,7 @@ def importance_sample(
                         wanted[k, m] += beyond.wider[k, m]
             elif made > 0:
                 wanted = next_covariance(draws, count, covariance, centre)
-            if not propose(proposals, made, centre, wanted, 0.0):
+            if not propose(proposals, made, centre, wanted):
                 break
             renewed, before = count, 0
             made += 1
@@ -366,21 +401,18 @@ def importance_sample(
                 if kind == OVAL:
                     here += log_stretch(draws.points[i])
             draws.logs_p[i] = here
-        proposals.drawn[made - 1] += block
-        for c in range(made):
-            first = before if c == made - 1 else count
-            _add_densities(proposals, c, draws.points, first, count + block)
+        take_block(proposals, made, draws.points, before, count, block)
         count += block
         if count < least and count < 2 * renewed:
             continue
-        evidence, equal = weigh_by_density(
+        evidence, equal = weigh(
             draws.logs_p, proposals.densities, proposals.drawn / count, made, count, draws.weights
         )
         if equal <= 0.0 or (equal >= plan.worth and count >= least):
             break
     if equal > 0.0:
         weighted_moments(draws.points, draws.weights, count, draws.mean, draws.covariance)
-    return count, evidence - proposals.levels[0] - t_constant(n), equal
+    return count, log_evidence_of(proposals, evidence, n), equal
 
 
 @compiled_as_is
@@ -408,9 +440,7 @@ def sample_around(
     near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
     mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
-    draws = Draws(
-        np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
-    )
+    draws = no_draws(count, n)
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):
         covariance[k, k] += loose
