@@ -165,17 +165,6 @@ class AnyPad:
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
         return replace(self._with(noise, *estimated), whole=whole)
 
-    def posterior(self, readings: Readings) -> Posterior:
-        """Return the posterior of the outline by readings as `observed` gives them.
-
-        Raises
-        ------
-        Degenerate
-            If no outline of this kind is possible.
-        """
-        readings, even = self.first(readings)
-        return self.around(readings, self.completed(readings, even))
-
     def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
         """Return the even face's most likely outline by one attempt, and readings as it has them.
 

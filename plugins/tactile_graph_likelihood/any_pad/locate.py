@@ -48,7 +48,9 @@ class Located:
     def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        found = self._any_pad.suited(readings).posterior(readings)
+        fits = self._any_pad.suited(readings)
+        readings, even = fits.first(readings)
+        found = fits.around(readings, fits.completed(readings, even))
         return self._placing(image, [found])[0]
 
 

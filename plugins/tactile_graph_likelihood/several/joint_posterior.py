@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, window
+from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -88,16 +88,24 @@ class Coverage(NamedTuple):
 
 
 @compiled_as_is
-def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> Box:
-    """Add what one of some outlines brings to each element to what the others do; return where."""
+def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
+    """Add what one of some outlines brings to each element to what the others do."""
+    lay(problem, outlines, k, 0, 0, problem.load, problem.share)
+
+
+@compiled_as_is
+def lay(
+    problem: JointProblem, outlines: Outlines, k: int, row: int, column: int, load: Values,
+    share: Values,
+) -> None:  # fmt: skip
+    """Add what one of some outlines brings to a load and a coverage that begin at an element."""
     kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
     box, own = shares_around(kind, corners, p, problem.grid, problem.noise, problem.load.shape)
-    scale = math.exp(p[unknowns(kind, corners)])
+    scale, r, c = math.exp(p[unknowns(kind, corners)]), box[0] - row, box[1] - column
     for i in range(own.shape[0]):
         for j in range(own.shape[1]):
-            problem.load[box[0] + i, box[1] + j] += scale * own[i, j]
-            problem.share[box[0] + i, box[1] + j] += own[i, j]
-    return box
+            load[r + i, c + j] += scale * own[i, j]
+            share[r + i, c + j] += own[i, j]
 
 
 @compiled_as_is
@@ -144,36 +152,22 @@ def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
 @compiled_as_is
 def gain(problem: JointProblem, outlines: Outlines) -> float:
     """Return what outlines add to the log likelihood of an image where others already lie."""
-    (r0, c0), r1, c1 = problem.states.shape, 0, 0
-    laid = copied(problem)
+    grid, logs, states, noise = problem.grid, problem.logs, problem.states, problem.noise
+    (rows, cols), margin = states.shape, foam_margin(grid, noise)
+    r0, c0, r1, c1 = rows, cols, 0, 0
     for k in range(outlines.kinds.shape[0]):
-        box = add_outline(laid, outlines, k)
+        kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
+        box = window(kind, corners, p, grid, rows, cols, margin)
         if box[2] > 0 and box[3] > 0:
             r0, c0 = min(r0, box[0]), min(c0, box[1])
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    box = r0, c0, r1 - r0, c1 - c0
-    return log_likelihood_within(laid, box) - log_likelihood_within(problem, box)
-
-
-@compiled_as_is
-def copied(problem: JointProblem) -> JointProblem:
-    """Return the same problem with a load and a coverage of its own, to lay outlines on."""
-    return JointProblem(
-        problem.grid, problem.logs, problem.states, problem.noise, problem.prior,
-        problem.load.copy(), problem.share.copy(),
-    )  # fmt: skip
-
-
-@compiled_as_is
-def log_likelihood_within(problem: JointProblem, box: Box) -> float:
-    """Return the log likelihood of a window's readings, by the load and coverage that lie there."""
-    r0, c0, rows, columns = box
-    load = problem.load[r0 : r0 + rows, c0 : c0 + columns].copy()
-    share = problem.share[r0 : r0 + rows, c0 : c0 + columns].copy()
-    logs, states = problem.logs, problem.states
-    return terms(load, 0.0, r0, c0, logs, states, problem.noise) - overlap(share)
+    load, share = problem.load[r0:r1, c0:c1].copy(), problem.share[r0:r1, c0:c1].copy()
+    before = terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share)
+    for k in range(outlines.kinds.shape[0]):
+        lay(problem, outlines, k, r0, c0, load, share)
+    return terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share) - before
 
 
 @compiled_as_is
