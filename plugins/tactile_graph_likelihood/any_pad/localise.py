@@ -46,7 +46,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import Likeliest, Model
+from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
@@ -212,11 +212,11 @@ class AnyPad:
         """
         model = self._fit(EVEN)
         if near is not None and not self.quick:
-            return model.likeliest(readings, before=near, anew=True)
-        even = model.likeliest(readings, before=near, anew=True, attempts=1)
+            return model.likeliest(readings, near, attempts=EVERY)
+        even = model.likeliest(readings, near)
         if near is not None and -math.inf < even.mode.height <= near.mode.height + SAME:
             return even._replace(unsure=False)
-        return model.likeliest(readings, before=even) if even.unsure else even
+        return model.likeliest(readings, even, attempts=MORE) if even.unsure else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:
         """Return the share of strays beyond an outline, 0 unless it is far more than told."""
@@ -232,7 +232,7 @@ class AnyPad:
         near = self.near(readings, self.told.point_of(even))
         if readings.states.size > LARGE_PAD and not near.unsure:
             return near
-        return self._fit(EVEN).likeliest(readings, before=near)
+        return self._fit(EVEN).likeliest(readings, near, attempts=MORE)
 
     def completed(self, readings: Readings, even: Likeliest) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, once one attempt found one of an even face.
@@ -244,7 +244,7 @@ class AnyPad:
         """
         large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
         if even.unsure and not large:
-            even = model.likeliest(readings, before=even)
+            even = model.likeliest(readings, even, attempts=MORE)
         if readings.touched <= FEW:
             even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
@@ -254,7 +254,7 @@ class AnyPad:
             its = self.knowing(strays)
             even = its.again(readings, even)
         elif large and even.unsure:
-            even = model.likeliest(readings, before=even)
+            even = model.likeliest(readings, even, attempts=MORE)
         found = {EVEN: even}
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
         least = CLEAR if self.quick else FAINT

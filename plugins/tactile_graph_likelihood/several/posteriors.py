@@ -33,7 +33,7 @@ class GoodnessOfLoad(NamedTuple):
 
 
 @compiled_as_is
-def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
+def goodness_of_load(problem: JointProblem, fitted: int) -> GoodnessOfLoad:
     """Return how surprising an image is, and how much neighbours' gains are alike.
 
     Parameters
@@ -45,14 +45,14 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
 
     Returns
     -------
-    (float, float)
+    GoodnessOfLoad
         As of `goodness_of_fit`, but of the patterns only how alike neighbours are, not over the
         residuals' own variance.
     """
     left = unexplained(problem.load, 0.0, 0, 0, problem.logs, problem.states, problem.noise, fitted)
     its = neighbours_of(left.residuals)
     alike = its.product / math.sqrt(its.n_pairs) if its.n_pairs > 0.0 else 0.0
-    return left.surprise, alike
+    return GoodnessOfLoad(left.surprise, alike)
 
 
 def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], GoodnessOfLoad]:
@@ -67,7 +67,7 @@ def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], Go
         ),
         0.0,
     )
-    fit = GoodnessOfLoad(*goodness_of_load.call(laid(problem, together), sum(counts)))
+    fit = goodness_of_load.call(laid(problem, together), sum(counts))
     return [replace(one, surprise=fit.surprise, neighbours=fit.neighbours) for one in every], fit
 
 

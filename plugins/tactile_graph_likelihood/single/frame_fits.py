@@ -17,7 +17,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     log_of,
     mixed,
 )
-from tactile_graph_likelihood.single.model import Likeliest, Model
+from tactile_graph_likelihood.single.model import MORE, Likeliest, Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -65,7 +65,7 @@ class FrameFits:
         likeliest = max(top.evidence for top in tops)
         for k, outline in enumerate(self.outlines):
             if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
-                tops[k] = outline.even.likeliest(self.readings, tops[k])
+                tops[k] = outline.even.likeliest(self.readings, tops[k], attempts=MORE)
             self._add((k, EVEN), outline.even, tops[k])
 
     def look_under(self, asked: Sequence[str]) -> dict[str, float]:

@@ -58,6 +58,9 @@ Start = Shape | Values | None
 
 NO_START = np.zeros(0)
 
+FIRST, MORE, EVERY = range(1), range(1, ATTEMPTS), range(ATTEMPTS)
+"""Attempts at a most likely outline."""
+
 
 class Likeliest(NamedTuple):
     """A most likely outline whose posterior is not yet sampled.
@@ -146,7 +149,7 @@ class Model:
         covariance is then wider by that of a normal distribution around the top.
         """
         problem = self._problem(readings, belief)
-        top = self._find(problem, self._begin(start, problem), range(ATTEMPTS))
+        top = self._find(problem, self._begin(start, problem), EVERY)
         if top.mode.height == -math.inf:
             raise self.impossible(readings)
         found = self._sampled(readings, problem, top.mode)
@@ -160,17 +163,14 @@ class Model:
         readings: Readings,
         before: Likeliest | None = None,
         start: Start = None,
-        anew: bool = False,
-        attempts: int = ATTEMPTS,
+        attempts: Sequence[int] = FIRST,
     ) -> Likeliest:
-        """Return the most likely outline, by one attempt, or more after an earlier one.
+        """Return the most likely outline of some attempts, and of what was found before.
 
-        ``anew`` says that what was found before was no attempt yet, but `likeliest_near`;
-        ``attempts`` is how many there are at most, the earlier one counted.
+        ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
         problem = self._problem(readings, None)
-        first, last = (0, 1) if before is None else (0 if anew else 1, attempts)
-        return self._find(problem, self._begin(start, problem), range(first, last), before)
+        return self._find(problem, self._begin(start, problem), attempts, before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the most likely outline near a point, shape (K,), that is nearly as likely.
@@ -189,7 +189,7 @@ class Model:
         Degenerate
             If nothing is touched, or no outline of this kind is possible.
         """
-        top = self._find(self._problem(readings, None), NO_START, range(ATTEMPTS))
+        top = self._find(self._problem(readings, None), NO_START, EVERY)
         if top.evidence == -math.inf:
             raise self.impossible(readings)
         return self.normal_around(top, len(top.mode.p))
