@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from learned_noise import learned_noise
 from numpy.typing import NDArray
 from panel import CELLS, PITCH_CM, Seen, interval, off_cells, place
 from shared_errors import added, told_alike
@@ -39,7 +40,6 @@ from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrde
 from tactile_graph_likelihood.geometry.outlines import unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.fit_footprint import FitFootprint
-from tactile_graph_likelihood.single.learned_noise import learned_noise
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_sources.recording import recording
 from tactile_graph_tracking.score_objects import score_objects

@@ -10,12 +10,12 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
+from learned_noise import learned_noise
 
 from tactile_graph import Image, load
 from tactile_graph.compiled import warm_up
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc
-from tactile_graph_likelihood.single.learned_noise import learned_noise
 
 IMAGES, GROUPS = 24, (1, 6, 24)
 PADS = ((0.25, 0.05), (0.483, 0.164), (0.75, 0.3), (1.0, 0.1))

@@ -10,7 +10,7 @@ from tactile_graph.wires import Circle, Image, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.known.identify_footprint import IdentifyFootprint
 from tactile_graph_likelihood.over_time.follow_footprint import FollowFootprint
-from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, chances, mixed
+from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, mixed
 from tactile_graph_likelihood.single.choose_shape import ChooseShape
 from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.model import Model
@@ -72,15 +72,11 @@ def test_an_even_object_is_chosen_as_without_the_question_and_mostly_not_asked()
 def test_evidence_of_shapes_compares_though_one_alone_leaves_a_pattern():
     image = pressed(3, "leans")
     outlines = [AnyPressure(Model(kind, noise=NOISE, whole=True)) for kind in (DISC, ELLIPSE)]
-    fits = FrameFits(readings_of(image, 0.3, 5.0))
-    fits.add_even(outlines)
-    fits.look_around({EVEN: 1.0})
+    fits = FrameFits(readings_of(image, 0.3, 5.0), outlines)
     asked = asked_by(fits.found.values(), outlines[0].others)
     assert "lean" in asked
-    fits.add_others(outlines, asked)
-    before = chances(dict.fromkeys(asked))
+    before = fits.look_under(asked)
     assert sum(before.values()) == pytest.approx(1.0)
-    fits.look_around(before)
     for k in range(2):
         parts = [fits.logs[k, part] + math.log(before[part]) for part in before]
         assert fits.evidence(k, before) == pytest.approx(np.logaddexp.reduce(parts))

@@ -135,7 +135,7 @@ def test_patterns_are_standard_normal_or_so_where_there_is_none(which):
     for _ in range(150):
         residuals = np.where(share > 0.0, 3.0 * rng.standard_normal(share.shape) + 0.0, 0.0)
         alike.append(getattr(neighbours_alike, which)(residuals))
-        lean, fall = getattr(trend, which)(residuals, 0, 0, domes)
+        lean, fall = getattr(trend, which)(residuals, domes)
         leans.append(lean)
         falls.append(fall)
     assert abs(np.mean(alike)) < 0.35
@@ -157,7 +157,7 @@ def test_a_pattern_is_found_whatever_its_size():
         return np.where(share > 0.0, pattern, 0.0)
 
     def lean_and_fall(pattern):
-        return trend.call(seen(pattern), 0, 0, domes)
+        return trend.call(seen(pattern), domes)
 
     assert max(np.abs(lean_and_fall(noise))) < 2.5
     for scale in (0.01, 100.0):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, NamedTuple
 
@@ -15,6 +14,7 @@ from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
 from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.single.any_pressure import shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import Likeliest
@@ -104,9 +104,7 @@ class Locate:
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
         shape = likely(every[best].around(readings, tops[best]))
-        return Located(
-            shape, best, chance[best], shares["disc"], shares["ellipse"], shares["rectangle"]
-        )
+        return Located(shape, best, chance[best], **shares)
 
 
 def probabilities(
@@ -118,7 +116,4 @@ def probabilities(
         name: float(np.logaddexp.reduce(list(log_chances(its, shared).values())))
         for name, its in tops.items()
     }
-    best = max(logs.values())
-    weights = {name: math.exp(log - best) for name, log in logs.items()}
-    total = sum(weights.values())
-    return {name: weight / total for name, weight in weights.items()}
+    return shares_by(logs)

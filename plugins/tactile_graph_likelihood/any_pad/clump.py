@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.geometry.pieces import components
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 NEAR = 2
@@ -17,7 +18,6 @@ def clump_of(readings: Readings) -> Readings | None:
     Parameters
     ----------
     readings : Readings
-        Of few touched elements: every pair is looked at.
 
     Returns
     -------
@@ -30,14 +30,9 @@ def clump_of(readings: Readings) -> Readings | None:
     (n - 1) / sqrt(n) deviations from the mean (P. A. Samuelson 1968, How deviant can you be?). The
     largest clump is that of the most elements: a single stray may read more than all of an object.
     """
-    touched = np.argwhere((readings.states == ON) | (readings.states == OVER))
-    close = (np.abs(touched[:, None] - touched[None]) <= NEAR).all(axis=2)
-    names = np.arange(len(touched))
-    while not np.array_equal(names, its := np.where(close, names, len(names)).min(axis=1)):
-        names = its
-    if not names.any():
+    labels = components.call(readings.shows, NEAR)
+    counts = np.bincount(labels.ravel())[1:]
+    if len(counts) < 2:
         return None
-    apart = touched[names != np.bincount(names).argmax()]
-    states = readings.states.copy()
-    states[tuple(apart.T)] = UNKNOWN
-    return readings._replace(states=states, touched=len(touched) - len(apart))
+    apart = (labels > 0) & (labels != counts.argmax() + 1)
+    return readings.with_states(np.where(apart, np.uint8(UNKNOWN), readings.states))

@@ -9,7 +9,6 @@ import numpy as np
 
 from tactile_graph_likelihood.any_pad.turn_on import Edge, contrast_by
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -83,10 +82,8 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     x, y = p[:2].tolist()
     left, top, pitch, side, *_ = readings.grid.tolist()
     wide, high = _half_extents(model.kind, p)
-    inside = readings.states[
-        _lines(y - top, high, pitch, side), _lines(x - left, wide, pitch, side)
-    ]
-    beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
+    inside = readings.shows[lines(y - top, high, pitch, side), lines(x - left, wide, pitch, side)]
+    beyond = readings.touched - int(np.count_nonzero(inside))
     bare = readings.states.size - inside.size
     found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
     return min(found, MOST_STRAYS)
@@ -117,7 +114,7 @@ def _half_extents(kind: int, p: Values) -> tuple[float, float]:
     return math.hypot(p[2] * cos, p[3] * sin), math.hypot(p[2] * sin, p[3] * cos)
 
 
-def _lines(middle: float, half: float, pitch: float, side: float) -> slice:
+def lines(middle: float, half: float, pitch: float, side: float) -> slice:
     """Return the rows or columns of elements that a stretch touches."""
     first = math.ceil((middle - half - side) / pitch)
     return slice(max(first, 0), max(math.floor((middle + half) / pitch) + 1, 0))

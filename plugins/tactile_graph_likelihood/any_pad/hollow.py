@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from tactile_graph_likelihood.any_pad.from_frame import lines
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 MANY_VOIDS = -1.1
@@ -54,14 +55,14 @@ def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Re
     if voids < MANY_VOIDS or _bears_in_the_middle(readings, p, MIDDLE * size):
         return None
     inwards = _depth_cm(kind, readings, p)
-    side, states = float(readings.grid[3]), readings.states
-    inside = (inwards < size - INSIDE * side) & (states != UNKNOWN)
-    far, its = inwards[inside], states[inside]
+    side = float(readings.grid[3])
+    inside = (inwards < size - INSIDE * side) & (readings.states != UNKNOWN)
+    far, its = inwards[inside], readings.shows[inside]
     n = len(far)
     if n < FEWEST:
         return None
     order = far.argsort()
-    far, on = far[order], ((its == ON) | (its == OVER))[order]
+    far, on = far[order], its[order]
     within, shown = np.arange(1, n - RIM + 1), on.cumsum()[: n - RIM]
     total = int(on.sum())
     gain = _explained(shown, within) + _explained(total - shown, n - within)
@@ -71,24 +72,18 @@ def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Re
     if not gain[best] > SURE:
         return None
     rim_cm = 0.5 * float(far[best] + far[best + 1])
-    states = np.where(inwards < rim_cm + MARGIN * side, np.uint8(UNKNOWN), states)
-    touched = int(np.count_nonzero((states == ON) | (states == OVER)))
-    return readings._replace(states=states, touched=touched) if touched >= FEWEST else None
+    over_it = inwards < rim_cm + MARGIN * side
+    rim = readings.with_states(np.where(over_it, np.uint8(UNKNOWN), readings.states))
+    return rim if rim.touched >= FEWEST else None
 
 
 def _bears_in_the_middle(readings: Readings, p: Values, reach_cm: float) -> bool:
     """Return whether elements so far around an outline's middle read too often for a hollow."""
     left, top, pitch, side = readings.grid[:4].tolist()
-    rows, columns = (
-        slice(
-            max(math.ceil((at - start - reach_cm - 0.5 * side) / pitch), 0),
-            max(math.floor((at - start + reach_cm - 0.5 * side) / pitch) + 1, 0),
-        )
-        for at, start in ((float(p[1]), top), (float(p[0]), left))
-    )
-    states = readings.states[rows, columns]
-    shown = np.count_nonzero((states == ON) | (states == OVER))
-    return bool(shown > max(1.0, SOME * states.size))
+    inner = reach_cm - 0.5 * side
+    rows, columns = lines(p[1] - top, inner, pitch, side), lines(p[0] - left, inner, pitch, side)
+    near = readings.shows[rows, columns]
+    return bool(np.count_nonzero(near) > max(1.0, SOME * near.size))
 
 
 def _explained(shown: np.ndarray, of: np.ndarray) -> Values:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,33 +35,26 @@ from tactile_graph_likelihood.any_pad.turn_on import (
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
+    CLEAR,
     EVEN,
     FIRST,
     WIDER,
+    Pattern,
+    asked_by,
     chances,
     log_of,
     mixed,
 )
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import Likeliest, Model, Start
+from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import SAME
 
-
-class Pattern(NamedTuple):
-    """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
-
-    lean: float
-    fall: float
-    alike: float
-
-
-FAINT, CLEAR = Pattern(1.0, 0.4, 2.5), Pattern(1.5, 1.5, 2.5)
-"""Patterns from which on another pressure is worth its time, and where a quick answer will do."""
+FAINT = Pattern(1.0, 0.4, 2.5)
+"""From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
 
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
@@ -173,32 +165,12 @@ class AnyPad:
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
         return replace(self._with(noise, *estimated), whole=whole)
 
-    def posterior(self, readings: Readings, start: Start = None) -> Posterior:
-        """Return the posterior of the outline.
-
-        Parameters
-        ----------
-        readings : Readings
-            As `observed` gives them.
-        start : Shape or ndarray, optional
-            Where to begin: an outline of this kind.
-
-        Raises
-        ------
-        ValueError
-            If ``start`` is of another kind.
-        Degenerate
-            If no outline of this kind is possible.
-        """
-        readings, even = self.first(readings, start)
-        return self.around(readings, self.completed(readings, even, start is None))
-
-    def first(self, readings: Readings, start: Start = None) -> tuple[Readings, Likeliest]:
+    def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
         """Return the even face's most likely outline by one attempt, and readings as it has them.
 
         See `cleared`.
         """
-        return self.cleared(readings, self._fit(EVEN).likeliest(readings, start=start))
+        return self.cleared(readings, self._fit(EVEN).likeliest(readings))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
         """Return readings free of a law's improbable bend and of a hollow, and the outline anew.
@@ -240,11 +212,11 @@ class AnyPad:
         """
         model = self._fit(EVEN)
         if near is not None and not self.quick:
-            return model.likeliest(readings, before=near, anew=True)
-        even = model.likeliest(readings, before=near, anew=True, attempts=1)
+            return model.likeliest(readings, near, attempts=EVERY)
+        even = model.likeliest(readings, near)
         if near is not None and -math.inf < even.mode.height <= near.mode.height + SAME:
             return even._replace(unsure=False)
-        return model.likeliest(readings, before=even) if even.unsure else even
+        return model.likeliest(readings, even, attempts=MORE) if even.unsure else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:
         """Return the share of strays beyond an outline, 0 unless it is far more than told."""
@@ -260,20 +232,10 @@ class AnyPad:
         near = self.near(readings, self.told.point_of(even))
         if readings.states.size > LARGE_PAD and not near.unsure:
             return near
-        return self._fit(EVEN).likeliest(readings, before=near)
+        return self._fit(EVEN).likeliest(readings, near, attempts=MORE)
 
-    def completed(
-        self, readings: Readings, even: Likeliest, anywhere: bool = True
-    ) -> dict[str, Likeliest]:
-        """Return the most likely outlines by pressure, once one is found of an even face.
-
-        Parameters
-        ----------
-        readings : Readings
-        even : Likeliest
-            By one attempt.
-        anywhere : bool
-            Whether the outline may be another clump's than it was found at.
+    def completed(self, readings: Readings, even: Likeliest) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, once one attempt found one of an even face.
 
         Raises
         ------
@@ -282,8 +244,8 @@ class AnyPad:
         """
         large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
         if even.unsure and not large:
-            even = model.likeliest(readings, before=even)
-        if anywhere and readings.touched <= FEW:
+            even = model.likeliest(readings, even, attempts=MORE)
+        if readings.touched <= FEW:
             even = self._by_clump(readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
@@ -292,10 +254,11 @@ class AnyPad:
             its = self.knowing(strays)
             even = its.again(readings, even)
         elif large and even.unsure:
-            even = model.likeliest(readings, before=even)
+            even = model.likeliest(readings, even, attempts=MORE)
         found = {EVEN: even}
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
-        for part in [] if large or hidden else asked_by(even.fit, CLEAR if self.quick else FAINT):
+        least = CLEAR if self.quick else FAINT
+        for part in [] if large or hidden else asked_by([even.fit], FIRST, least):
             top = its._pressed(part, readings, even)
             if top.mode.height > -math.inf:
                 found[part] = top
@@ -368,10 +331,7 @@ class AnyPad:
         """
         unevenness = self.told.noise.sigma * float(readings.grid[2]) ** 1.5
         inflation = pressed * variance_inflation(its.neighbours, readings.touched)
-        its = on_any_pad(its, evidence, inflation, unevenness, hidden)
-        if readings.stretch == 1.0:
-            return its
-        return stretched(its, float(readings.grid[1]), readings.stretch)
+        return stretched(on_any_pad(its, evidence, inflation, unevenness, hidden), readings)
 
     def _normal(self, part: str, top: Likeliest) -> Posterior:
         own = int(self.quick) if part == EVEN else len(PRESSURES[part])
@@ -414,13 +374,6 @@ class AnyPad:
         p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
         mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
         return model.posterior_around(readings, mode, loose)
-
-
-def asked_by(fit: GoodnessOfFit, least: Pattern) -> list[str]:
-    """Return which pressures may explain what an even face leaves over."""
-    fall, alike = fit.fall >= least.fall, fit.neighbours >= least.alike
-    asked = {"lean": fit.lean >= least.lean, "fall": fall, "foam": fall or alike}
-    return [part for part in FIRST if asked[part]]
 
 
 def shared_by(tops: Iterable[Likeliest], touched: int) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from tactile_graph.steps import Spread
-from tactile_graph.wires import Circle, Ellipse, Image, Rectangle
+from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.observed import observed
@@ -30,16 +30,7 @@ AnyPadSettings = Annotated[
 
 
 class Located:
-    """What the three have in common.
-
-    Parameters
-    ----------
-    quick : bool
-        Whether the most likely outline will do, with a normal distribution around it: about half
-        of the time on pads of up to 1024 elements. Pressures other than an even one are looked at
-        where its pattern is clear; a fainter one widens the distribution.
-    settings : FootprintSettings
-    """
+    """What the three have in common; parameters as of `LocateDisc`."""
 
     stateless = True
     _kind = DISC
@@ -54,12 +45,12 @@ class Located:
         self._any_pad = AnyPad.of(settings, self._kind, quick)
         self._placing = Placing(self._pad)
 
-    def posterior(
-        self, image: Image, start: Circle | Ellipse | Rectangle | None = None
-    ) -> Posterior:
+    def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         readings = observed(image, self._pad, self._gap_cm)
-        found = self._any_pad.suited(readings).posterior(readings, start)
+        fits = self._any_pad.suited(readings)
+        readings, even = fits.first(readings)
+        found = fits.around(readings, fits.completed(readings, even))
         return self._placing(image, [found])[0]
 
 
@@ -84,15 +75,13 @@ class LocateDisc(Located):
 
     _kind = DISC
 
-    def __call__(self, image: Image, start: Circle | None = None) -> LikelyCircle:
+    def __call__(self, image: Image) -> LikelyCircle:
         """Return the disc.
 
         Parameters
         ----------
         image : Image
             Readings that rise with load, in any quantity; invalid cells say nothing.
-        start : Circle, optional
-            Where to begin; the touched elements' moments otherwise.
 
         Raises
         ------
@@ -101,7 +90,7 @@ class LocateDisc(Located):
         Degenerate
             If nothing rises above the noise, or no disc on the pad explains what does.
         """
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyCircle)
         return found
 
@@ -119,9 +108,9 @@ class LocateRectangle(Located):
 
     _kind = RECTANGLE
 
-    def __call__(self, image: Image, start: Rectangle | None = None) -> LikelyRectangle:
+    def __call__(self, image: Image) -> LikelyRectangle:
         """Return the rectangle; parameters and errors as for a disc."""
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyRectangle)
         return found
 
@@ -139,8 +128,8 @@ class LocateEllipse(Located):
 
     _kind = ELLIPSE
 
-    def __call__(self, image: Image, start: Ellipse | None = None) -> LikelyEllipse:
+    def __call__(self, image: Image) -> LikelyEllipse:
         """Return the ellipse; parameters and errors as for a disc."""
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyEllipse)
         return found

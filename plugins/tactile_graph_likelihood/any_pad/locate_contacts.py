@@ -13,7 +13,7 @@ from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
 from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -93,8 +93,7 @@ def alone(readings: Readings, owner: np.ndarray, number: int) -> Readings:
         If none of the contact's own shows.
     """
     others = (owner > 0) & (owner != number)
-    states = np.where(others, UNKNOWN, readings.states).astype(np.uint8)
-    touched = int(np.count_nonzero((states == ON) | (states == OVER)))
-    if not touched:
+    its = readings.with_states(np.where(others, np.uint8(UNKNOWN), readings.states))
+    if not its.touched:
         raise Degenerate(f"contact {number}: no reading rises above the noise")
-    return readings._replace(states=states, touched=touched)
+    return its

@@ -13,7 +13,7 @@ from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings, TurnOn
+from tactile_graph_likelihood.single.readings import Readings, TurnOn, grid_of
 from tactile_graph_pads.pad import Pad
 
 SPACED = 4
@@ -76,8 +76,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         raise RuleError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
-    if not gap_cm < across:
-        raise RuleError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    grid = grid_of(image, gap_cm)
     above, least, shows, _, its = risen(image, pad)
     if not above.size:
         raise Degenerate("the image has no element: no outline fits")
@@ -104,9 +103,6 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     if ceiling < math.inf:
         states[shows & (logs >= ceiling)] = OVER
         logs = np.where(states == OVER, ceiling, logs)
-    x, y = image.origin_cm
-    half = 0.5 * gap_cm
-    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
     found = Readings(grid, logs, states, touched, down / across, edge, turn_on)
     return uniform(found) if states.size > LARGE_PAD else found
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 
-from tactile_graph_likelihood.geometry.outlines import DISC, sizes, unknowns
-from tactile_graph_likelihood.single.posterior import Posterior, normal_reach
+from tactile_graph_likelihood.geometry.outlines import DISC, sizes
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.readings import Readings
 
 USUAL, ALONG = 0.36, 1.25
 """Deviation of a disc's centre over ``sigma pitch sqrt(pitch / radius)``, and how much larger that
@@ -42,18 +42,10 @@ class AnyPadPosterior(Posterior):
 
     usual_std_cm: float = math.inf
 
-    @cached_property
-    def reach(self) -> float:
-        """Squared Mahalanobis distance within which 90 % of the posterior lies.
-
-        That of the weighted points, but no less than that of a normal distribution that is known
-        from as many.
-        """
-        n = unknowns.call(self.kind, self.corners)
-        return max(
-            self.reach_of_points(n),
-            normal_reach(n, (EVENLY if n == 3 else 1.0) * self.equal_points),
-        )
+    @property
+    def independent_points(self) -> float:
+        """How many points, each by itself, would tell the covariance as well."""
+        return (EVENLY if self.kind == DISC else 1.0) * self.equal_points
 
     @property
     def fits(self) -> bool:
@@ -103,8 +95,11 @@ def on_any_pad(
     return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
 
 
-def stretched(found: AnyPadPosterior, top_cm: float, stretch: float) -> AnyPadPosterior:
-    """Return a posterior whose places lie so many times further below the top."""
+def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
+    """Return a posterior on cells that are as high as they are, not as high as they are wide."""
+    top_cm, stretch = float(readings.grid[1]), readings.stretch
+    if stretch == 1.0:
+        return found
     mean, points, likeliest = found.mean.copy(), found.points.copy(), found.most_likely.copy()
     covariance = found.covariance.copy()
     for y in (mean[1:2], points[:, 1], likeliest[1:2]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from annotated_types import Ge, Le
@@ -11,12 +11,12 @@ from annotated_types import Ge, Le
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Spread
 from tactile_graph.steps.rules import Grid, require_same_shape
-from tactile_graph.wires import Circle, Ellipse, Image, Mask, Polygon, Rectangle
+from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.decouple import Decouple
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -92,7 +92,6 @@ class FootprintByOrder:
         self,
         image: Image,
         touched: Annotated[Mask, Grid.like("image")] | None = None,
-        start: Circle | Ellipse | Rectangle | Polygon | None = None,
     ) -> Likely:
         """Return the outline.
 
@@ -102,27 +101,23 @@ class FootprintByOrder:
             Readings that rise with load, in any quantity; invalid cells say nothing.
         touched : Mask, optional
             What counts as touched, instead of ``touched_from``.
-        start : Circle, Ellipse, Rectangle or Polygon, optional
-            Where to begin, of the same shape.
 
         Raises
         ------
-        ValueError
-            If ``start`` is of another shape.
         RuleError
             If the image's cells are not square.
         Degenerate
             If nothing is touched, or no such outline on the pad explains what is; if volts are
             not the circuit's.
         """
-        return likely(self.posterior(self._readings(image, touched), start))
+        return likely(self.posterior(self._readings(image, touched)))
 
-    def posterior(self, readings: Readings, start: Any = None) -> Posterior:
+    def posterior(self, readings: Readings) -> Posterior:
         """Return the posterior by the touch and order of some readings."""
         touch = readings._replace(logs=np.zeros(readings.logs.shape))
         for model in self._touch:
             try:
-                rough = model.normal_of(touch, start)
+                rough = model.normal_of(touch)
             except Degenerate as why:
                 reason = why
                 continue
@@ -137,7 +132,7 @@ class FootprintByOrder:
         states = found.states
         if siemens.valid is not None:
             states = np.where(siemens.valid, states, UNKNOWN).astype(np.uint8)
-        return _touching(found._replace(logs=siemens.filled(0.0), states=states))
+        return _touching(found._replace(logs=siemens.filled(0.0)), states)
 
     def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
         gap = self.model.gap_cm
@@ -149,11 +144,11 @@ class FootprintByOrder:
         found = readings_of(image.with_values(values - lift + 1.0), gap, 0.0, 0.0)
         on = touched.values & (found.states == ON)
         states = np.where(on, ON, np.where(found.states == ON, OFF, found.states)).astype(np.uint8)
-        return _touching(found._replace(states=states))
+        return _touching(found, states)
 
 
-def _touching(found: Readings) -> Readings:
-    count = int((found.states == ON).sum())
-    if count == 0:
+def _touching(readings: Readings, states: States) -> Readings:
+    found = readings.with_states(states)
+    if found.touched == 0:
         raise Degenerate("no element is touched: no outline fits")
-    return found._replace(touched=count)
+    return found

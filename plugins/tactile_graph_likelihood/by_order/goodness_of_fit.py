@@ -15,7 +15,7 @@ from tactile_graph_likelihood.by_order.likelihood import (
     log_order,
     shares_along,
 )
-from tactile_graph_likelihood.geometry.covered import Box, window
+from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     OFF,
@@ -36,7 +36,7 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
     standardised,
     trend,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 
 MOST_TIED = 0.25
 """Share of the touched elements that, if they read the same, say nothing of a pattern."""
@@ -116,19 +116,15 @@ def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
     The residuals are of the loads at which `log_order` expects the elements of such an order;
     those of many equal readings are left out.
     """
-    kind, corners, grid, noise = problem.kind, problem.corners, problem.grid, problem.noise
+    kind, corners, noise = problem.kind, problem.corners, problem.noise
     states, order, ends, table = problem.states, problem.order, problem.ends, problem.hazards
-    rows, columns = states.shape
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
-    share = np.zeros((max(box[2], 0), max(box[3], 0)))
-    if box[2] > 0 and box[3] > 0:
-        share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+    box, share = shares_around(kind, corners, p, problem.grid, noise, states.shape)
     n, sigma, t = order.shape[0], noise[SIGMA], p[unknowns(kind, corners)]
     along, levels = shares_along(share, box, order), np.zeros(n)
     log_order(along, ends, sigma, t, table, levels)
     sums = touch_moments(share, t, box, states, noise)
     sums += order_moments(along, ends, sigma, table, levels)
-    residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
+    residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
     first = 0
     for k in range(n):
         first = k if k == 0 or ends[k - 1] == k else first
@@ -137,9 +133,9 @@ def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
         mark = math.log(max(along[k], LEAST_SHARE)) / sigma
         u, z = levels[k] - mark, mark + t / sigma
         tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-        i, j = order[k, 0], order[k, 1]
+        i, j = order[k, 0] - box[0], order[k, 1] - box[1]
         residuals[i, j] = u if z > SURE else 0.0
         leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
     surprise = (sums[0] - sums[1] - 0.5 * p.shape[0]) / math.sqrt(sums[2])
-    lean, fall = trend(leaning, box[0], box[1], dome(share))
+    lean, fall = trend(leaning, dome(share))
     return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)

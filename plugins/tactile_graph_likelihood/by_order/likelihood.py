@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
-from tactile_graph_likelihood.geometry.covered import Box, window
-from tactile_graph_likelihood.geometry.outline_prior import log_prior
+from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     OFF,
@@ -37,7 +36,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 
 Order = NDArray[np.int64]
 
@@ -197,12 +196,8 @@ def order_log_likelihood(problem: OrderProblem, p: Values) -> float:
     p : ndarray, shape (K,)
         The outline's numbers, and t.
     """
-    kind, corners, grid, noise = problem.kind, problem.corners, problem.grid, problem.noise
-    rows, columns = problem.states.shape
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
-    if box[2] <= 0 or box[3] <= 0:
-        return 0.0
-    share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+    kind, corners, noise = problem.kind, problem.corners, problem.noise
+    box, share = shares_around(kind, corners, p, problem.grid, noise, problem.states.shape)
     t = p[unknowns(kind, corners)]
     along = shares_along(share, box, problem.order)
     levels = np.empty(problem.order.shape[0])
@@ -220,17 +215,6 @@ def shares_along(share: Values, box: Box, order: Order) -> Values:
         if 0 <= i < box[2] and 0 <= j < box[3]:
             along[k] = share[i, j]
     return along
-
-
-@compiled_as_is
-def order_log_densities(problem: OrderProblem, points: Values) -> Values:
-    """Return `order_log_likelihood` plus the outline's log prior of many points, shape (N, K)."""
-    out = np.empty(points.shape[0])
-    for k in range(points.shape[0]):
-        out[k] = log_prior(problem.kind, problem.corners, points[k], problem.prior)
-        if out[k] > -math.inf:
-            out[k] += order_log_likelihood(problem, points[k])
-    return out
 
 
 def order_of(logs: Values, states: States) -> tuple[Order, Order]:

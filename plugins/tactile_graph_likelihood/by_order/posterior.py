@@ -3,35 +3,38 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.by_order.goodness_of_fit import order_goodness_of_fit
 from tactile_graph_likelihood.by_order.hazards import hazards
-from tactile_graph_likelihood.by_order.likelihood import OrderProblem, order_log_densities, order_of
-from tactile_graph_likelihood.geometry.outline_prior import TURN
-from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes, unknowns
-from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.importance import (
-    FEWEST,
-    FREEDOM,
-    KEPT,
-    WIDER,
-    temper,
-    weigh,
-    weighted_moments,
+from tactile_graph_likelihood.by_order.likelihood import (
+    OrderProblem,
+    order_log_likelihood,
+    order_of,
 )
+from tactile_graph_likelihood.geometry.outline_prior import TURN, log_prior
+from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes, unknowns
+from tactile_graph_likelihood.single.importance import weigh, weighted_moments
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.sample import (
+    Draws,
+    Plan,
+    draw,
+    log_evidence_of,
+    next_covariance,
+    no_draws,
+    no_proposals,
+    propose,
+    take_block,
+)
 
 ROUND = 32  # points
 WIDE_ROUND = 128  # of outlines with an angle or corners: a void at an end looks like the end
-MOST = 1024
 FIRST = 3.0  # the first one's over that of the start
 APART = 0.15  # of a pitch: standard deviation that the first adds to every length
 SPREAD = 2.0  # of ln of the share that shows, before a frame is read
@@ -69,11 +72,6 @@ def order_posterior(
         *order_of(readings.logs, readings.states), hazards(noise),
     )  # fmt: skip
 
-    def density(points: Values) -> Values:
-        found = order_log_densities.call(problem, points)
-        off = (points[:, first] - middle) / SPREAD
-        return np.asarray(found - 0.5 * off * off)
-
     enough = model.precision**-2 if worth is None else worth
     centre = np.append(start.mean[:first], middle)
     spread = np.zeros((first + 1, first + 1))
@@ -83,66 +81,67 @@ def order_posterior(
     if turned > 0.0:
         k = 2 + sizes.call(model.kind)
         floor[k] /= max(float(start.mean[2:k].max()), pitch) ** 2
-    found = _sampled(model, readings, density, centre, spread + np.diag(floor), enough)
-    fit = order_goodness_of_fit.call(problem, found.mean)
-    return replace(found, **fit._asdict())
-
-
-def _sampled(
-    model: Model,
-    readings: Readings,
-    density: Callable[[Values], Values],
-    centre: Values,
-    spread: Values,
-    worth: float,
-) -> Posterior:
-    """Return the posterior from rounds of points, each around what those before it have found."""
-    n, step = len(centre), ROUND if model.kind == DISC else WIDE_ROUND
-    table, rounds = _table(n, model.seed), MOST // step
-    points, logs_p = np.empty(table.shape), np.empty(len(table))
-    logs_q = np.full((rounds, len(table)), -math.inf)
-    weights, flat = np.empty(len(table)), np.empty(len(table))
-    mean, matrix, aim = np.empty(n), np.empty((n, n)), centre
-    proposals: list[tuple[Values, Values]] = []
-    evidence, equal, count = -math.inf, 0.0, 0
-    for turn in range(rounds):
-        proposals.append((aim.copy(), np.asarray(np.linalg.cholesky(spread), np.float64)))
-        now = slice(count, count + step)
-        points[now] = aim + table[now] @ proposals[-1][1].T
-        logs_p[now] = density(points[now])
-        count += step
-        for c, (middle, root) in enumerate(proposals):
-            here = slice(0 if c == turn else count - step, count)
-            logs_q[c, here] = _log_density(points[here] - middle, root)
-        shares = np.full(turn + 1, 1.0 / (turn + 1))
-        evidence, equal = weigh.call(logs_p, logs_q, shares, turn + 1, count, weights)
-        if equal <= 0.0:
-            raise Degenerate(f"{readings.touched} touched elements: no such outline explains them")
-        weighted_moments.call(points, weights, count, mean, matrix)
-        if equal >= worth:
-            break
-        temper.call(weights, count, FEWEST * n, flat)
-        aim, wide = np.empty(n), np.empty((n, n))
-        weighted_moments.call(points, flat, count, aim, wide)
-        spread = WIDER * wide + KEPT * spread
-    top = points[int(np.argmax(logs_p[:count]))].copy()
+    plan = Plan(model.table_of(first + 1), ROUND if model.kind == DISC else WIDE_ROUND, enough)
+    draws = no_draws.call(len(plan.table), first + 1)
+    count, evidence, equal = sample_by_order.call(
+        problem, middle, plan, centre, spread + np.diag(floor), draws
+    )
+    if equal <= 0.0:
+        raise Degenerate(f"{readings.touched} touched elements: no such outline explains them")
+    top = draws.points[int(np.argmax(draws.logs_p[:count]))].copy()
+    fit = order_goodness_of_fit.call(problem, draws.mean)
     return Posterior(
-        model.kind, model.corners, mean, matrix, points[:count], weights[:count], top, evidence,
-        equal, 0.0, 0.0,
+        model.kind, model.corners, draws.mean, draws.covariance, draws.points[:count],
+        draws.weights[:count], top, evidence, equal, *fit,
     )  # fmt: skip
 
 
-def _log_density(off: Values, root: Values) -> Values:
-    """Return the log density of Student's t with a covariance root, shape (N,)."""
-    n = len(root)
-    z = np.linalg.solve(root, off.T)
-    constant = math.lgamma(0.5 * (FREEDOM + n)) - math.lgamma(0.5 * FREEDOM)
-    constant -= 0.5 * n * math.log(FREEDOM * math.pi) + float(np.log(np.diag(root)).sum())
-    return np.asarray(constant - 0.5 * (FREEDOM + n) * np.log1p((z * z).sum(axis=0) / FREEDOM))
+@compiled_as_is
+def sample_by_order(
+    problem: OrderProblem, middle: float, plan: Plan, centre: Values, covariance: Values,
+    draws: Draws,
+) -> tuple[int, float, float]:  # fmt: skip
+    """Sample the posterior by touch and order in rounds, each around what those before have found.
 
+    Parameters
+    ----------
+    problem : OrderProblem
+    middle : float
+        Of the guess of t.
+    plan : Plan
+    centre, covariance : ndarray, shape (K,) and (K, K)
+        Of the first round's proposal.
+    draws : Draws
+        Written.
 
-@lru_cache(maxsize=16)
-def _table(n: int, seed: int) -> Values:
-    table = even_points(MOST, n, seed)
-    table.setflags(write=False)
-    return table
+    Returns
+    -------
+    (int, float, float)
+        As of `sample.importance_sample`.
+    """
+    n, block, most = centre.shape[0], plan.block, plan.table.shape[0]
+    proposals, wanted, aim = no_proposals(most // block, n, most), covariance, centre.copy()
+    count, evidence, equal = 0, -math.inf, 0.0
+    for turn in range(most // block):
+        if turn > 0:
+            wanted = next_covariance(draws, count, wanted, aim)
+        if not propose(proposals, turn, aim, wanted):
+            break
+        for i in range(count, count + block):
+            draw(proposals, turn, plan.table[i], draws.points[i])
+            p = draws.points[i]
+            here = log_prior(problem.kind, problem.corners, p, problem.prior)
+            if here > -math.inf:
+                off = (p[n - 1] - middle) / SPREAD
+                here += order_log_likelihood(problem, p) - 0.5 * off * off
+            draws.logs_p[i] = here
+        take_block(proposals, turn + 1, draws.points, 0, count, block)
+        count += block
+        shares = proposals.drawn / count
+        evidence, equal = weigh(
+            draws.logs_p, proposals.densities, shares, turn + 1, count, draws.weights
+        )
+        if equal <= 0.0 or equal >= plan.worth:
+            break
+    weighted_moments(draws.points, draws.weights, count, draws.mean, draws.covariance)
+    return count, log_evidence_of(proposals, evidence, n), equal

@@ -22,8 +22,8 @@ from tactile_graph_likelihood.geometry.oval import as_ellipse, to_oval
 
 LEFT, TOP, WIDTH, HEIGHT, SMALLEST, LARGEST, WHOLE, TURN, EXTRA = range(9)
 """Places in a prior vector: the pad's edges in cm; the range of half sizes and radii in cm; the
-probability that the outline must lie on the pad; the angle about which a period is looked at; a
-constant to add."""
+probability that the outline must lie on the pad; the angle about which a period is looked at, NaN
+where it may be any; a constant to add."""
 
 
 @compiled_as_is

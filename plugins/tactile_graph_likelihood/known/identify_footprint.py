@@ -26,7 +26,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     FIRST,
     AnyPressure,
     asked_by,
-    chances,
+    log_mean,
     log_of,
     mixed,
 )
@@ -141,10 +141,8 @@ class IdentifyFootprint:
             If nothing is touched, or nothing explains what is.
         """
         even = self._even
-        fits = FrameFits(readings_of(image, even.gap_cm, even.noise.least))
-        fits.add_even(self._free)
+        fits = FrameFits(readings_of(image, even.gap_cm, even.noise.least), self._free)
         before = {EVEN: 1.0}
-        fits.look_around(before)
         if not fits.found:
             raise Degenerate("no outline explains what is touched")
         log_weight = math.log(max(weight_of(image, self._level), 1e-300))
@@ -156,9 +154,7 @@ class IdentifyFootprint:
         # if none fits well, a known one may by another pressure
         known = [one for _, one in kept.values()] if first[1] is None else [first[2]]
         if asked := asked_by([*fits.found.values(), *known], self._others):
-            fits.add_others(self._free, asked)
-            fits.look_around(chances(dict.fromkeys(asked)))
-            before = chances({part: fits.likeliest(part) for part in asked})
+            before = fits.look_under(asked)
             self._look_at_known(fits, levels, before, kept)
         return _chosen(self._scored(fits, levels, before, kept))
 
@@ -171,7 +167,7 @@ class IdentifyFootprint:
 
     def _unknown(self, fits: FrameFits, before: dict[str, float]) -> float:
         logs = [fits.evidence(k, before) for k in range(len(self._free))]
-        return _log_mean(logs, len(logs)) + self._log_unknown
+        return log_mean(logs, len(logs)) + self._log_unknown
 
     def _look_at_known(
         self, fits: FrameFits, levels: list[float], before: dict[str, float], kept: Kept
@@ -212,7 +208,7 @@ class IdentifyFootprint:
     def _evidence(self, k: int, before: dict[str, float], kept: Kept) -> float:
         """Return an object's log evidence by its outlines, over all pressures."""
         logs = [log + log_of(before[key[2]]) for key, (log, _) in kept.items() if key[0] == k]
-        return _log_mean(logs, len(self._objects[k].outlines))
+        return log_mean(logs, len(self._objects[k].outlines))
 
     def _scored(
         self, fits: FrameFits, levels: list[float], before: dict[str, float], kept: Kept
@@ -240,13 +236,6 @@ def _start(fits: FrameFits, kind: int, known: KnownSizes) -> Values | None:
     longer_first = n == 1 or start[2] >= start[3]
     start[2 : 2 + n] = known.mean if longer_first else known.mean[::-1]
     return start
-
-
-def _log_mean(logs: list[float], count: int) -> float:
-    top = max(logs, default=-math.inf)
-    if top == -math.inf:
-        return top
-    return top + math.log(sum(math.exp(log - top) for log in logs) / count)
 
 
 def _chosen(found: list[tuple[float, KnownFootprint | None, Posterior]]) -> Identified:

@@ -1,16 +1,17 @@
 """What a large outline says, by its rim element by element and what it covers whole at once.
 
-Log likelihood, slopes and information, and goodness of fit, where a face is even and without foam.
+Log likelihood, slopes and information, where a face is even and without foam.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, covered, window
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.large_pads.covered_whole import (
     NODES,
@@ -25,26 +26,9 @@ from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
     ON,
-    ROOT_TWO_PI,
     SIGMA,
-    SQRT_HALF,
-    STRAYS,
     UNKNOWN,
-    VOIDS,
-    bare,
     terms,
-)
-from tactile_graph_likelihood.single.goodness_of_fit import (
-    SEEN,
-    SURE,
-    GoodnessOfFit,
-    dome,
-    goodness_of_fit,
-    moments_of_strays,
-    moments_of_term,
-    neighbours_alike,
-    standardised,
-    trend,
 )
 from tactile_graph_likelihood.single.information import (
     NO_SCORE,
@@ -63,49 +47,69 @@ from tactile_graph_likelihood.single.information import (
     without_load,
 )
 from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.problem import Problem
+from tactile_graph_likelihood.single.problem import Places, Problem
 
 SLACK = 2.0 * STEP  # of a pitch: no difference moves an edge further
 
 
+class Elements(NamedTuple):
+    """Elements that are looked at one by one, those of the rim first, row by row.
+
+    ``rows`` and ``columns`` are their places in the image; ``recorded`` says whether the record
+    stands for all others that an outline covers.
+    """
+
+    rows: Places
+    columns: Places
+    recorded: bool
+
+
+@compiled_as_is
+def elements_of(whole: CoveredWhole, load: float, sigma: float, box: Box, runs: Runs) -> Elements:
+    """Return the elements of an outline's rim, and those covered whole but not in the record.
+
+    All of these, where the outline does not cover some of the record's.
+    """
+    recorded = still_covered(whole, load, sigma, box, runs)
+    most = 0
+    for i in range(box[2]):
+        most += runs[i, 3] - runs[i, 0]
+    rows, columns, count = np.empty(most, np.int64), np.empty(most, np.int64), 0
+    for i in range(box[2]):
+        for part in range(2):
+            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
+                rows[count], columns[count] = box[0] + i, column
+                count += 1
+    for i in range(box[2]):
+        row, last = box[0] + i, runs[i, 2]
+        a, b = columns_covered(whole, row, last) if recorded else (last, last)
+        for part in range(2):
+            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
+                rows[count], columns[count] = row, column
+                count += 1
+    return Elements(rows[:count], columns[:count], recorded)
+
+
 @compiled_as_is
 def log_likelihood_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> float:
-    """Return what `log_posterior.log_likelihood` does, where a face is even and without foam.
-
-    Elements that are covered whole, but not in the record, are taken one by one; all of them, where
-    this outline does not cover some of the record's.
-    """
+    """Return what `log_posterior.log_likelihood` does, where a face is even and without foam."""
     kind, corners, grid = problem.kind, problem.corners, problem.grid
     rows, columns = problem.states.shape
     noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
     box = window(kind, corners, p, grid, rows, columns, 0.0)
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
-    numbers, xy = drawn_as(kind, corners, p)
-    runs = runs_of(numbers, xy, grid, box, 0.0)
-    known = still_covered(whole, load, noise[SIGMA], box, runs)
-    on_rim, beyond = rim_count(runs), 0
-    for i in range(box[2]):
-        beyond += runs[i, 2] - runs[i, 1]
-    share = np.empty((1, on_rim + beyond))
+    drawn = drawn_as(kind, corners, p)
+    runs = runs_of(drawn, grid, box, 0.0)
+    its = elements_of(whole, load, noise[SIGMA], box, runs)
+    share = np.ones((1, its.rows.shape[0]))
+    rim_shares(drawn, grid, box, runs, share[0, : rim_count(runs)])
     logs, states = np.empty(share.shape), np.empty(share.shape, problem.states.dtype)
-    rim_shares(numbers, xy, grid, box, runs, share[0, :on_rim])
-    at, more = 0, on_rim
-    for i in range(box[2]):
-        row, last = box[0] + i, runs[i, 2]
-        for part in range(2):
-            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
-                logs[0, at], states[0, at] = problem.logs[row, column], problem.states[row, column]
-                at += 1
-        a, b = columns_covered(whole, row, last) if known else (last, last)
-        for part in range(2):
-            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
-                share[0, more] = 1.0
-                logs[0, more] = problem.logs[row, column]
-                states[0, more] = problem.states[row, column]
-                more += 1
-    found = terms(share[:, :more], load, 0, 0, logs, states, noise)
-    return found + log_likelihood_of_covered(whole, load, noise) if known else found
+    for k in range(share.shape[1]):
+        logs[0, k] = problem.logs[its.rows[k], its.columns[k]]
+        states[0, k] = problem.states[its.rows[k], its.columns[k]]
+    found = terms(share, load, 0, 0, logs, states, noise)
+    return found + log_likelihood_of_covered(whole, load, noise) if its.recorded else found
 
 
 @compiled_as_is
@@ -113,45 +117,32 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
     """Write slope and information, where a face is even and without foam."""
     kind, corners, grid = problem.kind, problem.corners, problem.grid
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
-    noise = noise_at(problem, p)
+    noise, load = noise_at(problem, p), p[first]
     out.slope[:] = 0.0
     out.matrix[:] = 0.0
     box = window(kind, corners, p, grid, rows, columns, SLACK * grid[2])
     if box[2] <= 0 or box[3] <= 0:
         return
-    numbers, xy = drawn_as(kind, corners, p)
-    runs = runs_of(numbers, xy, grid, box, SLACK * grid[2])
+    runs = runs_of(drawn_as(kind, corners, p), grid, box, SLACK * grid[2])
     share, rise = _rises_on_rim(problem, p, box, runs)
-    scatter, at, total = scatter_of(noise), 0, NO_SCORE
-    along = np.zeros(p.shape[0])
+    its, on_rim = elements_of(whole, load, noise[SIGMA], box, runs), share.shape[0]
+    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(p.shape[0])
     along[first] = 1.0
-    for i in range(box[2]):
-        row = box[0] + i
-        for part in range(2):
-            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
-                state, its = problem.states[row, column], share[at]
-                at += 1
-                if its <= 0.0 or state == UNKNOWN:
-                    continue
-                for k in range(first):
-                    along[k] = rise[k, at - 1] / max(its, SLIVER)
-                log = noise[LEAST] if state == OFF else problem.logs[row, column]
-                score = score_of(state, log, math.log(its) + p[first], scatter)
-                add_outer(score, along, out)
-                total = summed(total, without_load(score), 1.0)
-    known = still_covered(whole, p[first], noise[SIGMA], box, runs)
-    for i in range(box[2]):
-        row, last = box[0] + i, runs[i, 2]
-        a, b = columns_covered(whole, row, last) if known else (last, last)
-        for part in range(2):
-            for column in range(runs[i, 1] if part == 0 else b, a if part == 0 else last):
-                state = problem.states[row, column]
-                if state == UNKNOWN:
-                    continue
-                log = noise[LEAST] if state == OFF else problem.logs[row, column]
-                total = summed(total, score_of(state, log, p[first], scatter), 1.0)
-    if known:
-        total = summed(total, _score_of_covered(whole, p[first], noise[LEAST], scatter), 1.0)
+    for k in range(its.rows.shape[0]):
+        row, column, part = its.rows[k], its.columns[k], share[k] if k < on_rim else 1.0
+        state = problem.states[row, column]
+        if part <= 0.0 or state == UNKNOWN:
+            continue
+        log = noise[LEAST] if state == OFF else problem.logs[row, column]
+        score = score_of(state, log, math.log(part) + load, scatter)
+        if k < on_rim:
+            for m in range(first):
+                along[m] = rise[m, k] / max(part, SLIVER)
+            add_outer(score, along, out)
+            score = without_load(score)
+        total = summed(total, score, 1.0)
+    if its.recorded:
+        total = summed(total, _score_of_covered(whole, load, noise[LEAST], scatter), 1.0)
     add_score(problem, total, out)
     mirror(out.matrix)
 
@@ -162,14 +153,12 @@ def _rises_on_rim(problem: Problem, p: Values, box: Box, runs: Runs) -> tuple[Va
     kind, corners, grid = problem.kind, problem.corners, problem.grid
     first, count = unknowns(kind, corners), rim_count(runs)
     share, rise = np.empty(count), np.empty((first, count))
-    numbers, xy = drawn_as(kind, corners, p)
-    rim_shares(numbers, xy, grid, box, runs, share)
+    rim_shares(drawn_as(kind, corners, p), grid, box, runs, share)
     steps, moved = steps_of(kind, corners, p, grid), p.copy()
     for k in range(first):
         moved[k] += steps[k]
-        numbers, xy = drawn_as(kind, corners, moved)
+        rim_shares(drawn_as(kind, corners, moved), grid, box, runs, rise[k])
         moved[k] = p[k]
-        rim_shares(numbers, xy, grid, box, runs, rise[k])
         for i in range(count):
             rise[k, i] = (rise[k, i] - share[i]) / steps[k]
     return share, rise
@@ -185,104 +174,3 @@ def _score_of_covered(whole: CoveredWhole, load: float, least: float, scatter: S
         on = score_of(ON, whole.readings[k], load, scatter)
         total = summed(total, on, whole.weights[k])
     return total
-
-
-@compiled_as_is
-def goodness_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> GoodnessOfFit:
-    """Return what `goodness_of_fit` does, where a face is even and without foam."""
-    rows, columns = problem.states.shape
-    box = window(problem.kind, problem.corners, p, problem.grid, rows, columns, 0.0)
-    if box[2] <= 0 or box[3] <= 0:
-        return goodness_of_fit(problem, p)
-    share = covered(problem.kind, problem.corners, p, problem.grid, box)
-    residuals, leaning = _residuals(problem, p, box, share)
-    lean, fall = trend(leaning, 0, 0, dome(share))
-    surprise = surprise_by_rim(problem, whole, p)
-    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)
-
-
-@compiled_as_is
-def _residuals(problem: Problem, p: Values, box: Box, share: Values) -> tuple[Values, Values]:
-    """Return a window's residuals, and the same freed of their bias from showing at all."""
-    noise, load = noise_at(problem, p), p[unknowns(problem.kind, problem.corners)]
-    residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
-    last, mu, z, tail, density = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(box[2]):
-        for j in range(box[3]):
-            its, row, column = share[i, j], box[0] + i, box[1] + j
-            if its <= 0.0 or problem.states[row, column] != ON:
-                continue
-            if its != last:
-                last, mu = its, math.log(its) + load
-                z = _level(mu, noise)
-                tail, density = _normal(z)
-            u = (problem.logs[row, column] - mu) / noise[SIGMA]
-            residuals[i, j] = u if z > SURE else 0.0
-            leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
-    return residuals, leaning
-
-
-@compiled_as_is
-def _level(mu: float, noise: Values) -> float:
-    """Return the deviations of ln gain by which an expected load exceeds the least."""
-    z: float = (mu - noise[LEAST]) / noise[SIGMA]
-    return min(max(z, -40.0), 40.0)
-
-
-@compiled_as_is
-def _normal(z: float) -> tuple[float, float]:
-    """Return the standard normal distribution and its density."""
-    return 0.5 * math.erfc(-SQRT_HALF * z), math.exp(-0.5 * z * z) / ROOT_TWO_PI
-
-
-@compiled_as_is
-def surprise_by_rim(problem: Problem, whole: CoveredWhole, p: Values) -> float:
-    """Return `goodness_of_fit`'s surprise, where a face is even and without foam.
-
-    The likelihood is relative to that of a bare pad, and all elements that are covered whole have
-    the same mean and variance of what they add.
-    """
-    kind, corners, grid, states = problem.kind, problem.corners, problem.grid, problem.states
-    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
-    rows, columns = states.shape
-    known, count, mean, variance = 0, 0, 0.0, 0.0
-    for i in range(rows):
-        for j in range(columns):
-            known += 1 if states[i, j] != UNKNOWN else 0
-    box = window(kind, corners, p, grid, rows, columns, 0.0)
-    numbers, xy = drawn_as(kind, corners, p)
-    runs = runs_of(numbers, xy, grid, box, 0.0)
-    share = np.empty(rim_count(runs))
-    rim_shares(numbers, xy, grid, box, runs, share)
-    at = 0
-    for i in range(box[2]):
-        row = box[0] + i
-        for part in range(2):
-            for column in range(runs[i, 2 * part], runs[i, 2 * part + 1]):
-                its = share[at]
-                at += 1
-                if its > 0.0 and states[row, column] != UNKNOWN:
-                    one, spread = _moments_at(math.log(its) + load, noise)
-                    mean += one
-                    variance += spread
-                    known -= 1
-        for column in range(runs[i, 1], runs[i, 2]):
-            count += 1 if states[row, column] != UNKNOWN else 0
-    one, spread = _moments_at(load, noise)
-    bare_mean, bare_spread = moments_of_strays(noise[STRAYS])
-    mean += count * one + (known - count) * bare_mean
-    variance += count * spread + (known - count) * bare_spread
-    got = log_likelihood_by_rim(problem, whole, p) + bare(states, noise)
-    surprise: float = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
-    return surprise
-
-
-@compiled_as_is
-def _moments_at(mu: float, noise: Values) -> tuple[float, float]:
-    """Return mean and variance of the term of an element that expects a load's logarithm."""
-    z = _level(mu, noise)
-    tail, density = _normal(z)
-    present, strays = 1.0 - noise[VOIDS], noise[STRAYS]
-    level = math.log((1.0 - strays) * present / (noise[SIGMA] * ROOT_TWO_PI))
-    _, one, spread = moments_of_term(z, tail, density, level, present, math.log(1.0 - strays))
-    return one, spread

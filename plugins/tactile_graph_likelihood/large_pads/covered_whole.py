@@ -141,15 +141,15 @@ def keep_current(problem: Problem, whole: CoveredWhole | None, p: Values) -> Non
 def _keep_current(problem: Problem, whole: CoveredWhole, p: Values) -> None:
     grid, (rows, columns) = problem.grid, problem.states.shape
     box = window(problem.kind, problem.corners, p, grid, rows, columns, 0.0)
-    numbers, xy = drawn_as(problem.kind, problem.corners, p)
+    drawn = drawn_as(problem.kind, problem.corners, p)
     load, sigma = p[unknowns(problem.kind, problem.corners)], noise_at(problem, p)[SIGMA]
-    wanted = runs_of(numbers, xy, grid, box, MARGIN * grid[2])
+    wanted = runs_of(drawn, grid, box, MARGIN * grid[2])
     count = 0
     for i in range(box[2]):
         count += wanted[i, 2] - wanted[i, 1]
     near = abs(load - whole.numbers[LOAD]) < 0.5 * FAR * whole.numbers[WIDTH]
     if near and ENOUGH * count <= whole.numbers[COUNT]:
-        runs = runs_of(numbers, xy, grid, box, KEPT * grid[2])
+        runs = runs_of(drawn, grid, box, KEPT * grid[2])
         if still_covered(whole, load, sigma, box, runs):
             return
     whole.first[0] = box[0]

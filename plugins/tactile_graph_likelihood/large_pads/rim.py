@@ -8,7 +8,7 @@ need geometry.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,18 +28,23 @@ ROUND_NUMBERS = 7
 SHORT = 0.1  # radians of an arc up to which its angle is a sum of powers of its sine
 
 
-@compiled_as_is
-def drawn_as(kind: int, corners: int, p: Values) -> tuple[Values, Values]:
-    """Return what a convex outline's chords follow from.
+class Drawn(NamedTuple):
+    """What a convex outline's chords follow from.
 
-    Returns
-    -------
-    (ndarray, ndarray)
-        Of a round one centre x and y, half width, half height, slant, root and stretch, shape
-        (7,), as in `coverage.ellipse`; of any other its corners, shape (N, 2). The other is empty.
+    Of a round one ``numbers``: centre x and y, half width, half height, slant, root and stretch,
+    shape (7,), as in `coverage.ellipse`; of any other its corners ``xy``, shape (N, 2). The other
+    is empty.
     """
+
+    numbers: Values
+    xy: Values
+
+
+@compiled_as_is
+def drawn_as(kind: int, corners: int, p: Values) -> Drawn:
+    """Return what an outline's chords follow from."""
     if kind not in (DISC, ELLIPSE, OVAL):
-        return np.empty(0), corners_of(kind, corners, p)
+        return Drawn(np.empty(0), corners_of(kind, corners, p))
     if kind == OVAL:
         p = as_ellipse(p)
     out = np.empty(ROUND_NUMBERS)
@@ -54,7 +59,7 @@ def drawn_as(kind: int, corners: int, p: Values) -> tuple[Values, Values]:
         out[4] = (p[2] - p[3]) * (p[2] + p[3]) * cos * sin / (wide * wide)
         out[5] = p[2] * p[3] / (wide * wide)
         out[6] = (wide / high) * (wide / high)
-    return out, np.empty((0, 2))
+    return Drawn(out, np.empty((0, 2)))
 
 
 @compiled_as_is
@@ -107,13 +112,12 @@ def _reach_of_polygon(xy: Values, top: float, bottom: float) -> tuple[float, flo
 
 
 @compiled_as_is
-def runs_of(numbers: Values, xy: Values, grid: Values, box: Box, slack: float) -> Runs:
+def runs_of(drawn: Drawn, grid: Values, box: Box, slack: float) -> Runs:
     """Return which elements of a window's rows an outline touches, and which it covers whole.
 
     Parameters
     ----------
-    numbers, xy
-        As `drawn_as` gives them.
+    drawn : Drawn
     grid, box
         As in `covered.covered`.
     slack : float
@@ -132,10 +136,10 @@ def runs_of(numbers: Values, xy: Values, grid: Values, box: Box, slack: float) -
     end = column + columns
     for i in range(rows):
         top = grid[1] + (row + i) * pitch
-        if xy.shape[0] == 0:
-            reach = _reach_of_round(numbers, top - slack, top + side + slack)
+        if drawn.xy.shape[0] == 0:
+            reach = _reach_of_round(drawn.numbers, top - slack, top + side + slack)
         else:
-            reach = _reach_of_polygon(xy, top - slack, top + side + slack)
+            reach = _reach_of_polygon(drawn.xy, top - slack, top + side + slack)
         first = last = a = b = column
         if reach[0] <= reach[1]:
             from_left = (reach[0] - slack - side - left) / pitch
@@ -164,15 +168,12 @@ def rim_count(runs: Runs) -> int:
 
 
 @compiled_as_is
-def rim_shares(
-    numbers: Values, xy: Values, grid: Values, box: Box, runs: Runs, shares: Values
-) -> None:
+def rim_shares(drawn: Drawn, grid: Values, box: Box, runs: Runs, shares: Values) -> None:
     """Write the share of each element of the rim that an outline covers, row by row.
 
     Parameters
     ----------
-    numbers, xy
-        The outline, as `drawn_as` gives it.
+    drawn : Drawn
     grid, box
         As in `covered.covered`.
     runs : ndarray of int64, shape (rows, 4)
@@ -180,10 +181,10 @@ def rim_shares(
     shares : ndarray, shape (N,)
         Written: 0 to 1, of each row's left part and then its right one.
     """
-    if xy.shape[0] == 0:
-        _round_areas(numbers, grid, box, runs, shares)
+    if drawn.xy.shape[0] == 0:
+        _round_areas(drawn.numbers, grid, box, runs, shares)
     else:
-        _polygon_areas(xy, grid, box, runs, shares)
+        _polygon_areas(drawn.xy, grid, box, runs, shares)
     whole = 1.0 / (grid[3] * grid[3])
     for k in range(shares.shape[0]):
         share = abs(shares[k]) * whole

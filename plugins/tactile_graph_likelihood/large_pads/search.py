@@ -8,12 +8,9 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
-from tactile_graph_likelihood.geometry.outline_prior import TURN
-from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
-from tactile_graph_likelihood.large_pads.by_rim import goodness_by_rim
+from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
-    covered_around,
     empty_for,
     keep_current,
     nothing_covered,
@@ -24,13 +21,10 @@ from tactile_graph_likelihood.single.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
-from tactile_graph_likelihood.single.problem import Problem, with_prior
+from tactile_graph_likelihood.single.problem import Problem, turned_as
 from tactile_graph_likelihood.single.search import (
-    ATTEMPTS,
-    POOR,
-    SAME,
+    NO_FIT,
     TRIES,
-    UNLIKELY,
     likeliest_start,
     outline_of_moments,
 )
@@ -49,8 +43,8 @@ def touched_beside(problem: Problem, p: Values) -> bool:
     """
     grid, (rows, columns) = problem.grid, problem.states.shape
     box = window(problem.kind, problem.corners, p, grid, rows, columns, grid[2])
-    numbers, xy = drawn_as(problem.kind, problem.corners, p)
-    near, wide = runs_of(numbers, xy, grid, box, 0.0), runs_of(numbers, xy, grid, box, grid[2])
+    drawn = drawn_as(problem.kind, problem.corners, p)
+    near, wide = runs_of(drawn, grid, box, 0.0), runs_of(drawn, grid, box, grid[2])
     known, on = 0, 0
     for i in range(box[2]):
         for column in range(wide[i, 0], wide[i, 3]):
@@ -102,7 +96,7 @@ def _start(
     Parameters
     ----------
     problem, start, table
-        As in `find_mode_on_large_pad`.
+        As in `search.attempted`.
     blocks : Blocks
     tries : int
         As in `likeliest_start`.
@@ -151,41 +145,21 @@ def _height(problem: Problem, p: Values) -> float:
 
 
 @compiled_as_is
-def fit_of(problem: Problem, p: Values) -> GoodnessOfFit:
-    """Return how well the image fits a large or small outline."""
-    whole = covered_around(problem, p)
-    if whole.runs.shape[0] == 0:
-        return goodness_of_fit(problem, p)
-    return goodness_by_rim(problem, whole, p)
-
-
-@compiled_as_is
-def find_mode_on_large_pad(
-    problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
-    height: float,
-) -> tuple[float, bool, GoodnessOfFit]:  # fmt: skip
-    """Return what `search.find_mode` does, of a pad of more than 1024 elements."""
-    n, fit = p.shape[0], GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
-    trial, its_root = np.zeros(n), np.zeros((n, n))
+def attempted_on_large_pad(
+    problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
+    root: Values,
+) -> tuple[float, GoodnessOfFit]:  # fmt: skip
+    """Do what `search.attempted` does, of a pad of more than 1024 elements."""
     blocks = coarsened(problem)
-    for attempt in range(first, last):
-        given, seen = start[:0], blocks
-        if attempt == 0:
-            piece = in_one_piece(blocks.problem)
-            given, seen = start, Blocks(piece, blocks.block, blocks.load, blocks.moments)
-        _start(problem, seen, given, table, attempt * TRIES, trial)
-        here = maximise_from_blocks(problem, blocks.block, trial, its_root)
-        again = attempt > 0 and abs(here - height) < SAME
-        if here > height:
-            height = here
-            p[:] = trial
-            for k in range(n):
-                root[k, :] = its_root[k]
-        if height > -math.inf:
-            fit = fit_of(problem, p)
-            if fit.surprise > POOR or (again and fit.surprise > UNLIKELY):
-                return height, False, fit
-    return height, last < ATTEMPTS, fit
+    given, seen = start[:0], blocks
+    if attempt == 0:
+        piece = in_one_piece(blocks.problem)
+        given, seen = start, Blocks(piece, blocks.block, blocks.load, blocks.moments)
+    _start(problem, seen, given, table, attempt * TRIES, p)
+    height = maximise_from_blocks(problem, blocks.block, p, root)
+    if height > least:
+        return height, goodness_of_fit(problem, p)
+    return height, NO_FIT
 
 
 @compiled_as_is
@@ -210,10 +184,7 @@ def settled(problem: Problem, p: Values, root: Values) -> float:
     if whole.runs.shape[0] == 0:
         return -math.inf
     height = maximise(problem, whole, p, root, SETTLED, math.inf)
-    prior, axes = problem.prior.copy(), np.zeros((n, n))
-    if period(problem.kind, problem.corners) > 0.0:
-        prior[TURN] = p[2 + sizes(problem.kind)]
-    near, trial = with_prior(problem, prior), np.empty(n)
+    near, axes, trial = turned_as(problem, p), np.zeros((n, n)), np.empty(n)
     for k in range(n):  # the columns of the inverse of the root's transpose
         axes[k, k] = 1.0 / root[k, k]
         for i in range(k - 1, -1, -1):

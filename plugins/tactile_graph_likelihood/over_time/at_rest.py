@@ -103,7 +103,7 @@ class AtRest:
         states = np.where(mostly, ON, OFF).astype(np.uint8)
         states[self._seen == 0.0] = UNKNOWN
         logs = np.where(mostly, self._means + self._change, 0.0)
-        return self._latest._replace(logs=logs, states=states, touched=int(mostly.sum()))
+        return self._latest._replace(logs=logs).with_states(states)
 
 
 def _below(z: Values) -> Values:

@@ -13,8 +13,8 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
-from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, TURN, log_prior
-from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, period, sizes, unknowns
+from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, log_prior
+from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     LEAST,
     OFF,
@@ -30,7 +30,7 @@ from tactile_graph_likelihood.single.information import (
     score_of,
     steps_of,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -90,17 +90,22 @@ class Coverage(NamedTuple):
 @compiled_as_is
 def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
     """Add what one of some outlines brings to each element to what the others do."""
+    lay(problem, outlines, k, 0, 0, problem.load, problem.share)
+
+
+@compiled_as_is
+def lay(
+    problem: JointProblem, outlines: Outlines, k: int, row: int, column: int, load: Values,
+    share: Values,
+) -> None:  # fmt: skip
+    """Add what one of some outlines brings to a load and a coverage that begin at an element."""
     kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
-    grid, noise, (rows, cols) = problem.grid, problem.noise, problem.load.shape
-    box = window(kind, corners, p, grid, rows, cols, foam_margin(grid, noise))
-    if box[2] <= 0 or box[3] <= 0:
-        return
-    own = shares_of(kind, corners, p, grid, noise, box, rows, cols)
-    scale = math.exp(p[unknowns(kind, corners)])
-    for i in range(box[2]):
-        for j in range(box[3]):
-            problem.load[box[0] + i, box[1] + j] += scale * own[i, j]
-            problem.share[box[0] + i, box[1] + j] += own[i, j]
+    box, own = shares_around(kind, corners, p, problem.grid, problem.noise, problem.load.shape)
+    scale, r, c = math.exp(p[unknowns(kind, corners)]), box[0] - row, box[1] - column
+    for i in range(own.shape[0]):
+        for j in range(own.shape[1]):
+            load[r + i, c + j] += scale * own[i, j]
+            share[r + i, c + j] += own[i, j]
 
 
 @compiled_as_is
@@ -130,59 +135,39 @@ def smallest(kind: int, corners: int, prior: Values) -> float:
 
 @compiled_as_is
 def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
-    """Return the log prior density of all outlines and their loads, -inf where it is zero.
-
-    The angle of each may be any, as that of one of its equal descriptions.
-    """
+    """Return the log prior density of all outlines and their loads, -inf where it is zero."""
     kinds, corners, points = outlines
     noise, prior = problem.noise, problem.prior
     total = 0.0
-    loose = prior.copy()
     for k in range(kinds.shape[0]):
         load = points[k, unknowns(kinds[k], corners[k])]
         if load < lightest(noise) or points[k, 2] < smallest(kinds[k], corners[k], prior):
             return -math.inf
         off = (load - prior[MIDDLE]) / prior[SPREAD]
         total -= 0.5 * (off * off + LN_TWO_PI) + math.log(prior[SPREAD])
-        if period(kinds[k], corners[k]) > 0.0:
-            loose[TURN] = points[k, 2 + sizes(kinds[k])]
-        total += log_prior(kinds[k], corners[k], points[k], loose)
+        total += log_prior(kinds[k], corners[k], points[k], prior)
     return total
 
 
 @compiled_as_is
 def gain(problem: JointProblem, outlines: Outlines) -> float:
     """Return what outlines add to the log likelihood of an image where others already lie."""
-    kinds, corners, points = outlines
     grid, logs, states, noise = problem.grid, problem.logs, problem.states, problem.noise
-    rows, cols = states.shape
-    margin = foam_margin(grid, noise)
+    (rows, cols), margin = states.shape, foam_margin(grid, noise)
     r0, c0, r1, c1 = rows, cols, 0, 0
-    for k in range(kinds.shape[0]):
-        box = window(kinds[k], corners[k], points[k], grid, rows, cols, margin)
+    for k in range(outlines.kinds.shape[0]):
+        kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
+        box = window(kind, corners, p, grid, rows, cols, margin)
         if box[2] > 0 and box[3] > 0:
             r0, c0 = min(r0, box[0]), min(c0, box[1])
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
     if r1 <= r0 or c1 <= c0:
         return 0.0
-    expected, total = np.empty((r1 - r0, c1 - c0)), np.empty((r1 - r0, c1 - c0))
-    for i in range(r1 - r0):
-        for j in range(c1 - c0):
-            expected[i, j] = problem.load[r0 + i, c0 + j]
-            total[i, j] = problem.share[r0 + i, c0 + j]
-    before = terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total)
-    for k in range(kinds.shape[0]):
-        kind, n = kinds[k], corners[k]
-        box = window(kind, n, points[k], grid, rows, cols, margin)
-        if box[2] <= 0 or box[3] <= 0:
-            continue
-        own = shares_of(kind, n, points[k], grid, noise, box, rows, cols)
-        scale = math.exp(points[k, unknowns(kind, n)])
-        for i in range(box[2]):
-            for j in range(box[3]):
-                expected[box[0] - r0 + i, box[1] - c0 + j] += scale * own[i, j]
-                total[box[0] - r0 + i, box[1] - c0 + j] += own[i, j]
-    return terms(expected, 0.0, r0, c0, logs, states, noise) - overlap(total) - before
+    load, share = problem.load[r0:r1, c0:c1].copy(), problem.share[r0:r1, c0:c1].copy()
+    before = terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share)
+    for k in range(outlines.kinds.shape[0]):
+        lay(problem, outlines, k, r0, c0, load, share)
+    return terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share) - before
 
 
 @compiled_as_is

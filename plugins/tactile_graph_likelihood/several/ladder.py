@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.partings import across, components, partings, sketch_of
+from tactile_graph_likelihood.several.partings import across, partings, sketch_of
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches

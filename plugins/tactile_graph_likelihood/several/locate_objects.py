@@ -119,10 +119,9 @@ class LocateObjects:
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
         uneven = math.sqrt(FEW_ELEMENTS) * told.sigma * pitch**1.5
-        shapes = [on_any_pad(part, part.log_evidence, wide, uneven) for part in parts]
-        if readings.stretch != 1.0:
-            top = float(readings.grid[1])
-            shapes = [stretched(shape, top, readings.stretch) for shape in shapes]
+        shapes = [
+            stretched(on_any_pad(part, part.log_evidence, wide, uneven), readings) for part in parts
+        ]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),

@@ -22,15 +22,13 @@ from tactile_graph_likelihood.several.joint_posterior import (
     slopes,
     smallest,
 )
-from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.information import STEP, Information, steps_of
+from tactile_graph_likelihood.single.maximise import soft_and_strict
 
 HALVINGS = 6
 LOOSE, GAP = 0.01, 6.0
 """Information, per squared pitch, that is added to each number's own: to keep steps finite;
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
-SOFT = 0.05  # share of its load that an element takes from its surroundings in the soft search
-NO_STRAYS = 1e-12
 POSTERIOR = -1
 """Rounds of a climb that is none: only the log posterior is asked for."""
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
@@ -131,13 +129,8 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
 
 @compiled_as_is
 def softened(problem: JointProblem) -> JointProblem:
-    """Return a problem whose elements feel a little beyond their edge, and that knows no strays.
-
-    Otherwise a touched element that no outline covers would not pull at all.
-    """
-    soft, strict = problem.grid.copy(), problem.noise.copy()
-    soft[4], soft[5] = SOFT, problem.grid[2]
-    strict[STRAYS] = NO_STRAYS
+    """Return a problem whose elements feel a little beyond their edge, and that knows no strays."""
+    soft, strict = soft_and_strict(problem.grid, problem.noise)
     return JointProblem(
         soft, problem.logs, problem.states, strict, problem.prior, problem.load, problem.share
     )

@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
+from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
@@ -19,7 +20,6 @@ from tactile_graph_likelihood.several.joint_posterior import (
     add_outline,
 )
 from tactile_graph_likelihood.several.ladder import LEAST_PIECE
-from tactile_graph_likelihood.several.partings import components
 from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
@@ -93,7 +93,7 @@ class Expected:
         states = np.where(states == OVER, ON, states).astype(np.uint8)
         prior = np.zeros(11)
         prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_cm
-        prior[6] = self.whole
+        prior[6:8] = self.whole, math.nan
         prior[9:] = float(np.median(logs[states == ON])) + LIGHT_EDGE, LOADS
         bare = np.zeros(states.shape)
         return JointProblem(grid, logs, states, noise, prior, bare, bare)

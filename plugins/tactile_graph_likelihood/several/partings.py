@@ -203,30 +203,3 @@ def _same(one: Values, other: Values, far: float) -> bool:
             straight = max(straight, abs(one[k, m] - other[k, m]))
             crossed = max(crossed, abs(one[k, m] - other[1 - k, m]))
     return min(straight, crossed) < far
-
-
-@compiled_as_is
-def components(on: NDArray[np.bool_], reach: int) -> Places:
-    """Return a label from 1 for each set of touched elements no more than ``reach`` apart."""
-    rows, cols = on.shape
-    labels = np.zeros((rows, cols), np.int64)
-    todo = np.empty((rows * cols, 2), np.int64)
-    count = 0
-    for i in range(rows):
-        for j in range(cols):
-            if not on[i, j] or labels[i, j] > 0:
-                continue
-            count += 1
-            labels[i, j] = count
-            todo[0, 0], todo[0, 1] = i, j
-            left = 1
-            while left > 0:
-                left -= 1
-                r, c = todo[left, 0], todo[left, 1]
-                for y in range(max(r - reach, 0), min(r + reach + 1, rows)):
-                    for x in range(max(c - reach, 0), min(c + reach + 1, cols)):
-                        if on[y, x] and labels[y, x] == 0:
-                            labels[y, x] = count
-                            todo[left, 0], todo[left, 1] = y, x
-                            left += 1
-    return labels

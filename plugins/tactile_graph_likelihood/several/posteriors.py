@@ -15,24 +15,7 @@ from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
 from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of
 from tactile_graph_likelihood.several.search import Search
-from tactile_graph_likelihood.single.element_terms import (
-    LEAST,
-    ON,
-    ROOT_TWO_PI,
-    SIGMA,
-    SPAN,
-    SQRT_HALF,
-    STRAYS,
-    UNDER,
-    UNKNOWN,
-    VOIDS,
-)
-from tactile_graph_likelihood.single.goodness_of_fit import (
-    DENSITY,
-    SURE,
-    moments_of_strays,
-    moments_of_term,
-)
+from tactile_graph_likelihood.single.goodness_of_fit import neighbours_of, unexplained
 from tactile_graph_likelihood.single.posterior import Posterior
 
 NEGLIGIBLE = 0.02
@@ -50,7 +33,7 @@ class GoodnessOfLoad(NamedTuple):
 
 
 @compiled_as_is
-def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
+def goodness_of_load(problem: JointProblem, fitted: int) -> GoodnessOfLoad:
     """Return how surprising an image is, and how much neighbours' gains are alike.
 
     Parameters
@@ -62,49 +45,14 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> tuple[float, float]:
 
     Returns
     -------
-    (float, float)
+    GoodnessOfLoad
         As of `goodness_of_fit`, but of the patterns only how alike neighbours are, not over the
         residuals' own variance.
     """
-    expected, logs, states, noise = problem.load, problem.logs, problem.states, problem.noise
-    rows, cols = states.shape
-    sigma, present, strays = noise[SIGMA], 1.0 - noise[VOIDS], noise[STRAYS]
-    level = math.log((1.0 - strays) * present / (sigma * ROOT_TWO_PI))
-    stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
-    mean_bare, var_bare = moments_of_strays(strays)
-    got = mean = variance = pairs = product = 0.0
-    residuals = np.zeros((rows + 1, cols + 1))
-    for i in range(rows):
-        for j in range(cols):
-            on = states[i, j] == ON
-            if states[i, j] == UNKNOWN:
-                continue
-            if expected[i, j] <= 0.0:
-                got += stray if on else bare
-                mean += mean_bare
-                variance += var_bare
-                continue
-            mu = math.log(expected[i, j])
-            least = logs[i, j] if states[i, j] == UNDER else noise[LEAST]
-            z = min(max((mu - least) / sigma, -40.0), 40.0)
-            tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-            off, one, spread = moments_of_term(z, tail, density, level, present, bare)
-            if on:
-                u = (logs[i, j] - mu) / sigma
-                got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
-                residuals[i, j] = u if z > SURE else 0.0
-            else:
-                got += off
-            mean += one
-            variance += spread
-    for i in range(rows):
-        for j in range(cols):
-            for other in (residuals[i + 1, j], residuals[i, j + 1]):
-                if residuals[i, j] != 0.0 and other != 0.0:
-                    pairs += 1.0
-                    product += residuals[i, j] * other
-    alike = product / math.sqrt(pairs) if pairs > 0.0 else 0.0
-    return (got - 0.5 * fitted - mean) / math.sqrt(variance), alike
+    left = unexplained(problem.load, 0.0, 0, 0, problem.logs, problem.states, problem.noise, fitted)
+    its = neighbours_of(left.residuals)
+    alike = its.product / math.sqrt(its.n_pairs) if its.n_pairs > 0.0 else 0.0
+    return GoodnessOfLoad(left.surprise, alike)
 
 
 def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], GoodnessOfLoad]:
@@ -119,7 +67,7 @@ def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], Go
         ),
         0.0,
     )
-    fit = GoodnessOfLoad(*goodness_of_load.call(laid(problem, together), sum(counts)))
+    fit = goodness_of_load.call(laid(problem, together), sum(counts))
     return [replace(one, surprise=fit.surprise, neighbours=fit.neighbours) for one in every], fit
 
 

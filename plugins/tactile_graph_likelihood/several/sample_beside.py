@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
 from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
@@ -19,16 +18,17 @@ from tactile_graph_likelihood.several.joint_posterior import (
     gain,
     log_rest_of,
 )
-from tactile_graph_likelihood.single.importance import (
-    FEWEST,
-    FREEDOM,
-    KEPT,
-    WIDER,
-    temper,
-    weigh,
-    weighted_moments,
+from tactile_graph_likelihood.single.importance import weigh
+from tactile_graph_likelihood.single.sample import (
+    Draws,
+    Plan,
+    draw,
+    log_evidence_of,
+    next_covariance,
+    no_proposals,
+    propose,
+    take_block,
 )
-from tactile_graph_likelihood.single.sample import Plan
 
 PROPOSALS = 4
 FIRST = 2.0  # the first proposal's variance, over the inverse information
@@ -58,58 +58,37 @@ def sample_beside(
     (int, float, float)
         Points used, log evidence, number of equal weights.
     """
-    table, block, worth = plan
     kinds, corners, n = outline.kinds, outline.corners, covariance.shape[0]
-    centre = outline.points[0, :n].copy()
-    most = table.shape[0]
+    (table, block, worth), most = plan, plan.table.shape[0]
     turn = 2 + sizes(kinds[0]) if period(kinds[0], corners[0]) > 0.0 else -1
-    half = 0.5 * period(kinds[0], corners[0])
-    off, work = np.empty(n), np.empty(n)
-    centres, roots = np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n))
-    levels, drawn = np.empty(PROPOSALS), np.zeros(PROPOSALS)
-    logs_q, logs_p = np.empty((PROPOSALS, most)), np.empty(most)
-    constant = math.lgamma(0.5 * (FREEDOM + n)) - math.lgamma(0.5 * FREEDOM)
-    constant -= 0.5 * n * math.log(FREEDOM * math.pi)
-    proposal, spread = FIRST * covariance, np.empty((n, n))
-    aim, tempered, trial = centre.copy(), np.empty(most), np.zeros((1, WIDTH))
+    half, angle = 0.5 * period(kinds[0], corners[0]), outline.points[0, turn]
+    proposals = no_proposals(PROPOSALS, n, most)
+    draws = Draws(points, np.empty(most), weights, np.empty(n), np.empty((n, n)))
+    centre, wanted, trial = outline.points[0, :n].copy(), FIRST * covariance, np.zeros((1, WIDTH))
     tried = Outlines(kinds, corners, trial)
-    count, proposals, evidence, equal = 0, 0, -math.inf, 0.0
+    count, made, evidence, equal = 0, 0, -math.inf, 0.0
     while count + block <= most:
-        if proposals < PROPOSALS:
-            if not cholesky(proposal, roots[proposals]):
+        before = count
+        if made < PROPOSALS:
+            if made > 0:
+                wanted = next_covariance(draws, count, covariance, centre)
+            if not propose(proposals, made, centre, wanted):
                 break
-            levels[proposals] = constant
-            for k in range(n):
-                centres[proposals, k] = aim[k]
-                levels[proposals] -= math.log(roots[proposals, k, k])
-            proposals += 1
-        now = proposals - 1
+            made, before = made + 1, 0
         for i in range(count, count + block):
+            draw(proposals, made - 1, table[i], points[i])
             for k in range(n):
-                points[i, k] = centres[now, k]
-                for m in range(k + 1):
-                    points[i, k] += roots[now, k, m] * table[i, m]
                 trial[0, k] = points[i, k]
             here = -math.inf
-            if turn < 0 or abs(points[i, turn] - centre[turn]) <= half:
+            if turn < 0 or abs(points[i, turn] - angle) <= half:
                 here = log_rest_of(problem, tried)
             if here > -math.inf:
                 here += gain(problem, tried)
-            logs_p[i] = here
-        drawn[now] += block
+            draws.logs_p[i] = here
+        take_block(proposals, made, points, before, count, block)
         count += block
-        for c in range(proposals):
-            for i in range(count):
-                for k in range(n):
-                    off[k] = points[i, k] - centres[c, k]
-                far = squared_length(roots[c], off, work)
-                logs_q[c, i] = levels[c] - 0.5 * (FREEDOM + n) * math.log1p(far / FREEDOM)
-        evidence, equal = weigh(logs_p, logs_q, drawn / count, proposals, count, weights)
+        shares = proposals.drawn / count
+        evidence, equal = weigh(draws.logs_p, proposals.densities, shares, made, count, weights)
         if equal <= 0.0 or (equal >= worth and count >= 2 * block):
             break
-        temper(weights, count, FEWEST * n, tempered)
-        weighted_moments(points, tempered, count, aim, spread)
-        for k in range(n):
-            for m in range(n):
-                proposal[k, m] = WIDER * spread[k, m] + KEPT * covariance[k, m]
-    return count, evidence, equal
+    return count, log_evidence_of(proposals, evidence, n), equal

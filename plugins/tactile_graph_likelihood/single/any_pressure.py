@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,11 +31,17 @@ SHARED, SPREAD = 5.0, 2.0
 """Mean and deviation, where there is foam, of how alike neighbours' residuals are: it shares their
 gains, which no outline explains. Without foam they are 0 and 1."""
 
-LOOK = 1.5
-"""Lean and fall of the residuals, in standard deviations, from which on a fit is worth its time."""
 
-ALIKE = 2.5
-"""How alike neighbours are, from which on foam is worth a look."""
+class Pattern(NamedTuple):
+    """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
+
+    lean: float
+    fall: float
+    alike: float
+
+
+CLEAR = Pattern(1.5, 1.5, 2.5)
+"""From which on a lean or a fall, and foam where neighbours are alike, are worth a fit's time."""
 
 HOPELESS = 2.0
 """Nats by which the evidence of a rough fit may fall behind an even face's and still be looked at:
@@ -118,20 +125,24 @@ class AnyPressure:
         return begin
 
 
-def asked_by(evens: Iterable[Posterior], others: Iterable[str]) -> list[str]:
-    """Return which pressures explain what even faces leave over, where any does.
+def asked_by(
+    evens: Iterable[Posterior | GoodnessOfFit], others: Iterable[str], least: Pattern = CLEAR
+) -> list[str]:
+    """Return which pressures may explain what even faces leave over, where any does.
 
     Parameters
     ----------
-    evens : iterable of Posterior
+    evens : iterable of Posterior or GoodnessOfFit
         Those of a frame that may be true: one that leaves a pattern is enough.
     others : iterable of str
         The pressures there are models of.
+    least : Pattern
+        From which on it is one.
     """
     evens = list(evens)
-    lean = max((its.lean for its in evens), default=-math.inf) >= LOOK
-    fall = max((its.fall for its in evens), default=-math.inf) >= LOOK
-    alike = max((its.neighbours for its in evens), default=-math.inf) >= ALIKE
+    lean = any(its.lean >= least.lean for its in evens)
+    fall = any(its.fall >= least.fall for its in evens)
+    alike = any(its.neighbours >= least.alike for its in evens)
     asked = {"lean": lean, "fall": fall, "foam": fall or alike}
     return [part for part in others if asked[part]]
 
@@ -202,3 +213,19 @@ def _turned_to(best: Posterior, one: Posterior, n: int) -> Values:
 def log_of(chance: float) -> float:
     """Return a probability's logarithm, no less than that of the least number."""
     return math.log(max(chance, 1e-300))
+
+
+def log_mean(logs: Sequence[float], count: int) -> float:
+    """Return the logarithm of the mean of so many numbers, some of whose logarithms are given."""
+    top = max(logs, default=-math.inf)
+    if top == -math.inf:
+        return top
+    return top + math.log(sum(math.exp(log - top) for log in logs) / count)
+
+
+def shares_by(logs: Mapping[str, float]) -> dict[str, float]:
+    """Return probabilities whose logarithms, up to a constant, are given."""
+    top = max(logs.values())
+    weights = {name: math.exp(log - top) for name, log in logs.items()}
+    total = sum(weights.values())
+    return {name: weight / total for name, weight in weights.items()}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Literal, NamedTuple
 
 from annotated_types import Len
@@ -11,7 +10,13 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps import Spread
 from tactile_graph_likelihood.geometry.outlines import REGULAR
 from tactile_graph_likelihood.settings import ROUGHER, FootprintSettings, Load
-from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, asked_by, chances
+from tactile_graph_likelihood.single.any_pressure import (
+    EVEN,
+    AnyPressure,
+    asked_by,
+    log_mean,
+    shares_by,
+)
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
@@ -85,14 +90,10 @@ class ChooseShape:
         """
         outlines = [outline for _, outline in self._outlines]
         first = outlines[0].even
-        fits = FrameFits(readings_of(image, first.gap_cm, first.noise.least))
-        fits.add_even(outlines)
+        fits = FrameFits(readings_of(image, first.gap_cm, first.noise.least), outlines)
         before = {EVEN: 1.0}
-        fits.look_around(before)
         if asked := asked_by(fits.found.values(), self._others):
-            fits.add_others(outlines, asked)
-            fits.look_around(chances(dict.fromkeys(asked)))
-            before = chances({part: fits.likeliest(part) for part in asked})
+            before = fits.look_under(asked)
         if not fits.found:
             raise Degenerate(fits.reason)
         return self._chosen(fits, before)
@@ -100,27 +101,12 @@ class ChooseShape:
     def _chosen(self, fits: FrameFits, before: dict[str, float]) -> Chosen:
         logs = [fits.evidence(k, before) for k in range(len(self._outlines))]
         names = [name for name, _ in self._outlines]
-        evidence = {
-            name: _log_mean([log for log, its in zip(logs, names, strict=True) if its == name])
-            for name in dict.fromkeys(names)
-        }
-        likeliest = max(evidence.values())
-        weights = {name: math.exp(log - likeliest) for name, log in evidence.items()}
-        total = sum(weights.values())
-        shares = dict.fromkeys(Chosen._fields[3:], 0.0)
-        shares |= {n: w / total for n, w in weights.items()}
+        evidence: dict[str, float] = {}
+        for name in dict.fromkeys(names):
+            its = [log for log, owner in zip(logs, names, strict=True) if owner == name]
+            evidence[name] = log_mean(its, len(its))
+        shares = dict.fromkeys(Chosen._fields[3:], 0.0) | shares_by(evidence)
         seen = {k for k, _ in fits.found}
         best = max(dict.fromkeys(names[k] for k in sorted(seen)), key=lambda name: evidence[name])
         shape = max((k for k in sorted(seen) if names[k] == best), key=logs.__getitem__)
-        return Chosen(
-            likely(fits.posterior(shape, before)), best, shares[best],
-            shares["disc"], shares["ellipse"], shares["rectangle"], shares["polygon"],
-        )  # fmt: skip
-
-
-def _log_mean(logs: list[float]) -> float:
-    """Return the logarithm of the mean of numbers whose logarithms are given."""
-    top = max(logs)
-    if top == -math.inf:
-        return top
-    return top + math.log(sum(math.exp(log - top) for log in logs) / len(logs))
+        return Chosen(likely(fits.posterior(shape, before)), best, shares[best], **shares)

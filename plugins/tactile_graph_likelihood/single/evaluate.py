@@ -10,12 +10,10 @@ from __future__ import annotations
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.by_rim import (
-    goodness_by_rim,
     information_by_rim,
     log_likelihood_by_rim,
 )
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.information import Information, information
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.problem import Problem
@@ -43,13 +41,3 @@ def information_at(
         information(problem, p, out)
     else:
         information_by_rim(problem, whole, p, out)
-
-
-@compiled_as_is
-def goodness_at(problem: Problem, whole: CoveredWhole | None, p: Values) -> GoodnessOfFit:
-    """Return how well an image fits an outline."""
-    if whole is None:
-        return goodness_of_fit(problem, p)
-    if whole.runs.shape[0] == 0:
-        return goodness_of_fit(problem, p)
-    return goodness_by_rim(problem, whole, p)

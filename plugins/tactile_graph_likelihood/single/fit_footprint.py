@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 
 from tactile_graph.steps import Spread
-from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, FREE, RECTANGLE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Load
 from tactile_graph_likelihood.single.likely import Likely, likely
@@ -63,25 +62,19 @@ class FitFootprint:
         self.model = settings.model(kind, sides)
         self.posterior = settings.asked_model(kind, sides).posterior
 
-    def __call__(
-        self, image: Load, start: Circle | Ellipse | Rectangle | Polygon | None = None
-    ) -> Likely:
+    def __call__(self, image: Load) -> Likely:
         """Return the outline.
 
         Parameters
         ----------
         image : Image
             Loads; invalid cells say nothing.
-        start : Circle, Ellipse, Rectangle or Polygon, optional
-            Where to begin, of the same shape; the touched elements' moments otherwise.
 
         Raises
         ------
-        ValueError
-            If ``start`` is of another shape.
         RuleError
             If the image's cells are not square.
         Degenerate
             If nothing is touched, or no such outline on the pad explains what is.
         """
-        return likely(self.posterior(image, start))
+        return likely(self.posterior(image))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated
 
 from tactile_graph.steps import Spread
-from tactile_graph.wires import Circle, Ellipse, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Load
 from tactile_graph_likelihood.single.likely import (
@@ -37,22 +36,20 @@ class FootprintDisc(Footprint):
 
     _kind = DISC
 
-    def __call__(self, image: Load, start: Circle | None = None) -> LikelyCircle:
+    def __call__(self, image: Load) -> LikelyCircle:
         """Return the disc.
 
         Parameters
         ----------
         image : Image
             Loads; invalid cells say nothing.
-        start : Circle, optional
-            Where to begin; the touched elements' moments otherwise.
 
         Raises
         ------
         Degenerate
             If nothing is touched, or no disc on the pad explains what is.
         """
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyCircle)
         return found
 
@@ -62,9 +59,9 @@ class FootprintRectangle(Footprint):
 
     _kind = RECTANGLE
 
-    def __call__(self, image: Load, start: Rectangle | None = None) -> LikelyRectangle:
+    def __call__(self, image: Load) -> LikelyRectangle:
         """Return the rectangle; parameters and errors as for a disc."""
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyRectangle)
         return found
 
@@ -74,8 +71,8 @@ class FootprintEllipse(Footprint):
 
     _kind = ELLIPSE
 
-    def __call__(self, image: Load, start: Ellipse | None = None) -> LikelyEllipse:
+    def __call__(self, image: Load) -> LikelyEllipse:
         """Return the ellipse; parameters and errors as for a disc."""
-        found = likely(self.posterior(image, start))
+        found = likely(self.posterior(image))
         assert isinstance(found, LikelyEllipse)
         return found

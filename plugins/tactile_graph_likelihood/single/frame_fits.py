@@ -10,8 +10,14 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values
 from tactile_graph_likelihood.geometry.oval import as_ellipse
-from tactile_graph_likelihood.single.any_pressure import EVEN, AnyPressure, log_of, mixed
-from tactile_graph_likelihood.single.model import Likeliest, Model
+from tactile_graph_likelihood.single.any_pressure import (
+    EVEN,
+    AnyPressure,
+    chances,
+    log_of,
+    mixed,
+)
+from tactile_graph_likelihood.single.model import MORE, Likeliest, Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -32,6 +38,8 @@ class FrameFits:
     Parameters
     ----------
     readings : Readings
+    outlines : sequence of AnyPressure
+        Looked at with an even face at once.
 
     Attributes
     ----------
@@ -42,32 +50,36 @@ class FrameFits:
         Why there is no posterior, where there is none.
     """
 
-    def __init__(self, readings: Readings) -> None:
-        self.readings = readings
+    def __init__(self, readings: Readings, outlines: Sequence[AnyPressure]) -> None:
+        self.readings, self.outlines = readings, outlines
         self.logs: dict[Key, float] = {}
         self.found: dict[Key, Posterior] = {}
         self.reason = "none of the shapes explains what is touched"
         self._fits: dict[Key, tuple[Model, Likeliest]] = {}
+        self._add_even()
+        self._look_around({EVEN: 1.0})
 
-    def add_even(self, outlines: Sequence[AnyPressure]) -> None:
+    def _add_even(self) -> None:
         """Add the most likely point of each outline with an even face."""
-        tops = [outline.even.likeliest(self.readings) for outline in outlines]
+        tops = [outline.even.likeliest(self.readings) for outline in self.outlines]
         likeliest = max(top.evidence for top in tops)
-        for k, outline in enumerate(outlines):
+        for k, outline in enumerate(self.outlines):
             if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
-                tops[k] = outline.even.likeliest(self.readings, tops[k])
+                tops[k] = outline.even.likeliest(self.readings, tops[k], attempts=MORE)
             self._add((k, EVEN), outline.even, tops[k])
 
-    def add_others(self, outlines: Sequence[AnyPressure], asked: Sequence[str]) -> None:
-        """Add those of the likely ones under other pressures."""
+    def look_under(self, asked: Sequence[str]) -> dict[str, float]:
+        """Look at the likely ones under other pressures; return each's probability beforehand."""
         likeliest = max(self.logs.values())
-        for k, outline in enumerate(outlines):
+        for k, outline in enumerate(self.outlines):
             if self.logs[k, EVEN] < likeliest - HOPELESS:
                 continue
             for part in asked:
                 begin = outline.begin(part, self.point((k, EVEN)))
                 model = outline.others[part]
                 self._add((k, part), model, model.likeliest(self.readings, start=begin))
+        self._look_around(chances(dict.fromkeys(asked)))
+        return chances({part: self.likeliest(part) for part in asked})
 
     def _add(self, key: Key, model: Model, top: Likeliest) -> None:
         self._fits[key] = model, top
@@ -80,7 +92,7 @@ class FrameFits:
         model, top = self._fits[key]
         return as_ellipse.call(top.mode.p) if model.kind == ELLIPSE else top.mode.p
 
-    def look_around(self, before: Mapping[str, float]) -> None:
+    def _look_around(self, before: Mapping[str, float]) -> None:
         """Find the posteriors of the likely fits, given the probabilities of pressures."""
         scores = {key: log + log_of(before[key[1]]) for key, log in self.logs.items()}
         for key in sorted(scores, key=scores.__getitem__, reverse=True):

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -24,8 +23,9 @@ from tactile_graph_likelihood.single.element_terms import (
     UNDER,
     UNKNOWN,
     VOIDS,
+    States,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
@@ -92,9 +92,18 @@ def moments_of_term(
     return off, one, two + none * off * off - one * one
 
 
+class Neighbours(NamedTuple):
+    """Sums over pairs of neighbours' residuals, and over residuals."""
+
+    n_pairs: float
+    product: float
+    n_residuals: float
+    squares: float
+
+
 @compiled_as_is
-def neighbours_alike(residuals: Values) -> float:
-    """Return the correlation of neighbours' residuals, in its standard deviations.
+def neighbours_of(residuals: Values) -> Neighbours:
+    """Return what neighbours' residuals sum up to.
 
     Parameters
     ----------
@@ -116,6 +125,13 @@ def neighbours_alike(residuals: Values) -> float:
             if j + 1 < columns and residuals[i, j + 1] != 0.0:
                 pairs += 1.0
                 product += here * residuals[i, j + 1]
+    return Neighbours(pairs, product, count, squares)
+
+
+@compiled_as_is
+def neighbours_alike(residuals: Values) -> float:
+    """Return the correlation of neighbours' residuals, in its standard deviations."""
+    pairs, product, count, squares = neighbours_of(residuals)
     return product * count / (math.sqrt(pairs) * squares) if pairs > 0.0 else 0.0
 
 
@@ -161,16 +177,14 @@ def dome(share: Values) -> Values:
 
 
 @compiled_as_is
-def trend(residuals: Values, row: int, column: int, domes: Values) -> tuple[float, float]:
+def trend(residuals: Values, domes: Values) -> tuple[float, float]:
     """Return how much residuals lean to a side, and fall to the rim, in standard deviations.
 
     Parameters
     ----------
-    residuals : ndarray, shape (all rows, all columns)
+    residuals : ndarray, shape (rows, columns)
         Of mean 0 and equal variance under the model; 0 where there is none.
-    row, column : int
-        Where the window of ``domes`` begins.
-    domes : ndarray, shape (rows, columns)
+    domes : ndarray, the same shape
         As `dome` gives it.
 
     Notes
@@ -186,7 +200,7 @@ def trend(residuals: Values, row: int, column: int, domes: Values) -> tuple[floa
     for turn in range(2):
         for i in range(domes.shape[0]):
             for j in range(domes.shape[1]):
-                here = residuals[row + i, column + j]
+                here = residuals[i, j]
                 if here == 0.0:
                     continue
                 values[0], values[1], values[2], values[3] = i, j, domes[i, j], here
@@ -214,49 +228,79 @@ def trend(residuals: Values, row: int, column: int, domes: Values) -> tuple[floa
     return tilt, math.sqrt(0.5 * scale) * values[2]
 
 
+class Unexplained(NamedTuple):
+    """How far readings are from what is expected of them.
+
+    ``surprise`` is the log likelihood less its expectation under the model and half the numbers
+    that were fitted, in its standard deviations. Of each element of a window that reads a load:
+    ``residuals``, 0 where they would be cut by what shows, and ``leaning``, freed of that.
+    """
+
+    surprise: float
+    residuals: Values
+    leaning: Values
+
+
 @compiled_as_is
-def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
-    """Return how surprising an image is, and what patterns it leaves over, at a posterior mean."""
-    kind, corners, grid = problem.kind, problem.corners, problem.grid
-    logs, states, first = problem.logs, problem.states, unknowns(problem.kind, problem.corners)
-    rows, columns = states.shape
-    here = noise_at(problem, p)
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, here))
-    share = np.zeros((max(box[2], 0), max(box[3], 0)))
-    if box[2] > 0 and box[3] > 0:
-        share = shares_of(kind, corners, p, grid, here, box, rows, columns)
-    sigma, voids, strays = here[SIGMA], here[VOIDS], here[STRAYS]
+def unexplained(
+    shares: Values, load: float, row: int, column: int, logs: Values, states: States,
+    noise: Values, fitted: int,
+) -> Unexplained:  # fmt: skip
+    """Return how far an image is from what is expected of it.
+
+    Parameters
+    ----------
+    shares, load, row, column, logs, states, noise
+        As in `element_terms.terms`.
+    fitted : int
+        How many numbers were fitted.
+    """
+    sigma, voids, strays = noise[SIGMA], noise[VOIDS], noise[STRAYS]
     level = math.log((1.0 - strays) * (1.0 - voids) / (sigma * ROOT_TWO_PI))
     stray, bare = math.log(strays / SPAN), math.log(1.0 - strays)
     mean_bare, var_bare = moments_of_strays(strays)
     got = mean = variance = 0.0
-    residuals, leaning = np.zeros((rows, columns)), np.zeros((rows, columns))
-    for i in range(rows):
-        for j in range(columns):
+    residuals, leaning = np.zeros(shares.shape), np.zeros(shares.shape)
+    last = last_least = math.nan
+    mu = z = tail = density = off = one = spread = 0.0
+    for i in range(states.shape[0]):
+        for j in range(states.shape[1]):
             if states[i, j] == UNKNOWN or states[i, j] == OVER:
                 continue
             on = states[i, j] == ON
-            r, c = i - box[0], j - box[1]
-            inside = 0 <= r < box[2] and 0 <= c < box[3]
-            if not inside or share[r, c] <= 0.0:
+            r, c = i - row, j - column
+            inside = 0 <= r < shares.shape[0] and 0 <= c < shares.shape[1]
+            if not inside or shares[r, c] <= 0.0:
                 got += stray if on else bare
                 mean += mean_bare
                 variance += var_bare
                 continue
-            mu = here[CONTRAST] * math.log(share[r, c]) + p[first]
-            least = logs[i, j] if states[i, j] == UNDER else here[LEAST]
-            z = min(max((mu - least) / sigma, -40.0), 40.0)
-            tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
-            off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
+            least = logs[i, j] if states[i, j] == UNDER else noise[LEAST]
+            if shares[r, c] != last or least != last_least:
+                last, last_least = shares[r, c], least
+                mu = noise[CONTRAST] * math.log(last) + load
+                z = min(max((mu - least) / sigma, -40.0), 40.0)
+                tail, density = 0.5 * math.erfc(-SQRT_HALF * z), DENSITY * math.exp(-0.5 * z * z)
+                off, one, spread = moments_of_term(z, tail, density, level, 1.0 - voids, bare)
             if on:
                 u = (logs[i, j] - mu) / sigma
                 got += math.log(math.exp(level - 0.5 * u * u) + strays / SPAN)
-                residuals[i, j] = u if z > SURE else 0.0
-                leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
+                residuals[r, c] = u if z > SURE else 0.0
+                leaning[r, c] = standardised(u, z, tail, density) if z > SEEN else 0.0
             else:
                 got += off
             mean += one
             variance += spread
-    surprise = (got - 0.5 * p.shape[0] - mean) / math.sqrt(variance)
-    lean, fall = trend(leaning, box[0], box[1], dome(share))
-    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)
+    surprise = (got - 0.5 * fitted - mean) / math.sqrt(variance)
+    return Unexplained(surprise, residuals, leaning)
+
+
+@compiled_as_is
+def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
+    """Return how surprising an image is, and what patterns it leaves over, at a posterior mean."""
+    kind, corners, states = problem.kind, problem.corners, problem.states
+    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
+    box, share = shares_around(kind, corners, p, problem.grid, noise, states.shape)
+    left = unexplained(share, load, box[0], box[1], problem.logs, states, noise, p.shape[0])
+    lean, fall = trend(left.leaning, dome(share))
+    return GoodnessOfFit(left.surprise, neighbours_alike(left.residuals), lean, fall)

@@ -42,7 +42,7 @@ def t_constant(unknowns: int) -> float:
 
 @compiled_as_is
 def weigh(
-    logs_p: Values, logs_q: Values, shares: Values, proposals: int, count: int, weights: Values
+    logs_p: Values, densities: Values, shares: Values, proposals: int, count: int, weights: Values
 ) -> tuple[float, float]:
     """Write the weights of ``count`` points, summing to 1.
 
@@ -50,8 +50,8 @@ def weigh(
     ----------
     logs_p : ndarray, shape (N,)
         Log posterior of each point, up to a constant.
-    logs_q : ndarray, shape (proposals, N)
-        Log density of each point under each proposal.
+    densities : ndarray, shape (proposals, N)
+        Of each point under each proposal, up to one factor.
     shares : ndarray, shape (proposals,)
         Part of the points that was drawn from each.
     proposals, count : int
@@ -64,25 +64,6 @@ def weigh(
     (float, float)
         Logarithm of the mean weight before that, and how many equal weights they are worth.
     """
-    for i in range(count):
-        if logs_p[i] == -math.inf:
-            weights[i] = -math.inf
-            continue
-        most = logs_q[0, i]
-        for c in range(1, proposals):
-            most = max(most, logs_q[c, i])
-        mixed = 0.0
-        for c in range(proposals):
-            mixed += shares[c] * math.exp(logs_q[c, i] - most)
-        weights[i] = logs_p[i] - most - math.log(mixed)
-    return normalise(weights, count)
-
-
-@compiled_as_is
-def weigh_by_density(
-    logs_p: Values, densities: Values, shares: Values, proposals: int, count: int, weights: Values
-) -> tuple[float, float]:
-    """Do the same from densities, up to one factor, at half the time."""
     for i in range(count):
         if logs_p[i] == -math.inf:
             weights[i] = -math.inf

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, covered
+from tactile_graph_likelihood.geometry.covered import Box, covered, window
 from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
@@ -246,3 +246,18 @@ def shares_of(
     if noise[FOAM] > 0.0:
         shares = blurred(shares, noise[FOAM], box, rows, columns)
     return shares
+
+
+@compiled_as_is
+def shares_around(
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, shape: tuple[int, int]
+) -> tuple[Box, Values]:
+    """Return the window of elements that an outline may bring a load to, and `shares_of` there.
+
+    The shares are of no rows where that is none of an image of a ``shape``.
+    """
+    rows, columns = shape
+    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
+    if box[2] <= 0 or box[3] <= 0:
+        return box, np.empty((0, 0))
+    return box, shares_of(kind, corners, p, grid, noise, box, rows, columns)

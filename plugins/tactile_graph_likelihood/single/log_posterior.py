@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -20,7 +19,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     terms,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_of
+from tactile_graph_likelihood.single.load_shares import shares_around
 from tactile_graph_likelihood.single.problem import Problem
 
 LN_TWO_PI = math.log(2.0 * math.pi)
@@ -45,15 +44,10 @@ def noise_at(problem: Problem, p: Values) -> Values:
 @compiled_as_is
 def log_likelihood(problem: Problem, p: Values) -> float:
     """Return the log likelihood of an image, over that of a bare pad, at a point, shape (K,)."""
-    kind, corners, grid = problem.kind, problem.corners, problem.grid
-    rows, columns = problem.states.shape
-    noise = noise_at(problem, p)
-    box = window(kind, corners, p, grid, rows, columns, foam_margin(grid, noise))
-    if box[2] <= 0 or box[3] <= 0:
-        return 0.0
-    shares = shares_of(kind, corners, p, grid, noise, box, rows, columns)
-    load = p[unknowns(kind, corners)]
-    return terms(shares, load, box[0], box[1], problem.logs, problem.states, noise)
+    kind, corners, states = problem.kind, problem.corners, problem.states
+    noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
+    box, shares = shares_around(kind, corners, p, problem.grid, noise, states.shape)
+    return terms(shares, load, box[0], box[1], problem.logs, states, noise)
 
 
 @compiled_as_is

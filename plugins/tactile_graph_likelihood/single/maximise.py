@@ -9,14 +9,14 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
-from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, period, sizes
+from tactile_graph_likelihood.geometry.outline_prior import pulled_in
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
 from tactile_graph_likelihood.single.element_terms import STRAYS
 from tactile_graph_likelihood.single.evaluate import information_at, log_likelihood_at
 from tactile_graph_likelihood.single.information import STEP, Information, add_prior, steps_of
 from tactile_graph_likelihood.single.log_posterior import log_rest
-from tactile_graph_likelihood.single.problem import Problem, with_elements, with_prior
+from tactile_graph_likelihood.single.problem import Problem, with_elements
 
 ROUNDS, HALVINGS = 25, 6
 TIED, SLIDING, HELD = 0.01, 2.0, 6.0
@@ -50,8 +50,8 @@ def maximise(
     Parameters
     ----------
     problem, whole, p
-        As in `evaluate.log_likelihood_at`; the prior's `TURN` is not looked at, and ``whole`` is
-        kept up with the point.
+        As in `evaluate.log_likelihood_at`; of a prior for any angle. ``whole`` is kept up with the
+        point.
     root : ndarray, shape (K, K)
         Written: the lower root of the information at the top.
     enough : float
@@ -68,14 +68,9 @@ def maximise(
     step, trial = np.empty(n), np.empty(n)
     out = Information(np.empty(n), np.empty((n, n)))
     kind, corners, prior = problem.kind, problem.corners, problem.prior
-    loose = prior.copy()
-    near = with_prior(problem, loose)
-    turn = 2 + sizes(kind) if period(kind, corners) > 0.0 else -1
     pulled_in(kind, corners, p, prior)
-    if turn >= 0:
-        loose[TURN] = p[turn]
     keep_current(problem, whole, p)
-    now, new = log_rest(near, p) + log_likelihood_at(problem, whole, p), -math.inf
+    now, new = log_rest(problem, p) + log_likelihood_at(problem, whole, p), -math.inf
     tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
@@ -93,9 +88,7 @@ def maximise(
             for k in range(n):
                 trial[k] = p[k] + share * step[k]
             pulled_in(kind, corners, trial, prior)
-            if turn >= 0:
-                loose[TURN] = trial[turn]
-            new = log_rest(near, trial)
+            new = log_rest(problem, trial)
             if new > -math.inf:
                 new += log_likelihood_at(problem, whole, trial)
             if new > now:
@@ -155,10 +148,7 @@ def _share_of_step(step: Values, widths: Values, stride: float) -> float:
 
 @compiled_as_is
 def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: bool) -> float:
-    """Maximise, if softly with elements that feel a little beyond their edge first.
-
-    Otherwise a touched element that is not covered would not pull at all.
-    """
+    """Maximise, if softly with elements that feel a little beyond their edge first."""
     if softly:
         maximise(softened(problem), None, p, root, ROUGH, math.inf)
     return maximise(problem, None, p, root, ENOUGH, math.inf)
@@ -167,7 +157,17 @@ def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: boo
 @compiled_as_is
 def softened(problem: Problem) -> Problem:
     """Return the problem with elements that feel a little beyond their edge, and no strays."""
-    soft, strict = problem.grid.copy(), problem.noise.copy()
-    soft[4], soft[5] = SOFT, problem.grid[2]
-    strict[STRAYS] = NO_STRAYS
+    soft, strict = soft_and_strict(problem.grid, problem.noise)
     return with_elements(problem, soft, strict)
+
+
+@compiled_as_is
+def soft_and_strict(grid: Values, noise: Values) -> tuple[Values, Values]:
+    """Return the grid of elements that feel a little beyond their edge, and a noise of no strays.
+
+    Otherwise a touched element that no outline covers would not pull at all.
+    """
+    soft, strict = grid.copy(), noise.copy()
+    soft[4], soft[5] = SOFT, grid[2]
+    strict[STRAYS] = NO_STRAYS
+    return soft, strict

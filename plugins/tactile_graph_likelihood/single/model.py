@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from typing import NamedTuple
@@ -15,18 +16,17 @@ from tactile_graph_likelihood.geometry.outlines import (
     ELLIPSE,
     FREE,
     OVAL,
-    REGULAR,
     Values,
     packed,
     unknowns,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import covered_around
-from tactile_graph_likelihood.large_pads.search import find_mode_on_large_pad, fit_of, settled
+from tactile_graph_likelihood.large_pads.search import attempted_on_large_pad, settled
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
@@ -35,7 +35,16 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
-from tactile_graph_likelihood.single.search import ATTEMPTS, NEAR, find_mode, moments
+from tactile_graph_likelihood.single.search import (
+    ATTEMPTS,
+    NEAR,
+    NO_FIT,
+    POOR,
+    SAME,
+    UNLIKELY,
+    attempted,
+    moments,
+)
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
@@ -48,6 +57,9 @@ SMALLEST_PITCHES = 0.4
 Start = Shape | Values | None
 
 NO_START = np.zeros(0)
+
+FIRST, MORE, EVERY = range(1), range(1, ATTEMPTS), range(ATTEMPTS)
+"""Attempts at a most likely outline."""
 
 
 class Likeliest(NamedTuple):
@@ -137,15 +149,13 @@ class Model:
         covariance is then wider by that of a normal distribution around the top.
         """
         problem = self._problem(readings, belief)
-        table, begin = self._table(problem), self._begin(start, problem)
-        mode, unsure, fit = self._find(problem, table, begin, (0, ATTEMPTS), None)
-        if mode.height == -math.inf:
+        top = self._find(problem, self._begin(start, problem), EVERY)
+        if top.mode.height == -math.inf:
             raise self.impossible(readings)
-        found = self._sampled(readings, problem, table, mode)
-        if found.equal_points > len(mode.p):
+        found = self._sampled(readings, problem, top.mode)
+        if found.equal_points > len(top.mode.p):
             return found
-        top = Likeliest(mode, mode.height + _log_volume(problem.kind, mode), unsure, fit)
-        normal = self.normal_around(top, len(mode.p))
+        normal = self.normal_around(top, len(top.mode.p))
         return replace(found, covariance=found.covariance + normal.covariance)
 
     def likeliest(
@@ -153,27 +163,25 @@ class Model:
         readings: Readings,
         before: Likeliest | None = None,
         start: Start = None,
-        anew: bool = False,
-        attempts: int = ATTEMPTS,
+        attempts: Sequence[int] = FIRST,
     ) -> Likeliest:
-        """Return the most likely outline, by one attempt, or more after an earlier one.
+        """Return the most likely outline of some attempts, and of what was found before.
 
-        ``anew`` says that what was found before was no attempt yet, but `likeliest_near`;
-        ``attempts`` is how many there are at most, the earlier one counted.
+        ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
-        if before is None:
-            return self._likeliest(readings, start, (0, 1), None)
-        return self._likeliest(readings, start, (0 if anew else 1, attempts), before.mode)
+        problem = self._problem(readings, None)
+        return self._find(problem, self._begin(start, problem), attempts, before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the most likely outline near a point, shape (K,), that is nearly as likely.
 
         Without a point, near what has the moments of the touched elements.
         """
-        large = readings.states.size > LARGE_PAD
-        return self._likeliest(readings, point, (0, 1) if large else (NEAR, 0), None)
+        problem = self._problem(readings, None)
+        attempt = 0 if readings.states.size > LARGE_PAD else NEAR
+        return self._find(problem, self._begin(point, problem), [attempt])
 
-    def normal_of(self, readings: Readings, start: Start = None) -> Posterior:
+    def normal_of(self, readings: Readings) -> Posterior:
         """Return the posterior as if it were normal around its mode.
 
         Raises
@@ -181,33 +189,51 @@ class Model:
         Degenerate
             If nothing is touched, or no outline of this kind is possible.
         """
-        top = self._likeliest(readings, start, (0, ATTEMPTS), None)
+        top = self._find(self._problem(readings, None), NO_START, EVERY)
         if top.evidence == -math.inf:
             raise self.impossible(readings)
         return self.normal_around(top, len(top.mode.p))
 
-    def _likeliest(
-        self, readings: Readings, start: Start, attempts: tuple[int, int], known: Mode | None
+    def _find(
+        self,
+        problem: Problem,
+        begin: Values,
+        attempts: Sequence[int],
+        before: Likeliest | None = None,
     ) -> Likeliest:
-        problem = self._problem(readings, None)
-        begin = self._begin(start, problem)
-        mode, unsure, fit = self._find(problem, self._table(problem), begin, attempts, known)
-        evidence = mode.height
+        """Return the most likely outline of some attempts, and of what was found before."""
+        table = self._table(problem)
+        n = table.shape[1]
+        best, fit = Mode(np.zeros(n), np.zeros((n, n)), -math.inf), NO_FIT
+        if before is not None:
+            best, fit = before.mode, before.fit
+        unsure, small = attempts[-1] + 1 < ATTEMPTS, problem.states.size <= LARGE_PAD
+        attempt = attempted if small else attempted_on_large_pad
+        for which in attempts:
+            p, root, known = np.zeros(n), np.zeros((n, n)), best.height
+            height, its = attempt.call(problem, table, begin, which, known, p, root)
+            if height > known:
+                best, fit = Mode(p, root, height), GoodnessOfFit(*its)
+            again = which > 0 and abs(height - known) < SAME
+            if best.height > -math.inf and fit.surprise > (UNLIKELY if again else POOR):
+                unsure = False
+                break
+        evidence = best.height
         if evidence > -math.inf:
-            evidence += _log_volume(problem.kind, mode)
-        return Likeliest(mode, evidence, unsure, fit)
+            evidence += _log_volume(problem.kind, best)
+        return Likeliest(best, evidence, unsure, fit)
 
     def posterior_around(self, readings: Readings, mode: Mode, loose: float = 0.0) -> Posterior:
         """Return the posterior around a mode, with ``loose`` as in `sample_around`."""
         problem = self._problem(readings, None)
-        return self._sampled(readings, problem, self._table(problem), mode, loose)
+        return self._sampled(readings, problem, mode, loose)
 
     def posterior_near(self, readings: Readings, point: Values, loose: float) -> Posterior:
         """Return the posterior around the top near a point, shape (K,)."""
         problem = self._problem(readings, None)
         begin = self._begin(point, problem)
         mode = Mode(begin, np.zeros((len(begin), len(begin))), -math.inf)
-        return self._sampled(readings, problem, self._table(problem), mode, loose)
+        return self._sampled(readings, problem, mode, loose)
 
     def point_of(self, top: Likeliest) -> Values:
         """Return a most likely point in the outline's own numbers, shape (K,)."""
@@ -233,28 +259,16 @@ class Model:
             float(BLOCK), *top.fit,
         )  # fmt: skip
 
-    def _find(
-        self, problem: Problem, table: Values, begin: Values, attempts: tuple[int, int],
-        known: Mode | None,
-    ) -> tuple[Mode, bool, GoodnessOfFit]:  # fmt: skip
-        n = table.shape[1]
-        p, root, height = np.zeros(n), np.zeros((n, n)), -math.inf
-        if known is not None:
-            p, root, height = known.p.copy(), known.root.copy(), known.height
-        find = find_mode if problem.states.size <= LARGE_PAD else find_mode_on_large_pad
-        height, unsure, fit = find.call(problem, table, begin, *attempts, p, root, height)
-        return Mode(p, root, height), unsure, GoodnessOfFit(*fit)
-
     def _sampled(
-        self, readings: Readings, problem: Problem, table: Values, mode: Mode, loose: float = 0.0
+        self, readings: Readings, problem: Problem, mode: Mode, loose: float = 0.0
     ) -> Posterior:
-        whole = None
+        whole, table = None, self._table(problem)
         if problem.states.size > LARGE_PAD:
             p, root = mode.p.copy(), mode.root.copy()
             if (height := settled.call(problem, p, root)) > -math.inf:
                 top = Mode(p, root, height)
                 evidence = height + _log_volume(problem.kind, top)
-                fit = fit_of.call(problem, p)
+                fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
                 return self.normal_around(likeliest, len(p))
             whole = covered_around.call(problem, mode.p)
@@ -318,7 +332,7 @@ class Model:
                 height,
                 *self.range_cm(readings),
                 self.whole,
-                0.0,
+                math.nan,
                 0.0,
             ]
         )
@@ -351,9 +365,7 @@ class Model:
                 to_oval.call(begin)
             return begin
         kind, corners, p = packed(start)
-        if kind == FREE and self.kind == REGULAR and corners == self.corners:
-            p = _as_regular(start)
-        elif kind != self.kind or (kind == FREE and corners != self.corners):
+        if kind != self.kind or (kind == FREE and corners != self.corners):
             raise ValueError(f"start: a {type(start).__name__} is not of the shape to be fitted")
         load = moments.call(problem.grid, problem.logs, problem.states)[6]
         begin = np.concatenate([p, [load], problem.guess[:, 0]])
@@ -397,10 +409,3 @@ def _table(count: int, n: int, seed: int) -> Values:
     table = even_points(count, n, seed)
     table.setflags(write=False)
     return table
-
-
-def _as_regular(start: Shape) -> Values:
-    x, y = start.x_cm, start.y_cm
-    corners = start.outline_cm() - (x, y)
-    radius = float(np.hypot(*corners.T).mean())
-    return np.array([x, y, radius, math.atan2(-corners[0, 1], corners[0, 0])])

@@ -104,9 +104,14 @@ class Posterior:
         nearest the mean made the mean, so by themselves they promise too much.
         """
         n = unknowns.call(self.kind, self.corners)
-        return max(self.reach_of_points(n), normal_reach(n, self.equal_points))
+        return max(self._reach_of_points(n), normal_reach(n, self.independent_points))
 
-    def reach_of_points(self, n: int) -> float:
+    @property
+    def independent_points(self) -> float:
+        """How many points, each by itself, would tell the covariance as well."""
+        return self.equal_points
+
+    def _reach_of_points(self, n: int) -> float:
         """Return the squared distance within which 90 % of the weighted points lie."""
         distances = self._squared(self.points[:, :n])
         order = np.argsort(distances)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.outline_prior import WHOLE
-from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.geometry.outline_prior import TURN, WHOLE
+from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
 from tactile_graph_likelihood.single.element_terms import States
 
 Places = NDArray[np.int64]
@@ -72,6 +72,15 @@ def with_prior(problem: Problem, prior: Values) -> Problem:
         problem.kind, problem.corners, problem.grid, problem.logs, problem.states, problem.noise,
         problem.estimated, problem.guess, prior, problem.belief, problem.precision,
     )  # fmt: skip
+
+
+@compiled_as_is
+def turned_as(problem: Problem, p: Values) -> Problem:
+    """Return the same problem for outlines turned by no more than half a period from a point's."""
+    prior = problem.prior.copy()
+    if period(problem.kind, problem.corners) > 0.0:
+        prior[TURN] = p[2 + sizes(problem.kind)]
+    return with_prior(problem, prior)
 
 
 @compiled_as_is

@@ -6,13 +6,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
+from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNKNOWN, States
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 
 FAINT = 0.015
@@ -70,6 +71,17 @@ class Readings(NamedTuple):
         gap = self.grid[2] - self.grid[3]
         return columns * self.grid[2] - gap, rows * self.grid[2] - gap
 
+    @property
+    def shows(self) -> NDArray[np.bool_]:
+        """Which elements read a load, if only that they read the most."""
+        found: NDArray[np.bool_] = (self.states == ON) | (self.states == OVER)
+        return found
+
+    def with_states(self, states: States) -> Readings:
+        """Return readings of other states, and of as many touched elements as show by them."""
+        found = self._replace(states=states)
+        return found._replace(touched=int(np.count_nonzero(found.shows)))
+
 
 @compiled_later
 def split(values: Values, least: float, logs: Values, states: States) -> int:
@@ -120,6 +132,20 @@ def _loaded(values: Values, least: float, logs: Values, states: States) -> float
     return 0.0 if math.isnan(typical) else 2.0 * math.exp(typical)
 
 
+def grid_of(image: Image, gap_cm: float) -> Values:
+    """Return where an image's elements lie, as `Readings` has it.
+
+    Raises
+    ------
+    RuleError
+        If the gap between elements leaves none.
+    """
+    (x, y), pitch, half = image.origin_cm, image.pitch_cm[0], 0.5 * gap_cm
+    if not gap_cm < pitch:
+        raise RuleError(f"gap_cm: must be below the pitch of {pitch:g} cm, got {gap_cm:g}")
+    return np.array([x + half, y + half, pitch, pitch - gap_cm, 0.0, 0.0])
+
+
 def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT) -> Readings:
     """Return an image's readings.
 
@@ -147,8 +173,7 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
     across, down = image.pitch_cm
     if abs(across - down) > 1e-9 * across:
         raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
-    if not gap_cm < across:
-        raise RuleError(f"gap_cm: must be below the pitch of {across:g} cm, got {gap_cm:g}")
+    grid = grid_of(image, gap_cm)
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)
     if faint > 0.0 and values.size >= RANK and faint * values.max() > least:
@@ -163,9 +188,6 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
         touched = int((states == ON).sum())
     if touched == 0:
         raise Degenerate(_why(float(values.max(initial=0.0)), least))
-    x, y = image.origin_cm
-    half = 0.5 * gap_cm
-    grid = np.array([x + half, y + half, across, across - gap_cm, 0.0, 0.0])
     return Readings(grid, logs, states, touched)
 
 

@@ -14,21 +14,19 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, inverted, squared_length
-from tactile_graph_likelihood.geometry.outline_prior import TURN
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
     ELLIPSE,
     OVAL,
     RECTANGLE,
     Values,
-    period,
     sizes,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI
-from tactile_graph_likelihood.single.evaluate import goodness_at, log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import (
     FEWEST,
     KEPT,
@@ -36,12 +34,12 @@ from tactile_graph_likelihood.single.importance import (
     t_constant,
     t_density,
     temper,
-    weigh_by_density,
+    weigh,
     weighted_moments,
 )
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
-from tactile_graph_likelihood.single.problem import Problem, over_the_edge, with_prior
+from tactile_graph_likelihood.single.problem import Problem, over_the_edge, turned_as
 
 SHIFTS = (-1.2, -0.8, -0.4, -0.15, 0.4, 0.8, 1.2)  # of one side, in pitches
 FLATTER = 0.5  # power of the likelihood: a side that was moved has not yet settled
@@ -253,7 +251,24 @@ def _with_side_moved(
 
 
 @compiled_as_is
-def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
+def no_draws(count: int, n: int) -> Draws:
+    """Return space for so many points of so many numbers each."""
+    return Draws(
+        np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
+    )
+
+
+@compiled_as_is
+def no_proposals(most: int, n: int, points: int) -> Proposals:
+    """Return space for so many proposals of so many numbers each, and for points."""
+    return Proposals(
+        np.empty((most, n)), np.zeros((most, n, n)), np.empty(most), np.zeros(most),
+        np.empty((most, points)),
+    )  # fmt: skip
+
+
+@compiled_as_is
+def propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -> bool:
     """Write a proposal; return whether its covariance is positive."""
     root = proposals.roots[k]
     if not cholesky(covariance, root):
@@ -266,7 +281,7 @@ def _propose(proposals: Proposals, k: int, centre: Values, covariance: Values) -
 
 
 @compiled_as_is
-def _draw(proposals: Proposals, k: int, step: Values, point: Values) -> None:
+def draw(proposals: Proposals, k: int, step: Values, point: Values) -> None:
     """Write the point of a proposal that a step of standard Student's t leads to."""
     for i in range(point.shape[0]):
         place = proposals.centres[k, i]
@@ -289,7 +304,37 @@ def _add_densities(proposals: Proposals, k: int, points: Values, first: int, las
 
 
 @compiled_as_is
-def _next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
+def take_block(
+    proposals: Proposals, made: int, points: Values, before: int, count: int, block: int
+) -> None:
+    """Count a block of points as drawn from the last proposal, and write their densities.
+
+    Parameters
+    ----------
+    proposals : Proposals
+        Written.
+    made : int
+        How many there are.
+    points : ndarray, shape (N, K)
+    before : int
+        Points whose densities under the last proposal are known.
+    count, block : int
+        Points before the block, and in it.
+    """
+    proposals.drawn[made - 1] += block
+    for c in range(made):
+        _add_densities(proposals, c, points, before if c == made - 1 else count, count + block)
+
+
+@compiled_as_is
+def log_evidence_of(proposals: Proposals, mean_weight: float, n: int) -> float:
+    """Return the log evidence, given the logarithm of the mean of n numbers' weights."""
+    evidence: float = mean_weight - proposals.levels[0] - t_constant(n)
+    return evidence
+
+
+@compiled_as_is
+def next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
     """Return the covariance of the next proposal, and write its centre."""
     n = centre.shape[0]
     tempered, found = np.empty(count), np.empty((n, n))
@@ -326,10 +371,7 @@ def importance_sample(
         Points used, log evidence, number of equal weights; -inf and 0 if no point is possible.
     """
     kind, n, most, block = problem.kind, mode.shape[0], plan.table.shape[0], plan.block
-    proposals = Proposals(
-        np.empty((PROPOSALS, n)), np.zeros((PROPOSALS, n, n)), np.empty(PROPOSALS),
-        np.zeros(PROPOSALS), np.empty((PROPOSALS, most)),
-    )  # fmt: skip
+    proposals = no_proposals(PROPOSALS, n, most)
     centre, wanted = mode.copy(), FIRST * covariance
     draws.mean[:] = mode
     least = block * (1 if kind == DISC else 2 if kind == OVAL else 4)
@@ -346,34 +388,31 @@ def importance_sample(
                     for m in range(n):
                         wanted[k, m] += beyond.wider[k, m]
             elif made > 0:
-                wanted = _next_covariance(draws, count, covariance, centre)
-            if not _propose(proposals, made, centre, wanted):
+                wanted = next_covariance(draws, count, covariance, centre)
+            if not propose(proposals, made, centre, wanted):
                 break
             renewed, before = count, 0
             made += 1
         for i in range(count, count + block):
-            _draw(proposals, made - 1, plan.table[i], draws.points[i])
+            draw(proposals, made - 1, plan.table[i], draws.points[i])
             here = log_rest(problem, draws.points[i])
             if here > -math.inf:
                 here += log_likelihood_at(problem, whole, draws.points[i])
                 if kind == OVAL:
                     here += log_stretch(draws.points[i])
             draws.logs_p[i] = here
-        proposals.drawn[made - 1] += block
-        for c in range(made):
-            first = before if c == made - 1 else count
-            _add_densities(proposals, c, draws.points, first, count + block)
+        take_block(proposals, made, draws.points, before, count, block)
         count += block
         if count < least and count < 2 * renewed:
             continue
-        evidence, equal = weigh_by_density(
+        evidence, equal = weigh(
             draws.logs_p, proposals.densities, proposals.drawn / count, made, count, draws.weights
         )
         if equal <= 0.0 or (equal >= plan.worth and count >= least):
             break
     if equal > 0.0:
         weighted_moments(draws.points, draws.weights, count, draws.mean, draws.covariance)
-    return count, evidence - proposals.levels[0] - t_constant(n), equal
+    return count, log_evidence_of(proposals, evidence, n), equal
 
 
 @compiled_as_is
@@ -398,15 +437,10 @@ def sample_around(
     if height == -math.inf:
         maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
     plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
-    prior = problem.prior.copy()
-    if period(kind, problem.corners) > 0.0:
-        prior[TURN] = p[2 + sizes(kind)]
-    near = with_prior(problem, prior)
+    near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
     mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
-    draws = Draws(
-        np.empty((count, n)), np.empty(count), np.empty(count), np.empty(n), np.empty((n, n))
-    )
+    draws = no_draws(count, n)
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):
         covariance[k, k] += loose
@@ -419,7 +453,7 @@ def sample_around(
         for k in range(n):
             for m in range(n):
                 draws.covariance[k, m] += beyond.slack[k, m]
-        fit = goodness_at(problem, whole, draws.mean)
+        fit = goodness_of_fit(problem, draws.mean)
     likeliest, top = mode.p.copy(), mode.height
     if kind == OVAL:
         top += log_stretch(mode.p)

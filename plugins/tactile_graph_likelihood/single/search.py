@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.lengths import length
-from tactile_graph_likelihood.geometry.outline_prior import TURN, pulled_in
+from tactile_graph_likelihood.geometry.outline_prior import pulled_in
 from tactile_graph_likelihood.geometry.outlines import (
     DISC,
     ELLIPSE,
@@ -28,7 +28,7 @@ from tactile_graph_likelihood.single.element_terms import ON, OVER, States
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import maximise_softly_first
-from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem, with_prior
+from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
 
 STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
 TRIMS = 8
@@ -39,6 +39,7 @@ NEAR = -1
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR, UNLIKELY = -1.5, -3.0
 """Surprise from which on there is no further attempt, and none once two have found the same."""
+NO_FIT = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
 TRIES = 24  # outlines tried around the moments own, in attempts after the first
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
@@ -178,8 +179,6 @@ def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> N
     for k in range(guess.shape[0]):
         p[first + 1 + k] = guess[k, 0]
     best, trial = -math.inf, p.copy()
-    loose = problem.prior.copy()
-    near = with_prior(problem, loose)
     thinnest = THINNEST if problem.states.size <= LARGE_PAD else 0.0
     ways = angles_to_try(kind, corners)
     for t in range(ways + tries):
@@ -188,9 +187,7 @@ def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> N
         if t >= ways:
             _vary(problem, table[t], trial)
         pulled_in(kind, corners, trial, problem.prior)
-        if period(kind, corners) > 0.0:
-            loose[TURN] = trial[2 + sizes(kind)]
-        here = log_rest(near, trial)
+        here = log_rest(problem, trial)
         if here > -math.inf:
             here += log_likelihood(problem, trial)
         if here > best or t == 0:
@@ -212,11 +209,11 @@ def _vary(problem: Problem, off: Values, p: Values) -> None:
 
 
 @compiled_as_is
-def find_mode(
-    problem: Problem, table: Values, start: Values, first: int, last: int, p: Values, root: Values,
-    height: float,
-) -> tuple[float, bool, GoodnessOfFit]:  # fmt: skip
-    """Write the most likely outline after some attempts; tell whether another is worth its time.
+def attempted(
+    problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
+    root: Values,
+) -> tuple[float, GoodnessOfFit]:  # fmt: skip
+    """Write the most likely outline as one attempt finds it.
 
     Parameters
     ----------
@@ -226,34 +223,24 @@ def find_mode(
         As in `sample.Plan`.
     start : ndarray, shape (0,) or (K,)
         Where to begin; empty for the touched elements' moments.
-    first, last : int
-        The first attempt and one past the last; 0 begins at the start if there is one, and so does
-        `NEAR`, which takes it for near the top.
-    p, root, height : ndarray, shape (K,) and (K, K), and float
-        The mode that earlier attempts found, of the height -inf if there were none; written where
-        something better is. Not as a `Mode`: handing over a second record costs 15 us.
+    attempt : int
+        0 begins at the start if there is one, and so does `NEAR`, which takes it for near the top.
+    least : float
+        Log posterior below which nobody asks how well it fits.
+    p, root : ndarray, shape (K,) and (K, K)
+        Written: the mode, and the lower root of the information there. Not as a `Mode`: handing
+        over a second record costs 15 us.
 
     Returns
     -------
-    (float, bool, GoodnessOfFit)
-        The mode's height, whether another attempt may find a better one, and how well it fits.
+    (float, GoodnessOfFit)
+        The mode's height, -inf where no outline is possible, and how well it fits.
     """
-    n, fit = p.shape[0], GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
-    trial, its_root = np.zeros(n), np.zeros((n, n))
-    for attempt in range(first, last):
-        if attempt <= 0 and start.shape[0] == n:
-            trial[:] = start
-        else:
-            likeliest_start(problem, table, max(attempt, 0) * TRIES, trial)
-        here = maximise_softly_first(problem, trial, its_root, attempt >= 0)
-        again = attempt > 0 and abs(here - height) < SAME
-        if here > height:
-            height = here
-            p[:] = trial
-            for k in range(n):
-                root[k, :] = its_root[k]
-        if height > -math.inf:
-            fit = goodness_of_fit(problem, p)
-            if fit.surprise > POOR or (again and fit.surprise > UNLIKELY):
-                return height, False, fit
-    return height, last < ATTEMPTS, fit
+    if attempt <= 0 and start.shape[0] == p.shape[0]:
+        p[:] = start
+    else:
+        likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
+    height = maximise_softly_first(problem, p, root, attempt >= 0)
+    if height > least:
+        return height, goodness_of_fit(problem, p)
+    return height, NO_FIT

@@ -271,14 +271,6 @@ def test_cells_that_are_nearly_square_lie_where_they_lie():
 
 
 @plain
-def test_a_start_of_its_own_shape_is_taken():
-    frame = next(iter(Bench(BASE, np.random.default_rng(2)).frames(1)))
-    plain = LocateDisc()(frame.image)
-    begun = LocateDisc()(frame.image, Circle(plain.x_cm + 0.3, plain.y_cm, plain.radius_cm))
-    assert begun.x_cm == pytest.approx(plain.x_cm, abs=0.05)
-
-
-@plain
 def test_noise_alone_is_no_object():
     rng = np.random.default_rng(4)
     image = Image(np.zeros((16, 16)), (1.3, 1.3), (0.0, 0.0), "volt")

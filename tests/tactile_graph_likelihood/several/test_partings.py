@@ -1,4 +1,4 @@
-"""Pairs of sketches for what is touched, and which elements hang together."""
+"""Pairs of sketches for what is touched."""
 
 import math
 
@@ -9,7 +9,6 @@ from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.several.partings import (
     ANGLES,
     across,
-    components,
     partings,
     sketch_of,
 )
@@ -56,12 +55,3 @@ def test_a_sketch_has_the_moments_of_its_elements():
     assert point[:2] == pytest.approx([4.5, 1.5])
     assert np.exp(point[2:4]) == pytest.approx([4.86, 1.62], abs=0.01)
     assert point[4:] == pytest.approx([0.0, 4.2])
-
-
-def test_components_reach_over_corners_and_as_far_as_asked():
-    on = np.zeros((5, 5), bool)
-    on[0, 0] = on[1, 1] = on[1, 3] = on[4, 4] = True
-    assert components.call(on, 1).max() == 3
-    assert components.call(on, 2).max() == 2
-    assert components.call(on, 3).max() == 1
-    assert ((components.call(on, 1) > 0) == on).all()

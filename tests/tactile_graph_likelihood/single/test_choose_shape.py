@@ -1,16 +1,13 @@
-"""Shapes by evidence, and a pad's unevenness from what lies on it."""
+"""Shapes by evidence."""
 
 import numpy as np
 import pytest
 
-from helpers_likelihood import NOISE, drawn, made
+from helpers_likelihood import drawn, made
 from tactile_graph import load
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.single.choose_shape import ChooseShape
-from tactile_graph_likelihood.single.learned_noise import learned_noise
-from tactile_graph_likelihood.single.model import Model
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
@@ -32,17 +29,6 @@ def test_no_shape_is_chosen_where_nothing_is_touched():
     empty = Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram")
     with pytest.raises(Degenerate, match="no element bears a load"):
         made(ChooseShape)(empty)
-    with pytest.raises(Degenerate, match="nothing to learn from"):
-        learned_noise(Model(DISC, noise=NOISE), [empty])
-
-
-def test_unevenness_is_learned_from_a_recording():
-    rng = np.random.default_rng(4)
-    images = [drawn(Circle(10.0, 9.5, 5.5), 60.0, rng, 0.3, 0.25) for _ in range(25)]
-    found = learned_noise(Model(DISC, noise=NOISE), images)
-    assert found.sigma == pytest.approx(0.3, rel=0.12)
-    assert found.voids == pytest.approx(0.25, abs=0.05)
-    assert found.estimated == ()
 
 
 @pytest.mark.parametrize(

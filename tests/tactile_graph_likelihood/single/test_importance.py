@@ -36,7 +36,7 @@ def test_weights_are_density_over_the_mixture(which):
     q = np.array([[0.1, 0.4, 0.2, 0.5], [0.3, 0.2, 0.2, 0.1]])
     weights = np.empty(4)
     shares = np.array([0.75, 0.25])
-    level, equal = getattr(weigh, which)(logs_p, np.log(q), shares, 2, 4, weights)
+    level, equal = getattr(weigh, which)(logs_p, q, shares, 2, 4, weights)
     raw = np.exp(logs_p) / (shares @ q)
     np.testing.assert_allclose(weights, raw / raw.sum())
     assert level == pytest.approx(math.log(raw.mean()))

@@ -11,9 +11,8 @@ from helpers_modes import plainly
 from tactile_graph.wires import Circle, Ellipse, Image, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
 from tactile_graph_likelihood.single.any_pressure import (
-    ALIKE,
+    CLEAR,
     FOAM_ODDS,
-    LOOK,
     ROUND,
     AnyPressure,
     chances,
@@ -166,7 +165,7 @@ def test_only_what_leaves_a_pattern_is_looked_at_again():
     again = 0
     for _, image in frames(40, 4):
         found, even = AnyPressure(model).posterior(image), model.posterior(image)
-        looked = max(even.lean, even.fall) >= LOOK or even.neighbours >= ALIKE
+        looked = max(even.lean, even.fall) >= CLEAR.fall or even.neighbours >= CLEAR.alike
         again += looked
         if not looked:
             assert set(found.pressures) == {"even"}

@@ -1,4 +1,7 @@
-"""``learned_noise``: a pad's unevenness from images of objects whose place is not known."""
+"""``learned_noise``: a pad's unevenness from images of objects whose place is not known.
+
+The command ``learn-pad`` learns it from recordings of any objects; this asks what they are.
+"""
 
 from __future__ import annotations
 
