@@ -99,7 +99,9 @@ class Runner(Generic[ResultT]):
         deciding = None if decider is None else Deciding(options_of(self.plan), decider)
         if deciding is not None:
             deciding.decider.prepare(deciding.options)
-        self._operations = make_program(self.plan, self._call, self._blank, deciding=deciding)
+        self._operations = make_program(
+            self.plan, self._call, self._blank, deciding=deciding, chained=not settings.verify
+        )
         self._left, self._apart_before = {}, {}
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
@@ -143,6 +145,10 @@ class Runner(Generic[ResultT]):
     def processes(self) -> dict[str, ProcessState]:
         """How the processes fare of the nodes that run apart; ``map/node`` within a mapped one."""
         return {name: host.state for name, host in self._apart.items()}
+
+    def prepare(self) -> None:
+        """Make the machine code of nodes that are run by one call, and use it from now on."""
+        self._operations.write_chains(make=True)
 
     @property
     def _keeping(self) -> dict[str, tuple[Node, Call]]:

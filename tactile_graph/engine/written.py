@@ -8,11 +8,14 @@ whatever is more (lists, choices, sinks, what several may settle) is called as b
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence, Set
 from keyword import iskeyword
 from time import perf_counter_ns
 from typing import Any
 
+from tactile_graph.compiled.chained import Chained
+from tactile_graph.engine.chains import Chain, Later, chains_of, spelled
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.operations.step_operation import Call, Operation, step_label
@@ -23,12 +26,15 @@ from tactile_graph.engine.outcomes.outcome import (
     nothing_returned,
     raised,
 )
+from tactile_graph.engine.outcomes.outcomes import LATER
 from tactile_graph.engine.plan import Input, Item, Plan
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 
 AFTER_FRAMES = 200
 """Python compiles the text in the time that writing saves in some thousand frames."""
+CHAINS_AFTER_FRAMES = 1_000
+"""Their machine code takes a tenth of a second to load, and saves some microseconds a frame."""
 DEEPEST = 12
 """Guards within guards that are written out; Python's own limit is at twenty blocks."""
 
@@ -54,6 +60,7 @@ class Written:
         operations: Sequence[Operation],
         alone: Set[int],
     ) -> None:
+        self.chains: list[Chain] = []
         self.plan, self.call_of, self.operations, self.alone = plan, call_of, operations, alone
         self.lines: list[str] = []
         self.names: dict[str, Any] = {
@@ -61,15 +68,59 @@ class Written:
             "raised": raised, "failure": failure, "settled": _settled, "field": _field,
         }  # fmt: skip
 
-    def program(self) -> Operation:
-        """Return one function that settles a plan's main part as its operations do."""
-        known: set[int] = set()
-        for slot in self.plan.main:
-            self.settle(slot, 1, known)
+    def program(self, *, chains: bool = True, make: bool = False) -> Operation:
+        """Return one function that settles a plan's main part as its operations do.
+
+        Parameters
+        ----------
+        chains : bool
+            Whether nodes that follow each other may be run by one call.
+        make : bool
+            Whether the machine code of chains is made where it is not on disk.
+        """
+        self.lines = []
+        self.chains = self._chains(make) if chains else []
+        self.settle_all(self.plan.main, 1, set())
         text = "\n".join(["def program(state):", *self.lines])
         exec(compile(text, f"<program of {self.plan.pipeline.name}>", "exec"), self.names)
         program: Operation = self.names["program"]
         return program
+
+    def _chains(self, make: bool) -> list[Chain]:
+        """Return the chains that have machine code, and name what their calls need."""
+        if not (make or "numba" in sys.modules) or not Chained.possible():
+            return []
+        found = []
+        for chain in chains_of(self.plan, self.alone, _is_plain):
+            enter = chain.entry(make=make)
+            if enter is not None:
+                slot = chain.last.slot
+                self.names[f"enter{slot}"] = enter
+                self.names[f"made{slot}"] = chain.links[-1].form.made
+                self.names[f"later{slot}"] = (Later(chain, self.operations),)
+                found.append(chain)
+        return found
+
+    def settle_all(self, slots: Sequence[int], depth: int, known: set[int]) -> None:
+        """Settle slots in their order, those of a chain by one call."""
+        i = 0
+        while i < len(slots):
+            run = self._run_from(slots[i:])
+            if run is None:
+                self.settle(slots[i], depth, known)
+                i += 1
+            else:
+                self._chained(run, depth, known)
+                self.write(depth, f"state[{run.last.slot}] = v{run.last.slot}")
+                i += len(run.in_order) + 1
+
+    def _run_from(self, slots: Sequence[int]) -> Chain | None:
+        """Return the chain that the first of slots are, the last node's with them."""
+        for chain in self.chains:
+            run, node = [*chain.in_order, chain.last.slot], chain.last.node
+            if node is not None and node.guard is None and list(slots[: len(run)]) == run:
+                return chain
+        return None
 
     def write(self, depth: int, text: str) -> None:
         """Add lines at a depth."""
@@ -141,12 +192,21 @@ else:
 
     def _called(self, item: Item, depth: int, known: set[int]) -> None:
         """Write what runs before a node's inputs are read, and the call of its step."""
+        lazy = [slot for port in item.inputs for slot in port.lazy]
+        for chain in self.chains:
+            n = len(chain.in_order)
+            if chain.last is item and lazy[-n:] == chain.in_order:
+                self.settle_all(lazy[:-n], depth, known)
+                self._chained(chain, depth, known)
+                return
+        self.settle_all(lazy, depth, known)
+        self._call(item, depth, known)
+
+    def _call(self, item: Item, depth: int, known: set[int]) -> None:
+        """Write the call of a step whose inputs are settled."""
         assert item.node is not None
         slot, time, what = item.slot, self.plan.n_slots + item.slot, step_label(item.node)
         self.names[f"call{slot}"] = self.call_of(item.node)
-        for port in item.inputs:
-            for lazy in port.lazy:
-                self.settle(lazy, depth, known)
         sources = [port.slots[0] for port in item.inputs]
         for source in sources:
             self.read(source, depth, known)
@@ -175,11 +235,11 @@ else:
     def _guarded(self, item: Item, guard: Guard, depth: int, known: set[int]) -> None:
         slot = item.slot
         for source in item.guard:
-            if self.plan.items[source].view is not None:
+            if self.plan.items[source].view is not None and source not in known:
                 self.settle(source, depth, known)
         for source in item.guard:
             self.read(source, depth, known)
-        self.names[f"holds{slot}"] = guard.function
+        holds = self._holds(item, guard)
         self.names[f"skip{slot}"] = _skipping(item.name, guard)
         self._handed_on(slot, item.guard, depth)
         values = ", ".join(f"v{source}" for source in item.guard)
@@ -188,7 +248,7 @@ else:
             f"""
 else:
     try:
-        ok{slot} = True if holds{slot}({values}) else False
+        ok{slot} = True if {holds} else False
     except Exception as error:
         v{slot} = failure({item.name!r}, error, ({values},), {f"when {guard.text}"!r})
         ok{slot} = False
@@ -200,6 +260,62 @@ if ok{slot}:
 """,
         )
         self._called(item, depth + 1, set(known))
+
+    def _holds(self, item: Item, guard: Guard) -> str:
+        """Return what tells whether a guard holds for the values it reads."""
+        values = [f"v{source}" for source in item.guard]
+        text = spelled(guard, {f"v{i}": value for i, value in enumerate(values)})
+        if text is not None:
+            return text
+        self.names[f"holds{item.slot}"] = guard.function
+        return f"holds{item.slot}({', '.join(values)})"
+
+    def _chained(self, chain: Chain, depth: int, known: set[int]) -> None:
+        """Write the call of a chain, and what is done where it has no answer."""
+        head, item = chain.head, chain.last
+        slot, n_slots, source = item.slot, self.plan.n_slots, head.inputs[0].slots[0]
+        assert head.node is not None
+        assert item.node is not None
+        for guarding in head.guard:
+            if self.plan.items[guarding].view is not None and guarding not in known:
+                self.settle(guarding, depth, known)
+        for read in (*head.guard, source):
+            self.read(read, depth, known)
+        there = " and ".join(dict.fromkeys(f"ok{read}" for read in (*head.guard, source)))
+        guard = head.node.guard
+        holds = "True" if guard is None else self._holds(head, guard)
+        numbers = [f"n{k}" for k in range(len(chain.answer))]
+        times = {n_slots + link.item.slot: f"t{k}" for k, link in enumerate(chain.links[:-1])}
+        told = "\n    ".join(f"state[{place}] = {name}" for place, name in times.items())
+        self.write(
+            depth,
+            f"""
+got = None
+if {there}:
+    try:
+        if {holds}:
+            got = enter{slot}(v{source}, clock())
+            if got is not None:
+                {", ".join(["last", *times.values(), *numbers])} = got
+                v{slot} = made{slot}({", ".join(numbers)})
+    except Exception:
+        got = None
+if got is not None:
+    {told}
+    state[{LATER}] = {"state[" + str(LATER) + "] + " if len(self.chains) > 1 else ""}later{slot}
+    ok{slot} = True
+    if v{slot}.__class__ not in FROZEN:
+        v{slot} = settled(v{slot}, {item.name!r}, {step_label(item.node)!r})
+        ok{slot} = v{slot}.__class__ not in NO_VALUE
+    state[{n_slots + slot}] = clock() - last
+else:
+""",
+        )
+        inner = set(known)
+        for before in chain.in_order:
+            self.settle(before, depth + 1, inner)
+        self._call(item, depth + 1, inner)
+        known.add(slot)
 
 
 def _is_plain(item: Item) -> bool:

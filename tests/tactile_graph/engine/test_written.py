@@ -71,7 +71,9 @@ def test_a_shipped_pipeline_comes_to_the_same(name: str, monkeypatch: pytest.Mon
     written: list[Operation] = []
     write = program.Written.program
     monkeypatch.setattr(
-        program.Written, "program", lambda self: written.append(write(self)) or written[-1]
+        program.Written,
+        "program",
+        lambda self, **how: written.append(write(self, **how)) or written[-1],
     )
     runner = load(name).runner()
     assert [repr(runner(f).outcomes) for f in frames] == expected
