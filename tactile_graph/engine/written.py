@@ -145,9 +145,9 @@ class Written:
     def read(self, slot: int, depth: int, known: set[int]) -> None:
         """Make a slot that is settled in the state known by its names."""
         if slot not in known:
-            self.write(
-                depth, f"v{slot} = state[{slot}]\nok{slot} = v{slot}.__class__ not in NO_VALUE"
-            )
+            given = slot in (0, self.plan.image)  # the frame and its image are always there
+            there = "True" if given else f"v{slot}.__class__ not in NO_VALUE"
+            self.write(depth, f"v{slot} = state[{slot}]\nok{slot} = {there}")
             known.add(slot)
 
     def _handed_on(self, slot: int, sources: Sequence[int], depth: int) -> None:
@@ -356,15 +356,16 @@ def _skipping(name: str, guard: Guard) -> Callable[..., Skipped]:
 
     Frame after frame nothing lies on the pad: the last skip is kept for the very same value.
     """
+    if len(guard.refs) != 1:
+        return lambda *values: Skipped(name, guard.reason, values)
     known: Any = guard  # no value is it
     kept = Skipped(name, guard.reason)
 
-    def skip(*values: Any) -> Skipped:
+    def skip(value: Any) -> Skipped:
         nonlocal known, kept
-        if len(values) == 1 and values[0] is known:
-            return kept
-        kept = Skipped(name, guard.reason, values)
-        known = values[0] if len(values) == 1 and values[0].__class__ in IMMUTABLE else guard
+        if value is not known:
+            kept = Skipped(name, guard.reason, (value,))
+            known = value if value.__class__ in IMMUTABLE else guard
         return kept
 
     return skip
