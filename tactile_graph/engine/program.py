@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
-from tactile_graph.compiled.kernel import mode
+from tactile_graph.compiled.kernel import is_warm, mode
 from tactile_graph.engine.deadlines.allowed import Deciding, ladder, where_allowed
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.operations.first_of import first_of
@@ -109,6 +109,11 @@ class Program(list[Operation]):
         Writes them as one.
     chained : bool
         Whether nodes that follow each other may be run by one call.
+
+    Attributes
+    ----------
+    run : callable
+        Runs them all, for one frame.
     """
 
     def __init__(
@@ -117,12 +122,18 @@ class Program(list[Operation]):
         self._written = written
         self._chained = chained
         self._frames = 0
-        super().__init__(operations if written is None else [self._counted(operations)])
+        self.run: Operation = _one_by_one(operations)
+        super().__init__(operations)
+        if written is not None:
+            self._be(self._counted(self.run))
 
-    def _counted(self, operations: list[Operation]) -> Operation:
+    def _be(self, operation: Operation) -> None:
+        self.run = operation
+        self[:] = [operation]
+
+    def _counted(self, run: Operation) -> Operation:
         def operation(state: State) -> None:
-            for one in operations:
-                one(state)
+            run(state)
             self._frames += 1
             if self._frames == AFTER_FRAMES:
                 self._write()
@@ -132,12 +143,13 @@ class Program(list[Operation]):
     def _write(self) -> None:
         """Go on with the text without its chains, and with those once they are worth loading."""
         assert self._written is not None
-        if mode() == "compiled":
-            self.write_chains(make=True)
+        made = mode() == "compiled"
+        if made or is_warm():
+            self.write_chains(make=made)
             return
         at_once = self._written.program(chains=False)
         if not self._chained:
-            self[:] = [at_once]
+            self._be(at_once)
             return
 
         def operation(state: State) -> None:
@@ -146,12 +158,22 @@ class Program(list[Operation]):
             if self._frames == CHAINS_AFTER_FRAMES:
                 self.write_chains(make=False)
 
-        self[:] = [operation]
+        self._be(operation)
 
     def write_chains(self, *, make: bool) -> None:
         """Go on with the text; of its chains those whose machine code is on disk, or all made."""
         if self._written is not None:
-            self[:] = [self._written.program(chains=self._chained, make=make)]
+            self._be(self._written.program(chains=self._chained, make=make))
+
+
+def _one_by_one(operations: list[Operation]) -> Operation:
+    """Return one operation of several."""
+
+    def operation(state: State) -> None:
+        for one in operations:
+            one(state)
+
+    return operation
 
 
 def _times_placed(plan: Plan) -> Counter[int]:

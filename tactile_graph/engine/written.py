@@ -65,7 +65,8 @@ class Written:
         self.lines: list[str] = []
         self.names: dict[str, Any] = {
             "clock": perf_counter_ns, "FROZEN": FROZEN, "NO_VALUE": NO_VALUE,
-            "raised": raised, "failure": failure, "settled": _settled, "field": _field,
+            "Skipped": Skipped, "raised": raised, "failure": failure, "settled": _settled,
+            "field": _field,
         }  # fmt: skip
 
     def program(self, *, chains: bool = True, make: bool = False) -> Operation:
@@ -233,6 +234,43 @@ else:
         )
 
     def _guarded(self, item: Item, guard: Guard, depth: int, known: set[int]) -> None:
+        """Write a guard, and the node below it.
+
+        Frame after frame nothing lies on the pad. Where a guard reads one field, and its step gave
+        the very value that it did not hold for last time, field and skip are that time's too.
+        """
+        slot, read = item.slot, self.plan.items[item.guard[0]]
+        if len(item.guard) > 1 or read.view is None or {read.slot, read.source} <= known:
+            self._told(item, guard, depth, known)
+        else:
+            self.read(read.source, depth, known)
+            self.names[f"kept{slot}"] = [guard, ()]  # no value is it
+            self.names["IMMUTABLE"] = IMMUTABLE
+            self.write(
+                depth,
+                f"""
+if v{read.source} is kept{slot}[0]:
+    v{read.slot}, v{slot} = kept{slot}[1]
+    state[{read.slot}] = v{read.slot}
+    ok{read.slot} = True
+    ok{slot} = False
+else:
+""",
+            )
+            self._told(item, guard, depth + 1, known)
+            self.write(
+                depth + 1,
+                f"""
+if not ok{slot} and ok{read.slot} and v{read.source}.__class__ in IMMUTABLE:
+    if v{slot}.__class__ is Skipped:
+        kept{slot}[:] = v{read.source}, (v{read.slot}, v{slot})
+""",
+            )
+        self.write(depth, f"if ok{slot}:")
+        self._called(item, depth + 1, set(known))
+
+    def _told(self, item: Item, guard: Guard, depth: int, known: set[int]) -> None:
+        """Write what tells whether a guard holds, and what its node comes to where it does not."""
         slot = item.slot
         for source in item.guard:
             if self.plan.items[source].view is not None and source not in known:
@@ -256,10 +294,8 @@ else:
         if not ok{slot}:
             v{slot} = skip{slot}({values})
             ok{slot} = False
-if ok{slot}:
 """,
         )
-        self._called(item, depth + 1, set(known))
 
     def _holds(self, item: Item, guard: Guard) -> str:
         """Return what tells whether a guard holds for the values it reads."""
