@@ -26,7 +26,7 @@ from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.linked import Linked
-from tactile_graph.steps.signature import Kind
+from tactile_graph.steps.signature import Kind, Signature
 from tactile_graph.wires.image import Mask
 from tactile_graph.wires.parts import MaskParts
 
@@ -245,13 +245,27 @@ def linked_form(node: Node) -> Linked | None:
     signature = node.signature
     if signature is None or node.kind is not NodeKind.STEP or node.stateful or node.each:
         return None
+    return None if node.isolation is not None else form_of(signature, node.settings, node.bound)
+
+
+def form_of(
+    signature: Signature, settings: Mapping[str, Any], made: Callable[[], Any]
+) -> Linked | None:
+    """Return a step's form in machine code; None where it offers none for its settings.
+
+    Parameters
+    ----------
+    signature : Signature
+    settings : mapping
+        Every setting of the step.
+    made : callable
+        Gives the step with its settings, where it is a class.
+    """
     form = getattr(signature.target, "linked", None)
-    if form is None or signature.rng or signature.gap or node.isolation is not None:
+    if form is None or signature.rng or signature.gap or len(signature.ports) != 1:
         return None
-    step: Any = node.bound() if signature.kind is Kind.CLASS else None
-    found: Linked | None = (
-        form(**signature.arguments(node.settings)) if step is None else step.linked()
-    )
+    of_class = signature.kind is Kind.CLASS
+    found: Linked | None = made().linked() if of_class else form(**signature.arguments(settings))
     return found
 
 
