@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from hashlib import sha256
 from typing import Any, cast
 
+from tactile_graph.compiled.kernel import mode
+
 
 class Chained:
     """A function that is written out, and its machine code for one list of arguments.
@@ -35,9 +37,11 @@ class Chained:
     @staticmethod
     def possible() -> bool:
         """Return whether such entries can be made here, and read Python's clock."""
+        if sys.platform != "linux" or mode() == "plain":
+            return False
         from tactile_graph.compiled.machine_code import whole
 
-        return sys.platform == "linux" and whole()
+        return whole()
 
     def machine_code(self, *, make: bool) -> Callable[..., Any] | None:
         """Return the machine code; None if it is not on disk, unless it is to be made.

@@ -30,6 +30,8 @@ from tactile_graph.steps.signature import Kind, Signature
 from tactile_graph.wires.image import Mask
 from tactile_graph.wires.parts import MaskParts
 
+Enter = Callable[[Any, int], Any]
+"""Runs a chain on its input; takes when the call began."""
 BOOL = np.dtype(np.bool_)
 SHORTEST = 2
 """Nodes that are worth a chain."""
@@ -157,7 +159,7 @@ class Chain:
             names[f"v{i}"] = ".".join([before[self.plan.items[slot].source], *view.path])
         return str(spelled(item.node.guard, names))
 
-    def entry(self, *, make: bool) -> Callable[[Any, int], Any] | None:
+    def entry(self, *, make: bool) -> Enter | None:
         """Return what takes the chain's input, and when the call began; None without machine code.
 
         It gives the answer's value, and is told where a frame is not for the chain: None.

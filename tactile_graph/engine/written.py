@@ -15,7 +15,8 @@ from time import perf_counter_ns
 from typing import Any
 
 from tactile_graph.compiled.chained import Chained
-from tactile_graph.engine.chains import Chain, Later, chains_of, spelled
+from tactile_graph.compiled.kernel import SWITCH_AFTER_CALLS, is_warm, mode
+from tactile_graph.engine.chains import Chain, Enter, Later, chains_of, spelled
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
 from tactile_graph.engine.operations.step_operation import Call, Operation, step_label
@@ -96,11 +97,29 @@ class Written:
             enter = chain.entry(make=make)
             if enter is not None:
                 slot = chain.last.slot
-                self.names[f"enter{slot}"] = enter
+                at_once = make or is_warm() or mode() == "compiled"
+                self.names[f"enter{slot}"] = enter if at_once else self._trusted(slot, enter)
                 self.names[f"made{slot}"] = chain.links[-1].form.made
                 self.names[f"later{slot}"] = (Later(chain, self.operations),)
                 found.append(chain)
         return found
+
+    def _trusted(self, slot: int, enter: Enter) -> Enter:
+        """Return what leaves frames to a chain's nodes until their own kernels are machine code.
+
+        Plain loops may answer otherwise in the last bit. Which ones answer must not hang on whether
+        a chain's machine code is on disk.
+        """
+        left = SWITCH_AFTER_CALLS
+
+        def seen(value: Any, start: int) -> Any:
+            nonlocal left
+            left -= enter(value, start) is not None
+            if left < 0:
+                self.names[f"enter{slot}"] = enter
+            return None
+
+        return seen
 
     def settle_all(self, slots: Sequence[int], depth: int, known: set[int]) -> None:
         """Settle slots in their order, those of a chain by one call."""

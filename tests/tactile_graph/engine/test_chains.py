@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterator
 from threading import Thread
 from time import perf_counter_ns
@@ -14,6 +15,7 @@ import pytest
 from helpers_modes import answered_by
 from tactile_graph import Frame, Pipeline, load, loads
 from tactile_graph.compiled.chained import Chained
+from tactile_graph.engine import program, written
 from tactile_graph.engine.chains import chains_of, linked_form, spelled
 from tactile_graph.engine.outcomes.outcomes import LATER
 from tactile_graph.engine.runner import Runner
@@ -199,6 +201,21 @@ def test_verified_and_hurried_runs_have_no_chains() -> None:
     runner = pipeline.runner(verify=True)
     runner.prepare()
     assert not runner(frame)._state[LATER]
+
+
+@pytest.mark.usefixtures("in_python")
+def test_a_chain_found_on_disk_waits_until_its_nodes_answer_by_machine_code(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(program, "AFTER_FRAMES", 1)
+    monkeypatch.setattr(program, "CHAINS_AFTER_FRAMES", 2)
+    monkeypatch.setattr(written, "SWITCH_AFTER_CALLS", 3)
+    monkeypatch.setitem(sys.modules, "numba", sys)
+    runner, frames = load("circle-3").runner(), discs()
+    small, large = frames[1], frames[5:12]
+    assert runner(small)["footprint"].count > 0
+    ran = [bool(runner(frame)._state[LATER]) for frame in (large[0], small, *large[1:])]
+    assert ran == [False] * 6 + [True, False]  # the last has no empty cell
 
 
 def test_a_condition_is_told_to_machine_code_where_it_means_the_same() -> None:
