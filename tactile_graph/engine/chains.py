@@ -203,12 +203,15 @@ class Later:
         last = chain.last.slot
         self._operations = [operations[slot] for slot in sorted(chain.slots) if slot != last]
         self._n_slots = chain.plan.n_slots
+        self._first = chain.head.slot
         self._lock = Lock()
 
     def __call__(self, state: State) -> None:
         """Settle the chain's slots in a frame's state; times stay those of the frame's run."""
         n = self._n_slots
         with self._lock:
+            if state[self._first] is not None:  # another thread was sooner
+                return
             times = state[n : 2 * n]
             for settle in self._operations:
                 settle(state)

@@ -160,6 +160,12 @@ class Program(list[Operation]):
 
         self._be(operation)
 
+    def unchain(self) -> None:
+        """Run each node by itself from now on."""
+        self._chained = False
+        if self._written is not None and self._written.chains:
+            self.write_chains(make=False)
+
     def write_chains(self, *, make: bool) -> None:
         """Go on with the text; of its chains those whose machine code is on disk, or all made."""
         if self._written is not None:

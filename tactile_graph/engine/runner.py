@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,6 +150,11 @@ class Runner(Generic[ResultT]):
     def prepare(self) -> None:
         """Make the machine code of nodes that are run by one call, and use it from now on."""
         self._operations.write_chains(make=True)
+
+    def each_alone(self) -> Self:
+        """Run every node by a call of its own, whose time is its alone; return the runner."""
+        self._operations.unchain()
+        return self
 
     @property
     def _keeping(self) -> dict[str, tuple[Node, Call]]:

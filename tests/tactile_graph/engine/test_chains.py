@@ -196,7 +196,16 @@ def test_a_chain_that_raises_leaves_the_frame_to_its_nodes() -> None:
 
 
 @pytest.mark.usefixtures("in_python")
-def test_verified_and_hurried_runs_have_no_chains() -> None:
+def test_a_runner_whose_nodes_run_each_alone_has_no_chains() -> None:
+    runner, frames = chained(load("circle-3")), discs()
+    assert runner(frames[8])._state[LATER]
+    assert not runner.each_alone()(frames[9])._state[LATER]
+    runner.prepare()
+    assert not runner(frames[8])._state[LATER]
+
+
+@pytest.mark.usefixtures("in_python")
+def test_verified_runs_have_no_chains() -> None:
     pipeline, frame = load("circle-3"), discs()[8]
     runner = pipeline.runner(verify=True)
     runner.prepare()
