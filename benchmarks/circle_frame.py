@@ -26,8 +26,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 from rounds import Timed, print_table
 from suite_parts.rounds_of import in_turn
 
-from tactile_graph import Frame, Pipeline, load, loads
+from tactile_graph import Frame, Pipeline, Result, load, loads
 from tactile_graph.compiled import warm_up
+from tactile_graph.inspect import Runner
 
 LEVEL_V, PITCH_CM, ORIGIN_CM = 0.01, 1.3, -0.15
 DISC5 = np.array(
@@ -121,6 +122,13 @@ def by_hand(guards: bool) -> Callable[[Frame], object]:
     return call
 
 
+def prepared(pipeline: Pipeline) -> Runner[Result]:
+    """A runner with all its machine code, as `tactile-graph prepare` leaves it."""
+    runner = pipeline.runner()
+    runner.prepare()
+    return runner
+
+
 def empty_frames() -> list[Frame]:
     rng = np.random.default_rng(0)
     return [
@@ -130,20 +138,20 @@ def empty_frames() -> list[Frame]:
 
 
 def one_frame() -> None:
-    both, runner = frames(), load("circle-3").runner()
+    both, runner = frames(), prepared(load("circle-3"))
     images: list[object] = [f.image.values for f in both]
     ours = {
         # Not shown: whoever follows the scikit-image script is a quarter slower for it.
-        "first": cycled(load("circle-3").runner(), list(both)),  # type: ignore[arg-type]
+        "first": cycled(prepared(load("circle-3")), list(both)),  # type: ignore[arg-type]
         "tactile-graph, circle-3": cycled(runner, list(both)),  # type: ignore[arg-type]
         "the same steps by hand": cycled(by_hand(True), list(both)),  # type: ignore[arg-type]
         "circle-3 without conditions": cycled(
-            unguarded().runner(),
+            prepared(unguarded()),
             list(both),  # type: ignore[arg-type]
         ),
         "the same by hand": cycled(by_hand(False), list(both)),  # type: ignore[arg-type]
         "tactile-graph, an empty pad": cycled(
-            load("circle-3").runner(),
+            prepared(load("circle-3")),
             list(empty_frames()),  # type: ignore[arg-type]
         ),
         "the same steps by hand, an empty pad": cycled(

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.steps import Linked
 from tactile_graph.wires import Mask, Points, packed_mask, quick_points
+from tactile_graph.wires.parts import MaskParts, PointsParts, points_of
 from tactile_graph.wires.stacks import MaskStack, PointsStack
 from tactile_graph_hull.packed import centres_of, first_met, scanned_words
 from tactile_graph_hull.parts import several_parts
@@ -62,8 +64,14 @@ def boundary_scan_stacked(mask: MaskStack) -> PointsStack:
     return PointsStack(xy[: starts[n]], starts)
 
 
+def boundary_scan_linked() -> Linked:
+    """Return the form for masks as machine code hands them on."""
+    return Linked(scanned_parts, PointsParts, points_of)
+
+
 boundary_scan.notice = several_parts  # type: ignore[attr-defined]
 boundary_scan.stacked = boundary_scan_stacked  # type: ignore[attr-defined]
+boundary_scan.linked = boundary_scan_linked  # type: ignore[attr-defined]
 
 
 def seen_cells(mask: NDArray[np.bool_], scans: tuple[str, ...]) -> NDArray[np.bool_]:
@@ -176,6 +184,13 @@ def scanned_packed(
     place, centres = np.empty(columns + 1, np.int64), np.empty((2 * (rows + columns), 2))
     n = centres_of(seen, pitch_x, pitch_y, x0, y0, place, centres, 0)
     return centres[:n]
+
+
+@compiled_later
+def scanned_parts(mask: MaskParts) -> tuple[bool, PointsParts]:
+    """Do the same to the parts of a mask."""
+    grid = mask.pitch_x, mask.pitch_y, mask.x0, mask.y0
+    return True, PointsParts(scanned_packed(mask.words, mask.columns, *grid))
 
 
 @compiled_later

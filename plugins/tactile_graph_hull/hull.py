@@ -9,7 +9,9 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph.steps import Linked
 from tactile_graph.wires import Points, Polygon
+from tactile_graph.wires.parts import PointsParts, PolygonParts, polygon_of
 from tactile_graph.wires.stacks import Answered, PointsStack, PolygonStack
 from tactile_graph_hull.corners import finished, hull_polygon, in_range
 from tactile_graph_hull.turn_of_points import turn
@@ -55,7 +57,13 @@ def hull_stacked(points: PointsStack, *, rounding_ulps: float) -> Answered:
     return Answered(PolygonStack(xy[: starts[-1]], starts), np.diff(starts) > 0)
 
 
+def hull_linked(*, rounding_ulps: float) -> Linked:
+    """Return the form for points as machine code hands them on."""
+    return Linked(corners_of_parts, PolygonParts, polygon_of, (float(rounding_ulps),))
+
+
 hull.stacked = hull_stacked  # type: ignore[attr-defined]
+hull.linked = hull_linked  # type: ignore[attr-defined]
 
 
 def _chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
@@ -99,6 +107,13 @@ def chain_corners(xy: NDArray[np.float64], ulps: float) -> NDArray[np.float64]:
     if size > 1:
         size -= 1  # back at the start
     return finished(chain[:size], ulps)
+
+
+@compiled_later
+def corners_of_parts(points: PointsParts, ulps: float) -> tuple[bool, PolygonParts]:
+    """Do the same to the parts of points; not where there are no corners."""
+    corners = chain_corners(points.xy_cm, ulps)
+    return corners.shape[0] > 0, PolygonParts(PointsParts(corners))
 
 
 @compiled_later

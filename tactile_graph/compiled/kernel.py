@@ -83,9 +83,11 @@ class Kernel(Generic[P, R]):
     direct : callable
         The same for arguments that are known to be of the very types of every other direct call,
         in number type, dimensions and order in memory: machine code then takes them without a
-        look, which saves 0.1 us an array. Other types are other memory, and may end the process: a
-        step that has an array from elsewhere asks for its ``dtype``, ``ndim`` and
-        ``flags.c_contiguous`` first, for the class of a number, and uses `call` if they are others.
+        search for its code, which saves 0.1 us an array. An array of other dimensions, numbers or
+        order is refused with a TypeError (under a version of numba that kernels were not tried with
+        it may end the process): a step that has an array from elsewhere asks for its ``dtype``,
+        ``ndim`` and ``flags.c_contiguous`` first, for the class of a number, and uses `call` if
+        they are others.
     """
 
     def __init__(

@@ -18,6 +18,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import rtsys
 
+from tactile_graph.compiled.looked_at import arrays_looked_at
 from tactile_graph.compiled.numbas_own import made_parts
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
@@ -26,6 +27,8 @@ from tactile_graph.locks import Lock
 OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
 """Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
 
+MADE = "arrays looked at"
+"""How entries are made, beside numba's version: machine code made otherwise is made anew."""
 POLL_S = 0.02
 """Between two looks whether another process has finished."""
 
@@ -50,7 +53,7 @@ def _under_way() -> Iterator[None]:
     gc.disable()
     _entries += 1
     try:
-        with made_parts(into_part, offered):
+        with made_parts(into_part, offered), arrays_looked_at():
             yield
     finally:
         _entries -= 1
@@ -213,7 +216,7 @@ class EntryCache(FunctionCache):
     def __init__(self, loops: Callable[..., Any]) -> None:
         super().__init__(loops)
         name = f"{self._impl.filename_base}.whole"
-        made_of = f"{Reach(loops).digest} {sorted(OPTIONS.items(), key=str)}"
+        made_of = f"{Reach(loops).digest} {sorted(OPTIONS.items(), key=str)} {MADE}"
         self._cache_file = IndexDataCacheFile(self.cache_path, name, made_of)
         self._name = loops.__name__
         self.waits = True

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
+from tactile_graph.compiled.kernel import is_warm, mode
 from tactile_graph.engine.deadlines.allowed import Deciding, ladder, where_allowed
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.operations.first_of import first_of
@@ -26,7 +27,7 @@ from tactile_graph.engine.operations.step_operation import (
 )
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
-from tactile_graph.engine.written import AFTER_FRAMES, Written
+from tactile_graph.engine.written import AFTER_FRAMES, CHAINS_AFTER_FRAMES, Written
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
@@ -62,7 +63,9 @@ def make_program(
     blank: State,
     reading: Reading = AS_THEY_ARE,
     deciding: Deciding | None = None,
-) -> list[Operation]:
+    *,
+    chained: bool = True,
+) -> Program:
     """Return the operations of a plan's main part.
 
     Parameters
@@ -76,6 +79,8 @@ def make_program(
         A frame's own values, from the beginning, if not given.
     deciding : Deciding, optional
         Everything is done if not given. The plan must be one whose ladders wait.
+    chained : bool
+        Whether nodes that follow each other may be run by one call.
     """
     operations: list[Operation] = [_nothing] * plan.n_slots
     times_placed = _times_placed(plan)
@@ -89,26 +94,90 @@ def make_program(
         operations[item.slot] = operation
     program = [operations[slot] for slot in plan.main]
     if deciding is not None or reading is not AS_THEY_ARE:
-        return program
+        return Program(program)
     alone = frozenset(slot for slot, times in times_placed.items() if times == 1)
-    return [_written_later(program, Written(plan, call_of, operations, alone))]
+    return Program(program, Written(plan, call_of, operations, alone), chained=chained)
 
 
-def _written_later(program: list[Operation], written: Written) -> Operation:
-    """Return one operation for a whole program: written out after some frames."""
-    frames = 0
-    at_once: Operation | None = None
+class Program(list[Operation]):
+    """The operations of a plan's main part; the same as one function, once that is worth while.
+
+    Parameters
+    ----------
+    operations : list of callable
+    written : Written, optional
+        Writes them as one.
+    chained : bool
+        Whether nodes that follow each other may be run by one call.
+
+    Attributes
+    ----------
+    run : callable
+        Runs them all, for one frame.
+    """
+
+    def __init__(
+        self, operations: list[Operation], written: Written | None = None, *, chained: bool = True
+    ) -> None:
+        self._written = written
+        self._chained = chained
+        self._frames = 0
+        self.run: Operation = _one_by_one(operations)
+        super().__init__(operations)
+        if written is not None:
+            self._be(self._counted(self.run))
+
+    def _be(self, operation: Operation) -> None:
+        self.run = operation
+        self[:] = [operation]
+
+    def _counted(self, run: Operation) -> Operation:
+        def operation(state: State) -> None:
+            run(state)
+            self._frames += 1
+            if self._frames == AFTER_FRAMES:
+                self._write()
+
+        return operation
+
+    def _write(self) -> None:
+        """Go on with the text without its chains, and with those once they are worth loading."""
+        assert self._written is not None
+        made = mode() == "compiled"
+        if made or is_warm():
+            self.write_chains(make=made)
+            return
+        at_once = self._written.program(chains=False)
+        if not self._chained:
+            self._be(at_once)
+            return
+
+        def operation(state: State) -> None:
+            at_once(state)
+            self._frames += 1
+            if self._frames == CHAINS_AFTER_FRAMES:
+                self.write_chains(make=False)
+
+        self._be(operation)
+
+    def unchain(self) -> None:
+        """Run each node by itself from now on."""
+        self._chained = False
+        if self._written is not None and self._written.chains:
+            self.write_chains(make=False)
+
+    def write_chains(self, *, make: bool) -> None:
+        """Go on with the text; of its chains those whose machine code is on disk, or all made."""
+        if self._written is not None:
+            self._be(self._written.program(chains=self._chained, make=make))
+
+
+def _one_by_one(operations: list[Operation]) -> Operation:
+    """Return one operation of several."""
 
     def operation(state: State) -> None:
-        nonlocal frames, at_once
-        if at_once is not None:
-            at_once(state)
-            return
-        for one in program:
+        for one in operations:
             one(state)
-        frames += 1
-        if frames == AFTER_FRAMES:
-            at_once = written.program()
 
     return operation
 

@@ -56,7 +56,7 @@ class Replay:
 
     def __call__(self, result: AnyOutcomes) -> AnyOutcomes:
         """Return what the plan came to in the frame of a recorded result."""
-        recorded = self._recorded = self._reader(result.plan)(result._state)
+        recorded = self._recorded = self._reader(result.plan)(result.whole_state)
         n, state = self.plan.n_slots, self._blank.copy()
         state[self.plan.image] = recorded[self.plan.image]
         state[0] = recorded[0]

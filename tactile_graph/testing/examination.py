@@ -10,12 +10,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from tactile_graph.engine import chains
 from tactile_graph.engine.blocks.stacked import StackedForm, form_of
 from tactile_graph.engine.calls.watched import Kept
 from tactile_graph.errors import Skip, text_of
+from tactile_graph.steps.linked import Linked
 from tactile_graph.testing.cases import ORDINARY, Case, all_cases, ordinary
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
+from tactile_graph.testing.links import link_trouble
 from tactile_graph.testing.same import same
 from tactile_graph.testing.shown import unshown
 from tactile_graph.testing.stacks import mixed, stack_trouble
@@ -92,6 +95,7 @@ class Examination:
         comparable = self._look_at_copies(usual, first)
         seen = {pickle.dumps(self._inputs(usual))}
         self.look_at_stack(usual, self._inputs(usual))
+        self.look_at_link(usual, self._inputs(usual))
         for case in others:
             try:
                 inputs = self._inputs(case)
@@ -102,6 +106,7 @@ class Examination:
                 seen.add(mark)
                 self.look_at(case, inputs)
                 self.look_at_stack(case, inputs)
+                self.look_at_link(case, inputs)
         again = self._try(self._call(), self._inputs(usual))
         if kept.changed():
             self._tell(ORDINARY, WRITES_BEFORE)
@@ -129,6 +134,17 @@ class Examination:
             return
         for rows in mixed(inputs, self._inputs(ordinary())):
             self._tell(case.name, stack_trouble(self._form, rows, self._one))
+
+    def look_at_link(self, case: Case, inputs: Inputs) -> None:
+        """Try a step's form for machine code on the case, where it has one."""
+        if self._link is not None:
+            self._tell(case.name, link_trouble(self._link, inputs, self._one))
+
+    @cached_property
+    def _link(self) -> Linked | None:
+        signature = self.subject.signature
+        made = self.subject.call().target
+        return chains.form_of(signature, self.subject.settings, lambda: made)
 
     @cached_property
     def _form(self) -> StackedForm | None:

@@ -93,10 +93,11 @@ class Session:
         little, whoever comes behind a variant that computes much. Steps that keep state have to
         stay in one runner, and so in one order.
         """
+        first.each_alone()  # what variants share would tell whose nodes are quick else
         if first.stateful:
             return [first]
         found = balanced_orders(len(self.prepared), MOST_ORDERS)
-        return [self.merged.in_order(order).runner(seed=self.seed) for order in found]
+        return [self.merged.in_order(order).runner(seed=self.seed).each_alone() for order in found]
 
     @property
     def n(self) -> int:
@@ -114,7 +115,7 @@ class Session:
         warm_up()
         if any(i.node is not None and i.node.is_sink for i in self.plan.nodes):
             return
-        copy = self.merged.pipeline.runner(seed=self.seed)
+        copy = self.merged.pipeline.runner(seed=self.seed).each_alone()
         files = tuple(dict.fromkeys(p.pipeline.file for p in self.prepared))
         until = time.perf_counter() + WARM_S
         with prepared_beside(Work(files, plugins=selected())):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from tactile_graph.steps import Linked
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask
+from tactile_graph.wires.parts import MaskParts, mask_of
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import ElementSetting, parse_element
 from tactile_graph_filters.morphology.erosion import make_plan, swept, swept_mask
-from tactile_graph_filters.morphology.packed import around, combined, combined_mask
+from tactile_graph_filters.morphology.packed import around, combined, combined_mask, combined_parts
 
 
 class Dilate:
@@ -45,3 +47,9 @@ class Dilate:
         """Return the dilated masks of several frames."""
         packed = None if self._border else combined(mask, self._element, dilate=True)
         return packed or swept(mask, self._plan)
+
+    def linked(self) -> Linked | None:
+        """Return the form for masks as machine code hands them on."""
+        if self._around is None:
+            return None
+        return Linked(combined_parts, MaskParts, mask_of, (self._around,))

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.wires import Mask, packed_mask
+from tactile_graph.wires.parts import MaskParts
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.elements import Element
 from tactile_graph_filters.morphology.erosion import BOOL
@@ -166,6 +167,24 @@ def ones(word):  # type: ignore[no-untyped-def]
 
 
 @compiled_later
+def doubled_parts(mask):  # type: ignore[no-untyped-def]
+    """Do what `doubled_cells` does to the parts of a mask; not if it is wider than half a word."""
+    fits = mask.columns <= 32
+    rows = mask.words.shape[0] if fits else 0
+    out = np.empty(2 * rows, np.uint64)
+    for r in range(rows):
+        word = mask.words[r]
+        for shift, kept in _HALVES:
+            word = (word | (word << shift)) & kept
+        word |= word << _ONE
+        out[2 * r] = word
+        out[2 * r + 1] = word
+    pitch_x, pitch_y = mask.pitch_x / 2, mask.pitch_y / 2
+    columns, count = 2 * mask.columns, 4 * mask.count
+    return fits, MaskParts(out, columns, pitch_x, pitch_y, mask.x0, mask.y0, count)
+
+
+@compiled_later
 def _word(row):  # type: ignore[no-untyped-def]
     """Return a row of cells as a word."""
     word = np.uint64(0)
@@ -199,6 +218,15 @@ def combined_rows(words, columns, element, out):  # type: ignore[no-untyped-def]
     for r in range(words.shape[0]):
         given[element[0, 1] + r] = words[r]
     return _combined_into(given, columns, element, out)
+
+
+@compiled_later
+def combined_parts(mask, element):  # type: ignore[no-untyped-def]
+    """Do the same to the parts of a mask: the linked form of steps that have an element."""
+    out = np.empty(mask.words.shape[0], np.uint64)
+    count = combined_rows(mask.words, mask.columns, element, out)
+    grid = mask.pitch_x, mask.pitch_y, mask.x0, mask.y0
+    return True, MaskParts(out, mask.columns, grid[0], grid[1], grid[2], grid[3], count)
 
 
 def _combined_cells_plain(values: Cells, element: Around, out: Words) -> int:

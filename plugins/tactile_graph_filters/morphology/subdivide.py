@@ -8,11 +8,13 @@ import numpy as np
 from annotated_types import Ge, Le
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.steps import Linked
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Mask, packed_mask, quick_mask
+from tactile_graph.wires.parts import MaskParts, mask_of
 from tactile_graph.wires.stacks import MaskStack
 from tactile_graph_filters.morphology.erosion import BOOL
-from tactile_graph_filters.morphology.packed import WORD, doubled, doubled_cells
+from tactile_graph_filters.morphology.packed import WORD, doubled, doubled_cells, doubled_parts
 
 HALF = Mask.WIDEST // 2
 
@@ -87,4 +89,10 @@ def subdivide_stacked(mask: MaskStack, *, factor: int) -> MaskStack:
     return MaskStack(out.reshape(n, rows * factor, columns * factor), *grid, counts)
 
 
+def subdivide_linked(*, factor: int) -> Linked | None:
+    """Return the form for masks as machine code hands them on."""
+    return Linked(doubled_parts, MaskParts, mask_of) if factor == 2 else None
+
+
 subdivide.stacked = subdivide_stacked  # type: ignore[attr-defined]
+subdivide.linked = subdivide_linked  # type: ignore[attr-defined]

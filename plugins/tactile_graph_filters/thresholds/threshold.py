@@ -53,10 +53,11 @@ def at_least_each(values, level, out, counts):  # type: ignore[no-untyped-def]
 def any_at_least(values: NDArray[Any], level: float) -> bool:
     """Return whether any of ``values`` reaches ``level``, or is NaN."""
     for i in range(values.shape[0]):
-        row = values[i]
-        for j in range(values.shape[1]):
-            if not row[j] < level:
-                return True
+        row, below = values[i], 0
+        for j in range(values.shape[1]):  # without a way out: some instructions for a row
+            below += row[j] < level
+        if below < values.shape[1]:
+            return True
     return False
 
 
@@ -181,6 +182,7 @@ class Threshold:
         fixed = None if self.takes or self._recorded is not None else self._other
         self._fixed, self._fixed_in_volts = fixed, fixed if level_v is None else self._level_v
         self._empty: Mask | None = None  # what an empty pad gave last, while it stays empty
+        self._empty_shape = self._empty_strides = (0, 0)
 
     def _reached(self, level: float | None) -> float | None:
         """Return the level that a cell must reach."""
@@ -200,13 +202,24 @@ class Threshold:
             If only a level in another unit is known than the image is in.
         """
         level = self._fixed_in_volts if image.quantity == "volt" else self._fixed
-        if level is not None and image.valid is None and self._empty is None:
-            values = image.values  # the usual case, by the shortest way
-            out = np.empty(values.shape, BOOL)
-            usual = values.dtype is DOUBLE and values.ndim == 2 and values.flags.c_contiguous
-            count = (at_least.direct if usual else at_least.call)(values, level, out)
-            if count > 0:
-                return quick_mask(out, image.pitch_cm, image.origin_cm, count)
+        empty = self._empty
+        if level is not None and image.valid is None:  # the usual cases, by the shortest way
+            values = image.values
+            if empty is None:
+                out = np.empty(values.shape, BOOL)
+                usual = values.dtype is DOUBLE and values.ndim == 2 and values.flags.c_contiguous
+                count = (at_least.direct if usual else at_least.call)(values, level, out)
+                if count > 0:
+                    return quick_mask(out, image.pitch_cm, image.origin_cm, count)
+            elif (  # a pad is empty for long: a look suffices, and nothing is made anew
+                values.dtype is DOUBLE
+                and values.shape == self._empty_shape
+                and values.strides == self._empty_strides  # in order of memory
+                and image.pitch_cm == empty.pitch_cm
+                and image.origin_cm == empty.origin_cm
+                and not any_at_least.direct(values, level)
+            ):
+                return empty
         in_volts = self._level_v is not None and image.quantity == "volt"
         level = self._level_v if in_volts else self._other
         if self.takes and image.quantity not in self.takes["image"]:
@@ -214,18 +227,19 @@ class Threshold:
             raise RuleError(f"{self.takes_by} is for images in {wanted}, got {image.quantity}")
         if level is None:
             return levelled(image)
-        empty = self._empty
         if (
             empty is not None
             and image.valid is None
             and _on_one_grid(image, empty)
             and not any_at_least.call(image.values, level)
         ):
-            return empty  # a pad is empty for long: a look suffices, and nothing is made anew
+            return empty
         mask = footprint(image, level)
         if self._recorded is not None and not in_volts:
             mask = with_level(mask, self._recorded)
         self._empty = None if mask.count or image.valid is not None else mask
+        self._empty_shape = _, columns = mask.shape
+        self._empty_strides = 8 * columns, 8
         return mask
 
     def stacked(self, image: ImageStack) -> Answered:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from tactile_graph.steps import Linked
 from tactile_graph.wires import Points
 from tactile_graph.wires.stacks import Answered, PointsStack
 from tactile_graph_fitters.circle.circle_outcome import circle_from, circles_from
-from tactile_graph_fitters.circle.fitted_circle import FittedCircle
-from tactile_graph_fitters.circle.geometric import geometric_fit, geometric_fit_each
+from tactile_graph_fitters.circle.fitted_circle import CircleParts, FittedCircle
+from tactile_graph_fitters.circle.geometric import (
+    geometric_fit,
+    geometric_fit_each,
+    geometric_fit_of_parts,
+)
 
 
 def fit_circle(points: Points) -> FittedCircle:
@@ -49,4 +54,10 @@ def fit_circle_stacked(points: PointsStack) -> Answered:
     return circles_from(points, geometric_fit_each.call)
 
 
+def fit_circle_linked() -> Linked:
+    """Return the form for points as machine code hands them on."""
+    return Linked(geometric_fit_of_parts, CircleParts, FittedCircle.quickly)
+
+
 fit_circle.stacked = fit_circle_stacked  # type: ignore[attr-defined]
+fit_circle.linked = fit_circle_linked  # type: ignore[attr-defined]

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from tactile_graph.wires import Circle
+
+
+class CircleParts(NamedTuple):
+    """A fitted circle, as machine code hands it on: what `FittedCircle.quickly` takes."""
+
+    x_cm: float
+    y_cm: float
+    radius_cm: float
+    rms_cm: float
+    n_points: int
+    iterations: int
 
 
 @dataclass(frozen=True)

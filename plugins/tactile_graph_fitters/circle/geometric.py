@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.wires.parts import PointsParts
 from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_circle, back
+from tactile_graph_fitters.circle.fitted_circle import CircleParts
 from tactile_graph_fitters.circle.principal_axes import EPS, NOT_SETTLED, OK, ONE_LINE, into_frame
 
 STEP = 1e-10  # of the radius: Newton squares it once more, to below rounding
@@ -155,6 +157,13 @@ def geometric_fit(xy: NDArray[np.float64]) -> tuple[int, float, float, float, fl
     status, a, b, radius, rms, rounds = refined(uv, a, b)
     x, y, radius, rms = back(frame, a, b, radius, rms)
     return status, x, y, radius, rms, rounds
+
+
+@compiled_later
+def geometric_fit_of_parts(points: PointsParts) -> tuple[bool, CircleParts]:
+    """Do the same to the parts of points; not where there is no circle."""
+    status, x, y, radius, rms, rounds = geometric_fit(points.xy_cm)
+    return status == OK, CircleParts(x, y, radius, rms, points.xy_cm.shape[0], rounds)
 
 
 @compiled_later

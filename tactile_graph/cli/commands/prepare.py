@@ -75,6 +75,7 @@ def prepared(name: str) -> str:
         runner = pipeline.runner()
         for stack in in_stacks(frames) if runner.in_blocks else ():
             runner.block(stack)
+        runner.prepare()
     except TactileGraphError as error:
         return f"{name}: {FAILED}, {error}"
     return f"{name}: prepared by {n} frames in {time.monotonic() - start:.1f} s"

@@ -19,14 +19,15 @@ from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, on
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires.frame import Frame
 
-REUSED, ITEM_FAILURES, INNER = -3, -2, -1
-"""Behind the outcomes and times of its slots a state holds whether it is the last frame's again,
-the failures of single items, and the results of embedded pipelines."""
+LATER, REUSED, ITEM_FAILURES, INNER = -4, -3, -2, -1
+"""Behind the outcomes and times of its slots a state holds what makes those that were left unmade
+(each takes the state), whether it is the last frame's again, the failures of single items, and the
+results of embedded pipelines."""
 
 
 def blank_state(n_slots: int) -> list[Any]:
     """Return the state a frame starts from: outcomes, times in nanoseconds, and what is extra."""
-    return [None] * n_slots + [0] * n_slots + [False, (), None]
+    return [None] * n_slots + [0] * n_slots + [(), False, (), None]
 
 
 class NoResult(TactileGraphError):  # noqa: N818 -- it reads as what it says
@@ -63,6 +64,15 @@ class Outcomes(Mapping[str, Any]):
     def __init__(self, plan: Plan, state: list[Any]) -> None:
         self.plan = plan
         self._state = state
+
+    @property
+    def whole_state(self) -> list[Any]:
+        """The state with everything made that was left for later."""
+        state = self._state
+        for make in state[LATER]:
+            make(state)
+        state[LATER] = ()  # only now: another thread may ask meanwhile
+        return state
 
     def again(self, frame: Frame) -> Self:
         """Return the same outcomes for an equal frame; they took no time."""
@@ -135,12 +145,16 @@ class Outcomes(Mapping[str, Any]):
             hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
             raise UsageError(f"no node or output named {name!r}{hint}")
         outcome = self._state[slot]
+        if outcome is None and self._state[LATER]:
+            outcome = self.whole_state[slot]
         return NOT_ASKED if outcome is None else outcome
 
     def outcome_at(self, ref: Ref) -> Outcome:
         """Return the outcome of what the plan reads at a reference."""
         slot = self.plan.refs.get(ref)
         outcome = None if slot is None else self._state[slot]
+        if slot is not None and outcome is None and self._state[LATER]:
+            outcome = self.whole_state[slot]
         return NOT_ASKED if outcome is None else outcome
 
     @property

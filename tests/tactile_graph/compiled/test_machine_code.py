@@ -239,3 +239,24 @@ def test_direct_calls_answer_as_calls_do_before_and_after_machine_code(
     kernel.reset()
     assert kernel.direct(VALUES, 1) == 2.0
     assert kernel.direct == kernel._first_direct
+
+
+@pytest.mark.slow
+def test_an_array_of_another_kind_is_refused_by_machine_code_called_directly(fresh: Any) -> None:
+    spread = fresh().spread
+    spread.compiled(VALUES)
+    call = machine_code.entry_point(spread.compiled, (VALUES,))
+    assert call is not spread.compiled
+    assert call(VALUES) == call(VALUES[:5]) == 3.0
+    wrong: list[Any] = [
+        np.zeros((2, 2)), np.zeros((2,) * 30), np.float64(1.0), VALUES[::2], VALUES[::-1],
+        VALUES.astype(int), [1.0], None, object(),
+    ]  # fmt: skip
+    before = [sys.getrefcount(value) for value in wrong]
+    for value in wrong:
+        with pytest.raises(TypeError):
+            call(value)
+    del value
+    assert [sys.getrefcount(value) for value in wrong] == before
+    with pytest.raises(TypeError):
+        call(VALUES.astype("f4"))

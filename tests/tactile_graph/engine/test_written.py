@@ -71,7 +71,9 @@ def test_a_shipped_pipeline_comes_to_the_same(name: str, monkeypatch: pytest.Mon
     written: list[Operation] = []
     write = program.Written.program
     monkeypatch.setattr(
-        program.Written, "program", lambda self: written.append(write(self)) or written[-1]
+        program.Written,
+        "program",
+        lambda self, **how: written.append(write(self, **how)) or written[-1],
     )
     runner = load(name).runner()
     assert [repr(runner(f).outcomes) for f in frames] == expected
@@ -143,3 +145,24 @@ outputs: [slow]
 """
     runner = loads(text, "timed.yaml", registry({**STEPS, "slow": slow})).runner()
     assert all(runner(one).times_us["slow"] > 1900.0 for one in FRAMES)
+
+
+def test_what_an_empty_pad_came_to_is_kept_while_it_stays_empty(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(9)
+    grids = [(1.3, 1.3), (1.3, 1.3), (0.9, 1.3), (1.3, 1.3)]
+    empty = [
+        Frame.of(rng.normal(0.0, 1e-3, (16, 16)), grid, (-0.15, -0.15), "volt") for grid in grids
+    ]
+    frames = [*empty, discs(8)[7], *empty, discs(8)[2], *empty]
+    monkeypatch.setattr(program, "AFTER_FRAMES", NEVER)
+    expected = [repr(load("circle-3").runner()(f).outcomes) for f in frames]
+    monkeypatch.setattr(program, "AFTER_FRAMES", 1)
+    runner = load("circle-3").runner()
+    results = [runner(f) for f in frames]
+    assert [repr(r.outcomes) for r in results] == expected
+    assert results[6].outcome("footprint") is results[5].outcome("footprint")
+    assert results[6].outcome("circle") is results[5].outcome("circle")
+    assert results[2].outcome("footprint").pitch_cm == (0.9, 1.3)
+    assert results[4].outcome("circle").radius_cm > 0
