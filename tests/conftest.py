@@ -88,10 +88,19 @@ BY_LOOPS = tuple(
     for room in (
         "docs", "tactile_graph/testing", "tactile_graph_classifiers",
         "tactile_graph_filters/parting", "tactile_graph_fitters", "tactile_graph_hull",
-        "tactile_graph_likelihood", "tactile_graph_pipelines",
+        "tactile_graph_likelihood", "tactile_graph_mrf/contours", "tactile_graph_pipelines",
     )
 )  # fmt: skip
 """Tests that plain loops answer sooner than the compiler has made machine code for them."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Count the cases of tests that machine code is made for among the slow ones."""
+    for item in items:
+        case = getattr(item, "callspec", None)
+        if case is not None and "compiled" in case.id.split("-"):
+            item.add_marker("slow")
 
 
 @pytest.fixture(autouse=True)

@@ -31,6 +31,7 @@ def by_sweeps(mask: Mask, element: Any, dilate: bool) -> tuple[np.ndarray, int]:
     return out, sweep.reference(mask.values, plan, out)
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=80, deadline=None)
 @given(masks(), elements(), st.booleans())
 def test_steps_equal_the_sweeps_over_cells_whatever_the_element(
