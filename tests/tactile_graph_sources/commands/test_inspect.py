@@ -106,6 +106,7 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     assert len({c for line in frame for c in line.strip(" |x")}) > 3
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     path = tmp_path / "my mat.csv"
     path.write_text(flat(film(12, 6, 10)))
