@@ -34,6 +34,7 @@ def told(pipeline: Any, after: int, patch: pytest.MonkeyPatch) -> list[tuple[Any
     return found
 
 
+@pytest.mark.slow
 def test_random_pipelines_come_to_the_same_written_or_not(tmp_path: Path) -> None:
     n_written = 0
 
