@@ -8,8 +8,12 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import signal
+import sys
+import tempfile
 from collections.abc import Generator, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -24,7 +28,14 @@ settings.register_profile("full", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "fast"))
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
+    """Set up what a terminal and a usual environment give to every process."""
+    _take_ctrl_c()
+    if sys.dont_write_bytecode:
+        _share_bytecode(config)
+
+
+def _take_ctrl_c() -> None:
     """Take Ctrl-C as a terminal gives it: a shell without jobs has its background ignore it."""
     for name in ("SIGINT", "SIGHUP"):  # the latter is not on Windows
         number = getattr(signal, name, None)
@@ -33,29 +44,65 @@ def pytest_configure() -> None:
             signal.signal(number, usual)
 
 
+def _share_bytecode(config: pytest.Config) -> None:
+    """Keep bytecode for the length of the run, out of the way, where none is to be written.
+
+    Each process that tests start would otherwise translate the libraries it imports, for seconds.
+    """
+    folder = tempfile.mkdtemp(prefix="bytecode-")
+    config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
+    sys.dont_write_bytecode, sys.pycache_prefix = False, folder
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # not there under `python -B`
+    os.environ["PYTHONPYCACHEPREFIX"] = folder
+
+
 @pytest.hookimpl(wrapper=True)
-def pytest_collection() -> Generator[None, object, object]:
+def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
     """Look for no garbage in what is imported and collected, now or later: it stays.
 
     That takes a third of the time otherwise.
     """
     gc.disable()
     try:
+        if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
+            _import_from_the_end(session)
         return (yield)
     finally:
         gc.freeze()
         gc.enable()
 
 
+def _import_from_the_end(session: pytest.Session) -> None:
+    """Import what is collected in a moment, the last first.
+
+    In a fresh environment modules are translated as they are imported. The first process starts
+    at the front, so that each finds half of them done; trouble is told when they are collected.
+    """
+    for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+        with suppress(pytest.Collector.CollectError, pytest.skip.Exception):
+            pytest.Module.from_parent(session, path=path)._getobj()
+
+
 BY_LOOPS = tuple(
     Path(__file__).parent / room
     for room in (
         "docs", "tactile_graph/testing", "tactile_graph_classifiers",
-        "tactile_graph_filters/parting", "tactile_graph_fitters", "tactile_graph_hull",
-        "tactile_graph_likelihood", "tactile_graph_pipelines",
+        "tactile_graph_filters/morphology", "tactile_graph_filters/parting",
+        "tactile_graph_fitters", "tactile_graph_hull", "tactile_graph_likelihood",
+        "tactile_graph_mrf/contours", "tactile_graph_mrf/descent", "tactile_graph_pipelines",
+        "tactile_graph_thesis/items/test_items.py",
     )
 )  # fmt: skip
 """Tests that plain loops answer sooner than the compiler has made machine code for them."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Count the cases of tests that machine code is made for among the slow ones."""
+    for item in items:
+        case = getattr(item, "callspec", None)
+        if case is not None and "compiled" in case.id.split("-"):
+            item.add_marker("slow")
 
 
 @pytest.fixture(autouse=True)
@@ -66,7 +113,7 @@ def quick_by_loops(request: pytest.FixtureRequest) -> Iterator[None]:
     answer as users' do.
     """
     short = request.config.getoption("markexpr") == "not slow"
-    if short and any(room in request.path.parents for room in BY_LOOPS):
+    if short and any(room in (request.path, *request.path.parents) for room in BY_LOOPS):
         with answered_by("plain"):
             yield
     else:

@@ -67,6 +67,7 @@ def test_a_change_of_time_is_seen_through_a_machine_twice_as_slow(factor: float,
     assert time.ratio == pytest.approx(factor, rel=0.05)
 
 
+@pytest.mark.slow
 def test_no_change_is_hardly_ever_called_one() -> None:
     words = [
         v.word

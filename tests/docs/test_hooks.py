@@ -280,6 +280,7 @@ def test_a_device_named_wrongly_is_told(
     assert told in got.output
 
 
+@pytest.mark.slow
 def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin) -> None:
     found = plugin("Stress cases")
     by_name = {subject.name: subject for subject in subjects(found)[0]}

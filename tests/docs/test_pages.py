@@ -191,6 +191,7 @@ def test_the_plugin_shown_is_one() -> None:
     assert set(spaces[4]["alone"].times_us) < set(spaces[4]["both"].times_us)
 
 
+@pytest.mark.slow
 def test_the_tests_shown_for_plugins_pass(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -78,6 +78,7 @@ def test_random_masks_have_the_cells_the_definition_says(shape):
         assert np.array_equal(boundary_scan(mask).xy_cm, expected)
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("kernel", [scanned_centres, scanned_rows], ids=["cells", "rows as words"])
 def test_kernel_and_its_twin_agree_bit_by_bit(kernel):
     rng = np.random.default_rng(12)

@@ -65,7 +65,8 @@ def test_an_object_too_large_for_the_pad_is_named():
         place([big], PAD, 0.0, np.random.default_rng(0))
 
 
-def test_objects_that_find_no_room_are_named():
+def test_objects_that_find_no_room_are_named(monkeypatch):
+    monkeypatch.setattr(placement, "MOST_TRIES", 40)
     two = [Disc(weight_g=1.0, radius_cm=7.0)] * 2
     with pytest.raises(UsageError, match="object 2 found no place 0 cm apart from the 1 before"):
         place(two, PAD, 0.0, np.random.default_rng(0))

@@ -76,6 +76,7 @@ def test_every_format_is_known_by_content_whatever_the_file_is_called(
     assert not report.troubles
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(data=st.data())

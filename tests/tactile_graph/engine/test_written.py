@@ -34,6 +34,7 @@ def told(pipeline: Any, after: int, patch: pytest.MonkeyPatch) -> list[tuple[Any
     return found
 
 
+@pytest.mark.slow
 def test_random_pipelines_come_to_the_same_written_or_not(tmp_path: Path) -> None:
     n_written = 0
 
@@ -62,7 +63,10 @@ def discs(n: int) -> list[Frame]:
     return [Frame.of(v, 1.3, (-0.15, -0.15), "volt", index=i) for i, v in enumerate(noisy)]
 
 
-@pytest.mark.parametrize("name", ["circle-1", "circle-3", "contacts", "rectangle-3"])
+@pytest.mark.parametrize(
+    "name",
+    ["circle-1", "circle-3", "contacts", pytest.param("rectangle-3", marks=pytest.mark.slow)],
+)
 def test_a_shipped_pipeline_comes_to_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     frames = [*discs(8), *discs(14)]  # empty ones, small ones, whole ones
     monkeypatch.setattr(program, "AFTER_FRAMES", NEVER)

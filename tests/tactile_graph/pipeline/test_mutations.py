@@ -233,6 +233,7 @@ def _places(data: Any) -> list[tuple[Any, Any]]:
 MUTATIONS: list[Mutation] = [characters, raw_bytes, lines, words, tree]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mutate", MUTATIONS, ids=lambda m: m.__name__)
 def test_240_mutants_of_each_kind_give_a_pipeline_or_an_error_of_the_file(
     mutate: Mutation, tmp_path: Path

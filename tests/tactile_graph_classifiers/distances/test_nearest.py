@@ -43,6 +43,7 @@ def test_a_feature_in_which_all_objects_agree_has_no_share():
     assert found == (0, 1, 0.0, 1.0)
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.integers(1, 6), st.integers(1, 4))
 def test_loops_find_what_the_references_do(seed, n_objects, n_features):

@@ -96,6 +96,7 @@ def test_weights_are_checked_when_the_pipeline_is_loaded():
         TypeAdapter(list[list[float]] | None).validate_python("3x3")
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("shape", [(16, 16), (1, 1), (2, 9)])
 @pytest.mark.parametrize("window", [(3, 3), (1, 5), (7, 3)])
 def test_the_twins_agree(shape, window):

@@ -31,6 +31,7 @@ def by_sweeps(mask: Mask, element: Any, dilate: bool) -> tuple[np.ndarray, int]:
     return out, sweep.reference(mask.values, plan, out)
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=80, deadline=None)
 @given(masks(), elements(), st.booleans())
 def test_steps_equal_the_sweeps_over_cells_whatever_the_element(
@@ -61,6 +62,7 @@ def test_wide_masks_equal_the_sweeps_and_wider_ones_are_swept(element: Any, colu
         np.testing.assert_array_equal(made.values, expected)
 
 
+@pytest.mark.slow  # much is compiled
 def test_machine_code_equals_plain_loops_and_the_reference() -> None:
     for seed, columns in enumerate((5, 16, 64)):
         values = held(random_mask(seed, (11, columns)).values)

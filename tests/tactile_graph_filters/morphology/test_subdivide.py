@@ -34,6 +34,7 @@ def test_an_image_without_invalid_cells_has_none_afterwards():
     assert subdivide_image(image, factor=1) is image
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("factor", [1, 2, 5])
 def test_it_cuts_as_the_reference_does(factor):
     pytest.importorskip("numba")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -46,6 +47,7 @@ def test_lines_of_few_cells_are_never_called_dead() -> None:
     assert found(values) == ([], [])
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=100, deadline=None)
 @given(
     arrays(

@@ -88,6 +88,7 @@ def test_hyper_has_less_bias_than_taubin_and_taubin_than_kasa():
     assert hyper < taubin < kasa
 
 
+@pytest.mark.slow  # much is compiled
 def test_moments_are_those_of_the_reference():
     uv = np.random.default_rng(9).normal(size=(2, 31))
     uv -= uv.mean(axis=1, keepdims=True)

@@ -33,6 +33,7 @@ def test_all_at_once_are_as_one_at_a_time():
         assert c * c + s * s == pytest.approx(np.ones(30), abs=1e-7)
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_twin_finds_places_as_near():
     for xy, a, b in clouds():
         one, two = feet.reference(xy, a, b), feet.compiled(xy, a, b)

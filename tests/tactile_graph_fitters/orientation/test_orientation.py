@@ -121,6 +121,7 @@ def test_an_empty_mask_has_no_direction():
         orientation(Mask(np.zeros((4, 4), bool)))
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds)
 def test_scatters_are_those_of_the_references(seed):

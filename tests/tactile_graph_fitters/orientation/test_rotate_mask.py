@@ -69,6 +69,7 @@ def test_an_empty_mask_cannot_be_turned():
         rotate_mask(Mask(np.zeros((5, 5), bool)), axis)
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds, angle=st.floats(-1.5, 1.5))
 def test_it_turns_as_the_reference_does(seed, angle):

@@ -129,6 +129,7 @@ def test_says_why_there_is_no_rectangle(xy, words):
         fit_rectangle(points(xy))
 
 
+@pytest.mark.slow  # much is compiled
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds)
 def test_twins_agree(seed):

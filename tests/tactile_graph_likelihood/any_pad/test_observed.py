@@ -190,6 +190,7 @@ def test_cells_that_noise_lets_show_lie_apart_and_those_of_an_object_together():
     assert AboveNoise()(image_of(np.zeros((16, 16)))).together == 0
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("shape", [(0, 0), (0, 5), (1, 1), (1, 9), (3, 2), (16, 16), (5, 40)])
 @pytest.mark.parametrize("share", [0.0, 0.02, 0.1, 0.5, 1.0])
 def test_how_many_lie_together_is_counted_alike_in_loops(shape, share):

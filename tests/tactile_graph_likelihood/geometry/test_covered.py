@@ -38,6 +38,7 @@ def test_a_window_holds_all_that_an_outline_covers(shape, by):
     assert 0 < rows * columns < 256
 
 
+@pytest.mark.slow  # much is compiled
 def test_an_outline_off_the_pad_has_no_window():
     kind, corners, p = packed(Circle(1e30, -5.0, 2.0))
     assert min(window.compiled(kind, corners, p, GRID, 16, 16, 0.0)[2:]) == 0

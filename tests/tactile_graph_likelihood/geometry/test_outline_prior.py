@@ -34,6 +34,7 @@ def test_a_prior_adds_up_to_one(kind, corners, sizes, turns, whole):
     assert volume * np.mean(density) == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.slow  # much is compiled
 def test_free_triangles_add_up_to_one():
     rng = np.random.default_rng(8)
     points = rng.uniform(0, 1, (40_000, 3, 2)) * PAD[2:] + PAD[:2]
@@ -43,6 +44,7 @@ def test_free_triangles_add_up_to_one():
     assert volume * np.mean(density) / 3.0 == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.slow  # much is compiled
 def test_free_quadrilaterals_that_are_not_convex_cannot_be():
     dent = np.array([2.0, 3.0, 12.0, 3.0, 5.0, 6.0, 2.0, 13.0])
     square = np.array([2.0, 3.0, 12.0, 3.0, 12.0, 13.0, 2.0, 13.0])

@@ -24,6 +24,7 @@ def chances(costs, beta):
     return weights / weights.sum()
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.parametrize("n_levels", [2, 3, 200])
 @pytest.mark.parametrize("mean", [-50.0, 0.0, 0.5, 1.49, 77.3, 1e6])
 @pytest.mark.parametrize("narrow", [1e-30, 1e-4, 0.05, 3.4, 1e3, 1e30])

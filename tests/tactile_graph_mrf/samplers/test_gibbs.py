@@ -79,6 +79,7 @@ def test_same_seed_same_bits_compiled_or_not(model):
     assert restore(image, seed=2, model=model, n_sweeps=6).trace != runs[0].trace
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_bits_do_not_depend_on_how_numbers_are_drawn_in_blocks(monkeypatch):
     image = picture()
     whole = restore(image, n_sweeps=30)

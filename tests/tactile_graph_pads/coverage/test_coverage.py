@@ -41,6 +41,7 @@ def polygon(request):
     return getattr(polygon_areas, request.param)
 
 
+@pytest.mark.slow  # much is compiled
 @example(0.0, 0.0, 3.0, 5.5, 0.0)  # touches an element's edge
 @given(place, place, half_axis, half_axis, angle)
 @settings(max_examples=40, deadline=None)

@@ -91,6 +91,7 @@ def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_res
     assert "1 a frame as a rule, 1 to 2, 1 of them in every frame" in run(path)
 
 
+@pytest.mark.slow  # much is compiled
 @pytest.mark.usefixtures("nothing_tried")
 def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     text = run(mat)
@@ -105,6 +106,7 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     assert len({c for line in frame for c in line.strip(" |x")}) > 3
 
 
+@pytest.mark.slow  # much is compiled
 def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     path = tmp_path / "my mat.csv"
     path.write_text(flat(film(12, 6, 10)))

@@ -49,6 +49,7 @@ def test_there_are_enough_of_them_and_most_are_read() -> None:
     assert sum(not d.refused for d in FILES) > 0.75 * len(FILES)
 
 
+@pytest.mark.slow
 def test_damaged_copies_give_frames_or_a_data_error_and_no_warning(tmp_path: Path) -> None:
     rng = np.random.default_rng(5)
     read = 0

@@ -23,6 +23,7 @@ def test_the_command_is_offered():
     assert installed().load("commands", "stress") is stress
 
 
+@pytest.mark.slow
 def test_the_table_counts_what_cases_came_to(tmp_path):
     path = tmp_path / "out.csv"
     result = run("orientation", "hull_graham", "-o", path)

@@ -17,6 +17,7 @@ from tactile_graph_thesis.measure.identification_errors import (
 from tactile_graph_thesis.measure.weighing import calibration_curve
 
 
+@pytest.mark.slow  # much is compiled
 def test_all_readings_of_the_five_objects_are_identified_where_weights_are_right():
     found = table_4_9(seed=3, kind="footprint")
     assert {name: c.share_right for name, c in found.items()} == dict.fromkeys(found, 1.0)

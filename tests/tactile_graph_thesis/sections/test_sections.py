@@ -9,7 +9,7 @@ import pytest
 
 from tactile_graph_thesis.catalogue import items
 from tactile_graph_thesis.item import Finding, Item, Made
-from tactile_graph_thesis.making import Outcome, outcomes
+from tactile_graph_thesis.making import Outcome
 from tactile_graph_thesis.sections.judging import (
     BUILT,
     COMES_OUT,
@@ -23,7 +23,6 @@ from tactile_graph_thesis.sections.judging import (
     judged,
 )
 from tactile_graph_thesis.sections.reading import Claim, Section, chapters, pipeline_texts
-from tactile_graph_thesis.work import Work
 
 SECTIONS = """
 2.1.1 2.1.2 2.2 2.2.1 2.2.2 2.2.3 2.3 2.3.1 2.3.2 2.4 2.4.1 2.4.2 2.4.3 2.5
@@ -156,17 +155,3 @@ def test_what_no_item_measures_says_why_and_what_shows_it(
 def test_verdicts_are_counted_by_kind_without_those_that_do_not_occur() -> None:
     told = [judged(c, {"x": item(UP)}) for c in (Claim("a", ("x",)), Claim("b", built="c"))]
     assert counted([*told, told[0]]) == {SHOWN: 2, BUILT: 1}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("warm_kernels")
-def test_every_finding_a_statement_is_judged_by_is_made_by_its_items() -> None:
-    made = {one.item.id: one for one in outcomes(items(), Work(readings=20, quick=True))}
-    assert [o.trace for o in made.values() if o.made is None] == []
-    missing = [
-        (where, name)
-        for where, claim in claims()
-        for name in claim.items
-        if claim.finding and finding_of(claim, made[name]) is None
-    ]
-    assert missing == []

@@ -13,6 +13,7 @@ from tactile_graph.cli.output import plot
 from tactile_graph.draw import film as films
 
 
+@pytest.mark.slow
 def test_run_writes_a_film_and_says_what_was_cut(
     hand_made: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

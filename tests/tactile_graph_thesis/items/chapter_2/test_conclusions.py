@@ -52,7 +52,14 @@ def test_what_the_thesis_concludes_comes_out(name: str) -> None:
         assert not missed, (seed, missed)
 
 
-@pytest.mark.parametrize("name", [n for n in STUDIES if n not in SLOW])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(n, marks=[pytest.mark.slow] if n == "hysteresis" else [])  # much is compiled
+        for n in STUDIES
+        if n not in SLOW
+    ],
+)
 def test_tables_and_pictures_are_whole(name: str) -> None:
     made = study(name).make(Work())
     assert made.table is not None
