@@ -64,6 +64,7 @@ def answered(pipeline: tg.Pipeline, frames: list[tg.Frame], asked: Any) -> list[
             found.append(Answered(np.nan, False, False))
             continue
         clock.now_ns += int(1e6 * asked.beside)
+        deadline.arrived_ns = arrived_ns
         deadline.due_ns = arrived_ns + int(1e6 * asked.deadline)
         result = runner(frames[number % len(frames)].with_index(number))
         latency_ms = (clock() - arrived_ns) / 1e6

@@ -75,7 +75,8 @@ def on_time(table: Table, period_ns: int, deadline_ns: int) -> tuple[Came, list[
     results, choices, latency = [], [], []
     for i, frame in enumerate(table.frames):
         clock.now_ns = max(clock.now_ns, i * period_ns)
-        deadline.due_ns = i * period_ns + deadline_ns
+        deadline.arrived_ns = i * period_ns
+        deadline.due_ns = deadline.arrived_ns + deadline_ns
         result = runner(frame)
         results.append(result)
         choices.append(len(result.decisions))

@@ -241,6 +241,7 @@ class LiveRun(Generic[ResultT]):
         self.n_lost += frame.gap
         runner, deadline, deadline_us = self._ready
         if deadline is not None and deadline_us is not None:
+            deadline.arrived_ns = arrived_ns
             deadline.due_ns = arrived_ns + int(1e3 * deadline_us)
         begun_ns = self._clock()
         result = runner(frame)

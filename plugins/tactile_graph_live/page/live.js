@@ -33,7 +33,6 @@ const yaml = new Yaml((name) => send("save", { name }));
 const nodes = new NodeList(open, look);
 const card = new NodeCard(settings, closed);
 const speech = new Speech(() => [transport.paused ? "paused" : "", results.summary].filter(Boolean).join(": "));
-pad.speak = (text) => speech.say(text);
 
 let graph = null;
 let latest = null; // the newest frame, not drawn yet
@@ -166,7 +165,7 @@ startTheme(() => {
   pad.draw();
   status.chart();
   if (shown) nodes.paint(shown);
-});
+}, (words) => speech.say(words));
 startKeys({
   " ": () => transport.pause(),
   ".": () => transport.step(),

@@ -217,6 +217,7 @@ export class Pad {
     if (event.key === "Escape" && this.cell) {
       event.stopPropagation();
       this.move(null);
+      this.telling("no cell chosen");
     }
     if (!steps[event.key]) return;
     event.preventDefault();
@@ -224,7 +225,15 @@ export class Pad {
     const [row, column] = this.cell ?? [Math.floor(rows / 2), Math.floor(columns / 2)];
     const [down, right] = this.cell ? steps[event.key] : [0, 0];
     this.move([(row + down + rows) % rows, (column + right + columns) % columns]);
-    this.speak?.(byId("readout").textContent);
+    this.telling(byId("readout").textContent);
+  }
+
+  /** A slider through the cells: only with one do screen readers leave the arrow keys to the page. */
+  telling(words) {
+    const { rows, columns } = this.frame.pad;
+    mark(this.canvas, "aria-valuemax", rows * columns - 1);
+    mark(this.canvas, "aria-valuenow", this.cell ? this.cell[0] * columns + this.cell[1] : 0);
+    mark(this.canvas, "aria-valuetext", words);
   }
 
   move(cell) {

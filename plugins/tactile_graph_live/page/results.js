@@ -177,7 +177,8 @@ function inWords(rows, label) {
       .filter(([field, value]) => /(^|\.)(x|y|radius|angle|area)_(cm2?|deg)$/.test(field) && typeof value === "number")
       .slice(0, 4)
       .map(([field, value]) => `${label(field)[0]} ${Number(value.toPrecision(2))} ${label(field)[1]}`);
-    const name = row.type && row.type !== row.output ? `${row.output}, ${row.type}` : row.output;
+    const named = row.type && row.type.toLowerCase() !== row.output.toLowerCase();
+    const name = named ? `${row.output}, ${row.type}` : row.output;
     return [`${name}${row.item > 1 ? ` ${row.item}` : ""}`, ...numbers].join(", ");
   });
   return parts.length ? parts.join("; ") : "nothing found";

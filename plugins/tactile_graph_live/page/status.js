@@ -106,7 +106,8 @@ export class Status {
 
   describe() {
     const latency = between(this.p99, duration);
-    mark(byId("latency-chart"), "aria-label", `Latency over the last minute: 99 % of results ${latency}, pictures on the page ${between(this.page, duration)}`);
+    const due = this.deadlineUs === null ? "" : `, deadline ${duration(this.deadlineUs)}`;
+    mark(byId("latency-chart"), "aria-label", `Latency over the last minute: 99 % of results ${latency}, pictures on the page ${between(this.page, duration)}${due}`);
     const hertz = (value) => inDigits(Number(value.toPrecision(3)));
     mark(byId("flow-chart"), "aria-label", `Frames a second over the last minute: answered ${between(this.rate, hertz)}, lost ${between(this.lost, hertz)}, shed ${between(this.shed, hertz)}`);
   }

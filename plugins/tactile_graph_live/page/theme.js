@@ -31,8 +31,8 @@ export function remember(key, value) {
   }
 }
 
-/** Make the switch work; `changed` is called whenever colours are others. */
-export function startTheme(changed) {
+/** Make the switch work: `changed` is called whenever colours are others, `say` says what was chosen. */
+export function startTheme(changed, say) {
   probe.hidden = true;
   document.body.append(probe);
   let choice = remembered("theme", "system");
@@ -47,6 +47,7 @@ export function startTheme(changed) {
     choice = CHOICES[(CHOICES.indexOf(choice) + 1) % CHOICES.length];
     remember("theme", choice);
     apply();
+    say(byId("theme").textContent);
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", apply);
   apply();

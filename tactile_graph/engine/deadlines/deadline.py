@@ -6,6 +6,11 @@ takes longer than what is left when the spared ones are paid for. It is begun wh
 more than what is allowed; and what is allowed is raised while frames are on time and lowered with
 each that is late, so that in the long run the promised share of frames is on time whatever the
 times are distributed like (adaptive conformal inference; Gibbs and Candes, NeurIPS 2021).
+
+Frames that come faster than the best choice answers wait ever longer. Were each choice begun as
+long as it just fits, all frames would come to wait up to the deadline, where each rare long time
+makes one late, and only the cheapest choices still fit. So the better of a ladder are begun only
+while frames have waited little.
 """
 
 from __future__ import annotations
@@ -13,7 +18,7 @@ from __future__ import annotations
 from bisect import bisect_right, insort
 from collections import deque
 from collections.abc import Callable
-from math import exp, log, log2
+from math import exp, inf, log, log2
 from time import perf_counter_ns
 from typing import Any
 
@@ -23,8 +28,12 @@ from tactile_graph.engine.deadlines.options import Option, Options, Work
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.wires.frame import Frame
 
-LATE_SHARE = 0.001
-"""Of frames: what is promised is that so few are late."""
+LATE_SHARE = 0.0008
+"""Of frames: a little less than the one in a thousand of which it is said that it may be late."""
+HEADROOM = 0.3
+"""Share of the time in which a frame may wait that each choice leaves to those after it in its
+ladder: so there is room for what one falls back on, and a rare long time is not at once late."""
+MOST_HEADROOM = 0.7
 WINDOW = 1000
 """How many last times tell how far single ones stray."""
 FOLLOWS = 0.1
@@ -39,6 +48,8 @@ RESERVE_RISK = 0.01
 MUCH = log(3.0)
 """A last choice is not spared where one before it is quicker by more than this factor."""
 LEAST_RISK, FIRST_RISK, MOST_RISK = 0.002, 0.01, 0.3
+LEAST_NS = 10_000.0
+"""Shorter times count as this long: by how many times 1 us is longer than 10 ns tells nothing."""
 
 
 class Expected:
@@ -82,7 +93,7 @@ class Expected:
 
     def took(self, kind: int, ns: float, has_value: bool) -> None:
         """Take a time into account, and whether a value came of it."""
-        time, usual = log(max(ns, 1.0)), self.usual(kind)
+        time, usual = log(max(ns, LEAST_NS)), self.usual(kind)
         if has_value:
             before = time if self.answers_in is None else self.answers_in
             self.answers_in = before + FOLLOWS * (time - before)
@@ -107,7 +118,8 @@ class Expected:
 class Deadline:
     """Decides for each frame what still fits; one for each runner.
 
-    Set ``due_ns`` before each frame, by the clock's time.
+    Set ``due_ns``, and ``arrived_ns`` where the frame has waited, before each frame, by the
+    clock's time.
 
     Parameters
     ----------
@@ -122,6 +134,7 @@ class Deadline:
         self, clock: Callable[[], int] = perf_counter_ns, after: Deadline | None = None
     ) -> None:
         self.due_ns = 0
+        self.arrived_ns: int | None = None
         self.allowed_risk: float = FIRST_RISK if after is None else after.allowed_risk
         self._clock = clock
         self._before = after
@@ -129,6 +142,7 @@ class Deadline:
         self._works: list[Work] = []
         self._spared: list[Option] = []
         self._kind = 0
+        self._waited_ns = 0
         self._begun: list[int] = []
 
     def prepare(self, options: Options) -> None:
@@ -145,6 +159,7 @@ class Deadline:
     def begin(self, frame: Frame) -> None:
         """Begin a frame: what it is like tells how long it takes."""
         self._kind = kind_of(frame)
+        self._waited_ns = 0 if self.arrived_ns is None else max(self._clock() - self.arrived_ns, 0)
         self._begun.clear()  # an interrupted frame may have left some
 
     def allows(self, option: Option, state: list[Any]) -> bool:
@@ -152,6 +167,7 @@ class Deadline:
         now = self._clock()
         if not self._is_spared(option):
             left_ns = self.due_ns - now - self._least_ns(option, state)
+            left_ns -= self._waited_ns * waits_longer(option.beneath)
             expected = self._expected[option.number]
             if expected.risk(self._kind, left_ns) > self.allowed_risk:
                 expected.refused(self._kind)
@@ -188,8 +204,24 @@ class Deadline:
         self.allowed_risk = min(max(risk, LEAST_RISK), MOST_RISK)
 
 
+def waits_longer(beneath: int) -> float:
+    """Return by how much longer than it has a frame counts as having waited.
+
+    With none beneath a choice but the last, which is always done, only the deadline counts: 0. With
+    more, frames may wait a share of their time before it is begun: what they have waited counts as
+    if it were that share of what it is taken for.
+    """
+    return 1.0 / (1.0 - min(HEADROOM * beneath, MOST_HEADROOM)) - 1.0
+
+
 def kind_of(frame: Frame) -> int:
-    """Return a number that frames of about as large a footprint share: how much is loaded."""
+    """Return a number that frames share on which steps have as much to do.
+
+    How many cells read high tells how large the footprint is; how far readings reach, to within a
+    factor of eight, tells frames of noise alone, where any number of cells may.
+    """
     values = frame.image.values
-    high = np.count_nonzero(values > 0.5 * (values.max() + values.min()))
-    return int(4 * log2(high + 1))
+    low, high = float(values.min()), float(values.max())
+    n_high = np.count_nonzero(values > 0.5 * (low + high))
+    reach = round(log2(high - low) / 3) if 0 < high - low < inf else -512
+    return 64 * reach + int(4 * log2(n_high + 1))

@@ -39,6 +39,8 @@ class Option:
         Whether every frame comes to it, or to what stands in its place.
     instead : tuple of int
         Numbers of the choices that stand before it in its ladder, where it is the last.
+    beneath : int
+        How many choices stand after it in its ladder, but for the last.
     work : frozenset
         The nodes that are run with it unless something else has run them before: their keys, and
         in what process they run. Options of equal work take as long, in whatever plan they stand.
@@ -51,6 +53,7 @@ class Option:
     spared: bool
     always: bool
     instead: tuple[int, ...] = ()
+    beneath: int = 0
     work: Work = frozenset()
 
     @property
@@ -107,7 +110,7 @@ def options_of(plan: Plan) -> Options:
             if not spared or always:
                 work = _work(plan, item.slot, main)
                 found.nodes[item.slot] = Option(
-                    len(found), item.name, item.slot, item.slot, spared, always, (), work
+                    len(found), item.name, item.slot, item.slot, spared, always, (), 0, work
                 )
     for ladder in ladders:
         _add_choices(found, plan, ladder, least.slots)
@@ -126,7 +129,8 @@ def _add_choices(found: Options, plan: Plan, ladder: Item, least: set[int]) -> N
         instead = tuple(before) if last else ()
         name, number = plan.items[slot].name, len(found)
         work = _work(plan, slot, frozenset(plan.main))
-        option = Option(number, name, slot, ladder.slot, last, always, instead, work)
+        beneath = max(len(ladder.inputs) - 2 - place, 0)
+        option = Option(number, name, slot, ladder.slot, last, always, instead, beneath, work)
         found.choices[ladder.slot, place] = option
         before.append(number)
 
