@@ -1,0 +1,113 @@
+"""``KnownReliefs``: learned reliefs in memory, and as the arrays that a database keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph_classifiers.database.relief_rows import Kept
+from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
+from tactile_graph_classifiers.reliefs.relief import Relief
+
+Array = NDArray[np.float64]
+HELD = (0.5, 2.0)
+"""Within so many times that of all objects an object's usual misfit is held: else one that was
+learned badly would take in the presses of others."""
+
+
+@dataclass(frozen=True, eq=False)
+class KnownReliefs:
+    """Reliefs of known objects.
+
+    Parameters
+    ----------
+    pad : PadReading
+    full_scale : float
+        Reading that counts as 1.
+    pitch_cm : float
+        Of the pad they were learned on.
+    names : tuple of str
+    reliefs : tuple of Relief
+    usual : ndarray, shape (K,)
+        Median misfit of each object's presses, left out.
+    left_out : tuple of ndarray, shape (n,) each
+        Misfit of each reading's press to its own relief learned without it; NaN where there is
+        none.
+    """
+
+    pad: PadReading
+    full_scale: float
+    pitch_cm: float
+    names: tuple[str, ...]
+    reliefs: tuple[Relief, ...]
+    usual: Array
+    left_out: tuple[Array, ...]
+
+    @classmethod
+    def of(
+        cls,
+        pad: PadReading,
+        scale: tuple[float, float],
+        names: Sequence[str],
+        reliefs: Sequence[Relief],
+        left_out: Sequence[Array],
+    ) -> KnownReliefs:
+        """Return what was learned, each object's usual misfit found from those left out.
+
+        Parameters
+        ----------
+        pad : PadReading
+        scale : (float, float)
+            Full scale, and pitch in cm.
+        names, reliefs, left_out : sequence
+            Of each object.
+        """
+        medians = np.array([_median(some) for some in left_out])
+        middle = np.nanmedian(medians) if np.isfinite(medians).any() else 1.0
+        usual = np.clip(np.where(np.isfinite(medians), medians, middle), *np.multiply(HELD, middle))
+        return cls(pad, *scale, tuple(names), tuple(reliefs), usual, tuple(left_out))
+
+    def kept(self) -> Kept:
+        """Return them as the database keeps them."""
+        pad = self.pad
+        numbers = [self.full_scale, pad.top, pad.lean_variance, self.pitch_cm]
+        of_pad = {
+            "law": np.array([pad.law]),
+            "gains": pad.gains,
+            "variances": pad.variances[None],
+            "numbers": np.array([numbers]),
+        }
+        objects = {}
+        for name, it, usual, left in zip(
+            self.names, self.reliefs, self.usual, self.left_out, strict=True
+        ):
+            own = np.array([[it.usual, it.soft, *it.deep, usual]])
+            objects[name] = {"depth": it.depth, "picture": it.picture, "numbers": own,
+                             "left_out": left[None]}  # fmt: skip
+        return Kept(of_pad, objects)
+
+    @classmethod
+    def from_kept(cls, kept: Kept) -> KnownReliefs:
+        """Return what a database has kept."""
+        numbers = kept.pad["numbers"][0].tolist()
+        full_scale, top, lean_variance, pitch_cm = numbers
+        law = Law(*kept.pad["law"][0].tolist())
+        pad = PadReading(law, kept.pad["gains"], top, kept.pad["variances"][0], lean_variance)
+        reliefs = []
+        for arrays in kept.objects.values():
+            usual, soft, *deep = arrays["numbers"][0, :4].tolist()
+            reliefs.append(
+                Relief(arrays["depth"], np.zeros((0, 6)), usual, soft, np.zeros(0),
+                       arrays["picture"], np.array(deep))
+            )  # fmt: skip
+        of_each = kept.objects.values()
+        usual = np.array([arrays["numbers"][0, 4] for arrays in of_each])
+        left_out = tuple(arrays["left_out"][0] for arrays in of_each)
+        return cls(pad, full_scale, pitch_cm, tuple(kept.objects), tuple(reliefs), usual, left_out)
+
+
+def _median(values: Array) -> float:
+    return float(np.nanmedian(values)) if np.isfinite(values).any() else np.nan
