@@ -68,9 +68,7 @@ def load_reliefs(database: Path | None) -> tuple[Known, Kept]:
 
     path = RELIEFS if database is None else Path(database)
     if _is_export(path):
-        raise DataError(
-            str(path), "is an export, which holds no reliefs; name the database itself"
-        )
+        raise DataError(str(path), "is an export, which holds no reliefs; name the database itself")
     known, kept, lacking = ObjectDatabase(path).reliefs()
     if lacking:
         raise DataError(

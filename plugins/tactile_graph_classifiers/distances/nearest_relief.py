@@ -18,13 +18,14 @@ from tactile_graph_classifiers.distances.discriminant_model import Learned
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_classifiers.distances.left_out import largest_accepted
 from tactile_graph_classifiers.measuring.measurements import Measurements
+from tactile_graph_classifiers.measuring.reader import pressed
 from tactile_graph_classifiers.reliefs.known_reliefs import KnownReliefs
 from tactile_graph_classifiers.reliefs.leaving_out import parts_of
 from tactile_graph_classifiers.reliefs.naming import misfits_to
 from tactile_graph_classifiers.reliefs.presses import Presses
 
 Array = NDArray[np.float64]
-CONFIDENCE = 0.95
+CONFIDENCE = 0.93
 """Share of known objects' presses that is to be accepted, unless told."""
 LIKELY = 6
 """To so many objects, the likeliest by what was measured, a press is fitted."""
@@ -88,9 +89,7 @@ class NearestRelief:
         if reject:
             self._limit = largest_accepted(scores[np.isfinite(scores)], confidence)
 
-    def __call__(
-        self, image: Image, features: Measurements
-    ) -> Identity:
+    def __call__(self, image: Image, features: Measurements) -> Identity:
         """Return the object the press is most like, the runner-up and their margin.
 
         Raises
@@ -131,7 +130,7 @@ class NearestRelief:
     def _left_out_squares(self, examples: Examples) -> Array:
         """Return the squared distance of each reading to its own object learned without it.
 
-        They are left out in the parts in which their presses were.
+        They are left out in parts as their presses were.
         """
         parts = np.concatenate([parts_of(int(n)) for n in np.bincount(examples.labels)])
         out = np.full(len(parts), np.nan)
@@ -160,11 +159,3 @@ class NearestRelief:
             None if single else scores[1],
             1.0 if single else 1.0 - scores[0] / scores[1] if scores[1] > 0.0 else 0.0,
         )
-
-
-def pressed(image: Image) -> Array:
-    """Return the values of an image, NaN where a cell is broken."""
-    values = np.array(image.values, dtype=np.float64)
-    if image.valid is not None:
-        values[~image.valid] = np.nan
-    return values

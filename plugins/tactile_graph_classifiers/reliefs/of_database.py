@@ -12,15 +12,13 @@ from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.relief_rows import Press
 from tactile_graph_classifiers.reliefs.choosing_law import chosen_law
 from tactile_graph_classifiers.reliefs.known_reliefs import KnownReliefs
-from tactile_graph_classifiers.reliefs.leaving_out import left_out_misfits
 from tactile_graph_classifiers.reliefs.learning import Say, learn_reliefs
+from tactile_graph_classifiers.reliefs.leaving_out import left_out_misfits
 from tactile_graph_classifiers.reliefs.presses import Presses
 
 Array = NDArray[np.float64]
 FEWEST = 8
 """Presses an object needs."""
-SQUARE = 0.02
-"""By how much a cell's sides may differ: a relief is turned on the grid."""
 
 
 def learned_of(known: Known, images: Sequence[Sequence[Press | None]], say: Say) -> KnownReliefs:
