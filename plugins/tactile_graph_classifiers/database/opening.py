@@ -16,7 +16,7 @@ SAMPLE = Path(__file__).parents[1] / "samples" / "thesis-objects.yaml"
 """Readings of the objects of thesis tables 4.6 and 4.9 on the simulated pad."""
 
 RELIEFS = SAMPLE.with_name("thesis-reliefs.sqlite")
-"""Reliefs of three of them, learned of simulated presses."""
+"""The objects of table 4.9 with their reliefs, learned of simulated presses."""
 
 
 def load_known(database: Path | dict[str, Any] | None, features: Sequence[str] | None) -> Known:
@@ -62,7 +62,7 @@ def load_reliefs(database: Path | None) -> tuple[Known, Kept]:
     Raises
     ------
     DataError
-        If it cannot be read, or an object has no relief of just its readings.
+        If it cannot be read, or an object has no relief of its present readings.
     """
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
@@ -73,8 +73,8 @@ def load_reliefs(database: Path | None) -> tuple[Known, Kept]:
     if lacking:
         raise DataError(
             str(path),
-            f"no relief was learned of just the readings of {one_of(lacking, 30)}; 'tactile-graph"
-            " learn-reliefs' learns them",
+            f"{one_of(lacking, 30)}: no relief was learned of the present readings; 'tactile-graph"
+            " learn-reliefs' learns it",
         )
     return known, kept
 

@@ -49,7 +49,7 @@ class NearestRelief:
     Raises
     ------
     DataError
-        If an object has no relief of just its readings.
+        If an object has no relief of its present readings.
 
     Notes
     -----
@@ -73,7 +73,7 @@ class NearestRelief:
         known, kept = load_reliefs(database)
         self._lookup = Lookup.of(known, database is not None)
         self.takes, self.takes_by, self.takes_hint = self._lookup.taken
-        self._reliefs = KnownReliefs.from_kept(kept)
+        self._reliefs = KnownReliefs.from_kept(kept, known.where)
         examples = Examples.of(known)
         self._manner = (known.choice or choose(examples)).manner
         self._learned = Learned.of(examples.readings, examples.labels, self._manner.shrinkage)

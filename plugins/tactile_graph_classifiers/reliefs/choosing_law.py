@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph_classifiers.reliefs.descent import descend, kinks
 from tactile_graph_classifiers.reliefs.learning import Say, improved, learned, unlearned_pad
-from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
+from tactile_graph_classifiers.reliefs.pad_reading import LEAST, MOST, Law, PadReading
 from tactile_graph_classifiers.reliefs.presses import Presses
 from tactile_graph_classifiers.reliefs.relief import Relief, stepped
 
@@ -22,7 +22,6 @@ SMALLER = 0.8
 """And those among the smaller ones, of this share: large ones take longer."""
 SWEEPS = ((1.35, 0.12, 2.0), (1.16, 0.06, 1.4), (1.08, 0.03, 1.2))
 """Steps of blur (times), power (plus), and threshold (times), sweep by sweep."""
-LEAST, MOST = Law(0.15, 0.4, 0.0005), Law(1.6, 1.6, 0.1)
 DESCENT, FIT = 25, 4
 """Steps in which reliefs, and then presses, are fitted anew under a law."""
 COUNTED = 0.8

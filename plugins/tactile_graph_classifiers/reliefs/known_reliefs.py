@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_classifiers.database.relief_rows import Kept
-from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
+from tactile_graph_classifiers.database.rows import damaged
+from tactile_graph_classifiers.reliefs.pad_reading import LEAST, MOST, Law, PadReading
 from tactile_graph_classifiers.reliefs.relief import Relief
 
 Array = NDArray[np.float64]
@@ -90,11 +91,28 @@ class KnownReliefs:
         return Kept(of_pad, objects)
 
     @classmethod
-    def from_kept(cls, kept: Kept) -> KnownReliefs:
-        """Return what a database has kept."""
+    def from_kept(cls, kept: Kept, where: str) -> KnownReliefs:
+        """Return what a database has kept.
+
+        Parameters
+        ----------
+        kept : Kept
+        where : str
+            The database, for errors.
+
+        Raises
+        ------
+        DataError
+            If a number is none that could have been learned.
+        """
         numbers = kept.pad["numbers"][0].tolist()
         full_scale, top, lean_variance, pitch_cm = numbers
         law = Law(*kept.pad["law"][0].tolist())
+        bounds = zip(LEAST, law, MOST, strict=True)
+        positive = [kept.pad["gains"], kept.pad["variances"], kept.pad["numbers"]]
+        positive += [arrays["numbers"][:, [0, 1, 4]] for arrays in kept.objects.values()]
+        if not all(a <= x <= b for a, x, b in bounds) or min(map(np.min, positive)) <= 0.0:
+            raise damaged(where, "a number about the pad or a relief is out of range")
         pad = PadReading(law, kept.pad["gains"], top, kept.pad["variances"][0], lean_variance)
         reliefs = []
         for arrays in kept.objects.values():

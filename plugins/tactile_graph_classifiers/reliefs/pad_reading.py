@@ -36,6 +36,10 @@ class Law(NamedTuple):
     threshold: float = 0.008
 
 
+LEAST, MOST = Law(0.15, 0.4, 0.0005), Law(1.6, 1.6, 0.1)
+"""Bounds of what is looked for."""
+
+
 @dataclass(frozen=True, eq=False)
 class PadReading:
     """How a pad reads.
