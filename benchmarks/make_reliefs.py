@@ -23,12 +23,14 @@ from tactile_graph_classifiers.measuring.shapes import true_name
 from tactile_graph_classifiers.reliefs.of_database import learned_of
 
 SEED = 44
-N_OBJECTS, N_PRESSES = 5, 20
+N_OBJECTS, N_PRESSES = 5, 25
 
 
 def main() -> None:
     warm_up()
-    pipeline = load("features").with_source("simulate", scene="identify")
+    pipeline = load("features").with_source(
+        "simulate", scene="identify", frames=N_OBJECTS * N_PRESSES
+    )
     read = Reader(Given(pipeline, "features", SEED, image_of(pipeline, "features", ())))
     by_name: dict[str, list[Frame]] = {}
     for frame in islice(pipeline.frames(SEED), N_OBJECTS * N_PRESSES):
