@@ -30,7 +30,9 @@ def bowl(n: int = 61) -> np.ndarray:
 
 def even_pad() -> PadReading:
     """Return an even pad, whose readings vary by little."""
-    return PadReading(STRIP_LAW, np.ones(SHAPE), 0.99, np.array([1e-6, 1e-4, 1e-4]))
+    return PadReading(
+        STRIP_LAW, np.ones(SHAPE), np.zeros(SHAPE), 0.99, np.array([1e-6, 1e-4, 1e-4])
+    )
 
 
 def as_presses(values, boxes, centres) -> Presses:

@@ -21,7 +21,10 @@ from tactile_graph_classifiers.database.seal import seal
 Array = NDArray[np.float64]
 MOST_CELLS = 1_000_000
 """Of one array: more is no press and no relief."""
-PAD = {"law": (1, 3), "gains": (None, None), "variances": (1, 3), "numbers": (1, 4)}
+PAD = {
+    "law": (1, 3), "gains": (None, None), "doubts": (None, None), "variances": (1, 3),
+    "numbers": (1, 4),
+}  # fmt: skip
 """Arrays about the pad; numbers are full scale, top, variance of the lean, and pitch in cm."""
 OBJECT = {"depth": (None, None), "picture": (None, None), "numbers": (1, 5), "left_out": (1, None)}
 """About each object; numbers are usual and soft depth, depth by load (two), usual misfit."""
@@ -226,6 +229,8 @@ def _complete(
         values = arrays[name]
         good &= all(s in (None, n) for s, n in zip(shape, values.shape, strict=True))
         good &= name == "left_out" or bool(np.isfinite(values).all())
+    if good and "gains" in arrays:
+        good = arrays["gains"].shape == arrays["doubts"].shape
     if good and "depth" in arrays:
         n, m = arrays["depth"].shape
         good &= n == m >= 3 and n % 2 == 1 and arrays["picture"].shape == (n, n)

@@ -82,8 +82,8 @@ def _objects(all_presses: Sequence[Presses]) -> Iterator[int]:
     """Yield which objects the law is chosen by: of all sizes but the largest."""
     sizes = [float(np.median(presses.n_cells())) for presses in all_presses]
     order = np.argsort(sizes, kind="stable")
-    order = order[: max(int(SMALLER * len(order)), 1)]
-    at = np.linspace(min(1, len(order) - 1), len(order) - 1, min(OBJECTS, len(order)))
+    order = order[: max(int(SMALLER * len(order)), min(OBJECTS, len(order)))]
+    at = np.linspace(min(1, len(order) - OBJECTS), len(order) - 1, OBJECTS).clip(0)
     yield from sorted({int(order[int(k)]) for k in at})
 
 

@@ -78,6 +78,7 @@ class KnownReliefs:
         of_pad = {
             "law": np.array([pad.law]),
             "gains": pad.gains,
+            "doubts": pad.doubts,
             "variances": pad.variances[None],
             "numbers": np.array([numbers]),
         }
@@ -111,9 +112,11 @@ class KnownReliefs:
         bounds = zip(LEAST, law, MOST, strict=True)
         positive = [kept.pad["gains"], kept.pad["variances"], kept.pad["numbers"]]
         positive += [arrays["numbers"][:, [0, 1, 4]] for arrays in kept.objects.values()]
-        if not all(a <= x <= b for a, x, b in bounds) or min(map(np.min, positive)) <= 0.0:
+        good = all(a <= x <= b for a, x, b in bounds) and min(map(np.min, positive)) > 0.0
+        if not good or kept.pad["doubts"].min() < 0.0:
             raise damaged(where, "a number about the pad or a relief is out of range")
-        pad = PadReading(law, kept.pad["gains"], top, kept.pad["variances"][0], lean_variance)
+        gains, doubts, variances = (kept.pad[name] for name in ("gains", "doubts", "variances"))
+        pad = PadReading(law, gains, doubts, top, variances[0], lean_variance)
         reliefs = []
         for arrays in kept.objects.values():
             usual, soft, *deep = arrays["numbers"][0, :4].tolist()

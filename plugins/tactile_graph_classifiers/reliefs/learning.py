@@ -129,7 +129,7 @@ def improved(
     each = [r.misfits / s.n_cells() for r, s in zip(reliefs, all_presses, strict=True)]
     limit = 2.5 * float(np.median(np.concatenate(each)))
     over, under = np.zeros(pad.gains.shape), np.zeros(pad.gains.shape)
-    parts, squares = [], []
+    parts, squares, doubted = [], [], []
     for relief, presses, off in zip(reliefs, all_presses, each, strict=True):
         weights, by = pad.weights(presses), pad.parts(presses.values)
         for k in np.flatnonzero(off <= limit):
@@ -143,22 +143,27 @@ def improved(
             under[box] += told * value**2
             parts.append(by[:, k][:, *box][:, counts].T)
             squares.append(np.minimum((real - value)[counts] ** 2, 9.0 / weight[counts]))
-    change = np.clip(over / (under + 1.0 / GAIN_SPREAD**2), -0.3, 0.3)
+            doubted.append((pad.doubts[box] * by[1, k][box])[counts])
+    doubts = 1.0 / (under + 1.0 / GAIN_SPREAD**2)
+    change = np.clip(over * doubts, -0.3, 0.3)
     leans = np.concatenate([r.presses[:, 4:].ravel() for r in reliefs])
     return replace(
         pad,
         gains=pad.gains * np.exp(change / pad.law.power),
-        variances=_variances(pad.variances, np.concatenate(parts), np.concatenate(squares)),
+        doubts=doubts,
+        variances=_variances(
+            pad.variances, np.concatenate(parts), np.concatenate(squares), np.concatenate(doubted)
+        ),
         lean_variance=max(1.2 * float(np.mean(leans**2)), 1e-8),
     )
 
 
-def _variances(before: Array, parts: Array, squares: Array) -> Array:
-    """Return the three variances by which readings are off as they are."""
+def _variances(before: Array, parts: Array, squares: Array, doubted: Array) -> Array:
+    """Return the three variances by which readings are off as they are, gains' doubts aside."""
     variances = before
     for _ in range(3):
-        weight = 1.0 / (parts @ variances)
-        found = nnls(parts * weight[:, None], squares * weight)[0]
+        weight = 1.0 / (parts @ variances + doubted)
+        found = nnls(parts * weight[:, None], (squares - doubted) * weight)[0]
         variances = np.maximum(found, [1e-7, 1e-5, 1e-5])
     return variances
 
@@ -175,7 +180,8 @@ def _begin_again(reliefs: list[Relief], all_presses: Sequence[Presses], pad: Pad
 def unlearned_pad(all_presses: Sequence[Presses], law: Law) -> PadReading:
     """Return what is believed of a pad before anything is learned of it."""
     top = END * max(float(s.values.max()) for s in all_presses)
-    return PadReading(law, np.ones(all_presses[0].values.shape[1:]), top, np.array(VARIANCES))
+    shape = all_presses[0].values.shape[1:]
+    return PadReading(law, np.ones(shape), np.zeros(shape), top, np.array(VARIANCES))
 
 
 def learn_reliefs(

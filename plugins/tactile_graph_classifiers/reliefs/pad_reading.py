@@ -49,6 +49,8 @@ class PadReading:
     law : Law
     gains : ndarray, shape (rows, columns)
         Of the elements.
+    doubts : ndarray, shape (rows, columns)
+        Variance of the logarithm of what a reading should be for what is not known of its gain.
     top : float
         Reading from which on it may have been more.
     variances : ndarray, shape (3,)
@@ -59,6 +61,7 @@ class PadReading:
 
     law: Law
     gains: Array
+    doubts: Array
     top: float
     variances: Array
     lean_variance: float = LEAN_VARIANCE
@@ -84,5 +87,6 @@ class PadReading:
 
     def weights(self, presses: Presses) -> Array:
         """Return one over the variance of each reading, 0 where there is none."""
-        variances = np.tensordot(self.variances, self.parts(presses.values), 1)
+        parts = self.parts(presses.values)
+        variances = np.tensordot(self.variances, parts, 1) + self.doubts * parts[1]
         return np.where(presses.good, 1.0 / variances, 0.0)

@@ -22,6 +22,7 @@ def arrays() -> Kept:
     pad = {
         "law": np.array([[0.5, 0.9, 0.01]]),
         "gains": rng.uniform(0.9, 1.1, (4, 6)),
+        "doubts": rng.uniform(0.0, 0.01, (4, 6)),
         "variances": np.full((1, 3), 1e-4),
         "numbers": np.array([[255.0, 0.99, 1e-3, 0.5]]),
     }
