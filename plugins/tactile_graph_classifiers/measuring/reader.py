@@ -15,7 +15,6 @@ from tactile_graph.compiled import warm_up
 from tactile_graph.errors import DataError
 from tactile_graph.inspect import Failed, Skipped
 from tactile_graph.many import Portion
-from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires.frame import Frame
 from tactile_graph_classifiers.database.relief_rows import Press
 from tactile_graph_classifiers.measuring.measurements import Measurements
@@ -28,13 +27,13 @@ SQUARE = 0.02
 class Given(NamedTuple):
     """What reads: a pipeline, its output that gives measurements, and the seed.
 
-    With ``image``, where the image stands that is measured, it is kept too.
+    With ``image``, the reference of what is measured, that is kept too.
     """
 
     pipeline: Pipeline
     output: str
     seed: int
-    image: Ref | None = None
+    image: Any = None
 
 
 @dataclass
