@@ -46,7 +46,8 @@ def learned_of(known: Known, images: Sequence[Sequence[Press | None]], say: Say)
             " kept, of which reliefs are learned; learn with --keep-presses",
         )
     pitch_cm = _one_pad(known, there)
-    full_scale = max(float(np.nanmax(press.values)) for some in there for press in some)
+    highest = [np.nanmax(press.values, initial=0.0) for some in there for press in some]
+    full_scale = float(max(highest)) or 1.0
     all_presses = [_presses(known, k, some, full_scale) for k, some in enumerate(there)]
     law = chosen_law(all_presses, say)
     reliefs, pad = learn_reliefs(all_presses, law, say)
