@@ -160,7 +160,8 @@ def tried(it: Instrument, seed: int, every: int, folder: Path) -> list[Answers]:
     others = catalogue(it, np.random.default_rng([seed, 1]), "foreign ")
     foreign = by_name(presses(pad, others), others, every)
     store = ObjectDatabase(folder / f"{it.rows}x{it.columns}-{seed}.sqlite")
-    if not store.path.exists():
+    if not store.path.exists() or store.reliefs()[2]:
+        store.path.unlink(missing_ok=True)
         learn(store, to_learn)
         begin = time.process_time()
         known, images = store.presses()

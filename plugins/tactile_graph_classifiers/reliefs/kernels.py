@@ -66,9 +66,48 @@ def cells_of(point: Any, start: Any, n: Any, reach: Any) -> Any:
 
 
 @compiled_as_is
+def foremost_of(relief: Any) -> Any:
+    """Return the least depth of what lies so many nodes, or more, from the middle."""
+    n = relief.shape[0]
+    half = (n - 1) // 2
+    out = np.full(int(1.5 * half) + 3, np.inf)
+    for i in range(n):
+        for j in range(n):
+            away = int(math.sqrt(float((i - half) * (i - half) + (j - half) * (j - half))))
+            out[away] = min(out[away], relief[i, j])
+    for k in range(out.size - 1):
+        at = out.size - 2 - k
+        out[at] = min(out[at], out[at + 1])
+    return out
+
+
+@compiled_as_is
+def touching_radius(foremost: Any, press: Any, soft: Any) -> Any:
+    """Return how many cells from the middle, at most, a press touches."""
+    lean = math.sqrt(press[4] * press[4] + press[5] * press[5]) / NODES
+    far = foremost.size - 1
+    while far > 0 and foremost[far] >= press[3] + soft + lean * (far + 1):
+        far -= 1
+    return (far + 3.0) / NODES
+
+
+@compiled_as_is
+def chord(middle: Any, off: Any, radius: Any, start: Any, n: Any) -> Any:
+    """Return the first and the last but one of n points from ``start`` on within a circle."""
+    square = radius * radius - off * off
+    if square <= 0.0:
+        return 0, 0
+    half = math.sqrt(square)
+    first = int(max((middle - half) * POINTS - start - 1.5, 0.0))
+    last = int(min(max((middle + half) * POINTS - start + 1.5, 0.0), float(n)))
+    return first, last
+
+
+@compiled_as_is
 def loads(
-    relief: Any, press: Any, box: Any, rows: Any, columns: Any, taps: Any, soft: Any, wanted: Any
-) -> Any:
+    relief: Any, foremost: Any, press: Any, box: Any, rows: Any, columns: Any, taps: Any,
+    soft: Any, wanted: Any,
+) -> Any:  # fmt: skip
     """Return the load of the cells of a box, and where wanted its six derivatives, (m, h, w)."""
     n_rows, n_columns = box[2], box[3]
     reach = (taps.size - POINTS) // 2
@@ -78,10 +117,13 @@ def loads(
     n = right - left
     out = np.zeros((m, n_rows, n_columns))
     line, tall = np.zeros((m, n)), np.zeros((m, n_rows, n))
+    leftmost, rightmost = n, 0
     cos, sin = math.cos(press[2]), math.sin(press[2])
+    radius = touching_radius(foremost, press, soft)
     for i in range(top, bottom):
         begin, end = n, 0
-        for j in range(n):
+        from_j, to_j = chord(press[0], (i + 0.5) / POINTS - press[1], radius, left, n)
+        for j in range(from_j, to_j):
             load, slope, du, dv, u, v = touched(
                 relief, press, cos, sin, (left + j + 0.5) / POINTS, (i + 0.5) / POINTS, soft
             )
@@ -97,13 +139,14 @@ def loads(
                 line[6, j] = -slope * v
         if end == 0:
             continue
+        leftmost, rightmost = min(leftmost, begin), max(rightmost, end)
         first, last = cells_of(i, box[0], n_rows, reach)
         for r in range(first, last):
             tap = taps[i - (box[0] + r) * POINTS + reach]
             for k in range(m):
                 for j in range(begin, end):
                     tall[k, r, j] += tap * line[k, j]
-    for j in range(n):
+    for j in range(leftmost, rightmost):
         first, last = cells_of(left + j, box[1], n_columns, reach)
         for c in range(first, last):
             tap = taps[left + j - (box[1] + c) * POINTS + reach]
@@ -141,7 +184,9 @@ def misfit(value: Any, seen: Any, weight: Any, top: Any) -> Any:
 @compiled_as_is
 def expected(relief: Any, press: Any, box: Any, gains: Any, taps: Any, law: Any) -> Any:
     """Return what the cells of a box read."""
-    load = loads(relief, press, box, gains.shape[0], gains.shape[1], taps, law[0], False)[0]
+    rows, columns = gains.shape[0], gains.shape[1]
+    foremost = foremost_of(relief)
+    load = loads(relief, foremost, press, box, rows, columns, taps, law[0], False)[0]
     for r in range(box[2]):
         for c in range(box[3]):
             load[r, c] = read(load[r, c] * gains[box[0] + r, box[1] + c] - law[2], law[1])[0]
@@ -187,12 +232,14 @@ def fitted(
 
     Twice the cost of the cells, and the squares of the lean over its variance.
     """
+    rows, columns = gains.shape[0], gains.shape[1]
+    foremost = foremost_of(relief)
     best, found = 1e300, press.copy()
     at = press.copy()
     kept_A, kept_g = np.zeros((6, 6)), np.zeros(6)
     damping = 1e-2
     for _ in range(n_steps + 1):
-        load = loads(relief, at, box, gains.shape[0], gains.shape[1], taps, law[0], True)
+        load = loads(relief, foremost, at, box, rows, columns, taps, law[0], True)
         A, g = np.zeros((6, 6)), np.zeros(6)
         cost = 0.0
         for r in range(box[2]):
@@ -243,13 +290,15 @@ def cost_of_all(
     half = (n - 1) / 2.0
     reach = (taps.size - POINTS) // 2
     rows, columns = gains.shape[0], gains.shape[1]
+    foremost = foremost_of(relief)
     cost = 0.0
     by_node[:] = 0.0
     by_number[:] = 0.0
     for s in range(presses.shape[0]):
         press, box = presses[s], boxes[s]
         n_rows, n_columns = box[2], box[3]
-        load = loads(relief, press, box, rows, columns, taps, law[0], False)[0]
+        load = loads(relief, foremost, press, box, rows, columns, taps, law[0], False)[0]
+        radius = touching_radius(foremost, press, law[0])
         top, bottom = points_of(box[0], n_rows, rows, reach)
         left, right = points_of(box[1], n_columns, columns, reach)
         pulls = np.zeros((n_rows, n_columns))
@@ -273,16 +322,20 @@ def cost_of_all(
         cos, sin = math.cos(press[2]), math.sin(press[2])
         line = np.zeros(right - left)
         for i in range(top, bottom):
-            line[:] = 0.0
+            y = (i + 0.5) / POINTS
+            from_j, to_j = chord(press[0], y - press[1], radius, left, right - left)
+            if to_j <= from_j:
+                continue
+            line[from_j:to_j] = 0.0
             first, last = cells_of(i, box[0], n_rows, reach)
             for r in range(first, last):
                 tap = taps[i - (box[0] + r) * POINTS + reach]
-                for j in range(right - left):
+                for j in range(from_j, to_j):
                     line[j] += tap * tall[r, j]
-            for j in range(right - left):
+            for j in range(from_j, to_j):
                 if line[j] == 0.0:
                     continue
-                x, y = (left + j + 0.5) / POINTS, (i + 0.5) / POINTS
+                x = (left + j + 0.5) / POINTS
                 _, slope, du, dv, u, v = touched(relief, press, cos, sin, x, y, law[0])
                 if slope == 0.0:
                     continue

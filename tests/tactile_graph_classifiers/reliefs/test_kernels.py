@@ -7,24 +7,57 @@ import pytest
 
 from helpers_reliefs import BOX, SHAPE, as_presses, bowl, even_pad
 from tactile_graph_classifiers.reliefs.kernels import (
+    NODES,
     cells_of,
+    chord,
     cost_of_all,
     expected,
     fitted,
+    foremost_of,
     loads,
     solved,
+    touching_radius,
 )
 
 PRESS = np.array([10.2, 6.1, 0.4, 0.7, 0.02, -0.01])
 
 
+def load_of(press, box, taps, soft, wanted):
+    return loads(bowl(), foremost_of(bowl()), press, box, *SHAPE, taps, soft, wanted)
+
+
+def test_a_press_touches_nowhere_outside_its_radius():
+    depth = bowl()
+    foremost = foremost_of(depth)
+    at = (np.arange(61) - 30) / NODES
+    v, u = np.meshgrid(at, at, indexing="ij")
+    for deep, lean_u, lean_v in ((0.1, 0.0, 0.0), (0.4, 0.05, 0.0), (0.7, -0.1, 0.2), (9.0, 0, 0)):
+        touched = deep - depth - lean_u * u - lean_v * v > -0.03
+        press = np.array([0.0, 0.0, 0.0, deep, lean_u, lean_v])
+        radius = touching_radius(foremost, press, 0.03)
+        assert np.hypot(u, v)[touched].max() + 1.0 / NODES < radius
+        assert radius < np.hypot(u, v)[touched].max() + 4.0
+
+
+@pytest.mark.parametrize("off", [0.0, 1.3, -2.9, 3.1])
+def test_points_of_a_circle_are_within_its_chord(off):
+    x = (np.arange(5, 65) + 0.5) / 3
+    first, last = chord(10.2, off, 3.0, 5, 60)
+    within = np.flatnonzero((x - 10.2) ** 2 + off**2 < 9.0)
+    if not within.size:
+        assert first == last
+        return
+    assert first <= within[0] <= first + 3
+    assert last - 3 <= within[-1] + 1 <= last
+
+
 @pytest.mark.slow  # machine code is made for it
 def test_a_load_s_derivatives_are_those_of_its_differences():
     taps = even_pad().taps
-    by = loads(bowl(), PRESS, BOX, *SHAPE, taps, 0.05, True)
+    by = load_of(PRESS, BOX, taps, 0.05, True)
     for k in range(6):
         step = np.eye(6)[k] * 1e-4
-        high, low = (loads(bowl(), PRESS + s, BOX, *SHAPE, taps, 0.05, False)[0]
+        high, low = (load_of(PRESS + s, BOX, taps, 0.05, False)[0]
                      for s in (step, -step))  # fmt: skip
         np.testing.assert_allclose(by[k + 1], (high - low) / 2e-4, atol=0.02)
 
@@ -32,7 +65,7 @@ def test_a_load_s_derivatives_are_those_of_its_differences():
 @pytest.mark.slow  # machine code is made for it
 def test_the_load_is_the_volume_pressed():
     press = np.array([10.2, 6.1, 0.4, 0.4, 0.0, 0.0])
-    load = loads(bowl(), press, BOX, *SHAPE, even_pad().taps, 1e-3, False)[0]
+    load = load_of(press, BOX, even_pad().taps, 1e-3, False)[0]
     # a paraboloid: half its height times its base, an ellipse
     assert load.sum() == pytest.approx(0.5 * 0.4 * np.pi * np.sqrt(4.0 * 2.0), rel=0.04)
 
@@ -40,8 +73,8 @@ def test_the_load_is_the_volume_pressed():
 @pytest.mark.slow  # machine code is made for it
 def test_a_load_at_the_edge_of_the_box_is_that_of_a_larger_box():
     taps = even_pad().taps
-    whole = loads(bowl(), PRESS, np.array([0, 0, *SHAPE]), *SHAPE, taps, 0.05, False)[0]
-    part = loads(bowl(), PRESS, np.array([4, 8, 4, 5]), *SHAPE, taps, 0.05, False)[0]
+    whole = load_of(PRESS, np.array([0, 0, *SHAPE]), taps, 0.05, False)[0]
+    part = load_of(PRESS, np.array([4, 8, 4, 5]), taps, 0.05, False)[0]
     np.testing.assert_allclose(part, whole[4:8, 8:13], rtol=1e-12)
 
 
