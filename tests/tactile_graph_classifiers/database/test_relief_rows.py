@@ -153,3 +153,26 @@ def test_an_export_holds_no_reliefs(tmp_path):
     export.write_text("format: tactile-graph objects\n")
     with pytest.raises(DataError, match="is an export, which holds no reliefs"):
         load_reliefs(export)
+
+
+def test_a_flipped_byte_is_refused_or_changes_nothing(store, tmp_path):
+    rng = np.random.default_rng(0)
+    whole, wanted = store.path.read_bytes(), store.reliefs()[1]
+    n_refused = 0
+    for at in rng.integers(100, len(whole), 150):
+        bad = bytearray(whole)
+        bad[at] ^= 1 << int(rng.integers(8))
+        path = tmp_path / "bad.sqlite"
+        path.write_bytes(bad)
+        try:
+            _, kept, lacking = ObjectDatabase(path).reliefs()
+        except DataError:
+            n_refused += 1
+            continue
+        assert lacking == []
+        for name, values in wanted.pad.items():
+            np.testing.assert_array_equal(kept.pad[name], values)
+        for owner, own in wanted.objects.items():
+            for name, values in own.items():
+                np.testing.assert_array_equal(kept.objects[owner][name], values)
+    assert n_refused > 5
