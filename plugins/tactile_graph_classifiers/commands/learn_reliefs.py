@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tactile_graph.cli.say import say
+from tactile_graph.errors import one_of
 from tactile_graph_classifiers.commands.shared import database_option
 
 
@@ -30,3 +31,9 @@ def learn_reliefs(database: Path, timeout_s: float) -> None:
     found = learned_of(known, presses, lambda text: say(f"{database}: {text}"))
     store.keep_reliefs(found.kept(), known)
     say(f"{database}: reliefs of {len(found.names)} objects learned")
+    if badly := found.badly_learned():
+        say(
+            f"{database}: presses of {one_of(badly, 30)} fit their own relief badly when left out;"
+            " learn more of them, then reliefs again",
+            err=True,
+        )

@@ -18,6 +18,9 @@ HELD = (0.5, 2.0)
 """Within so many times that of all objects an object's usual misfit is held: else one that was
 learned badly would take in the presses of others."""
 
+BADLY = 5.0
+"""So many times the misfit of others' presses tells of an object that was not learned."""
+
 
 @dataclass(frozen=True, eq=False)
 class KnownReliefs:
@@ -70,6 +73,12 @@ class KnownReliefs:
         middle = np.nanmedian(medians) if np.isfinite(medians).any() else 1.0
         usual = np.clip(np.where(np.isfinite(medians), medians, middle), *np.multiply(HELD, middle))
         return cls(pad, *scale, tuple(names), tuple(reliefs), usual, tuple(left_out))
+
+    def badly_learned(self) -> list[str]:
+        """Return the objects whose left out presses are far further off than those of others."""
+        medians = np.array([_median(some) for some in self.left_out])
+        far = medians > BADLY * np.nanmedian(medians) if np.isfinite(medians).any() else []
+        return [name for name, badly in zip(self.names, far, strict=False) if badly]
 
     def kept(self) -> Kept:
         """Return them as the database keeps them."""

@@ -32,6 +32,16 @@ def test_an_object_s_usual_misfit_is_held_near_that_of_all():
     assert known().usual.tolist() == [255.0, 1000.0]  # of 20 and 1000; that of all is 510
 
 
+def test_an_object_that_was_not_learned_is_named():
+    reliefs = [relief(bowl(21), np.zeros((2, 6)), np.ones(2)) for _ in range(3)]
+    left_out = [np.full(4, value) for value in (100.0, 120.0, 900.0)]
+    names = ("cup", "ball", "comb")
+    found = KnownReliefs.of(even_pad(), (255.0, 0.5), names, reliefs, left_out)
+    assert found.badly_learned() == ["comb"]
+    nothing = [np.full(4, np.nan)] * 3
+    assert KnownReliefs.of(even_pad(), (255.0, 0.5), names, reliefs, nothing).badly_learned() == []
+
+
 @pytest.mark.parametrize(
     ("array", "value"), [("law", [[9.0, 1.0, 0.01]]), ("variances", [[0.0, 1.0, 1.0]]),
                          ("numbers", [[-1.0, 1.0, 1.0, 1.0]])],
