@@ -12,6 +12,7 @@ _STEPS = {
     "fitted_area": "measuring.fitted_area:fitted_area",
     "mahalanobis": "distances.mahalanobis:Mahalanobis",
     "mean_reading": "measuring.mean_reading:MeanReading",
+    "nearest_relief": "distances.nearest_relief:NearestRelief",
     "minimum_distance": "distances.minimum_distance:MinimumDistance",
     "minimum_distance_normalised": (
         "distances.minimum_distance_normalised:MinimumDistanceNormalised"
@@ -29,4 +30,7 @@ def tactile_graph_steps() -> Mapping[str, str]:
 def tactile_graph_commands() -> Mapping[str, str]:
     """Offer the commands about known objects."""
     names = ("forget", "identify", "learn", "objects")
-    return {name: f"{__name__}.commands.{name}:{name}" for name in names}
+    return {
+        **{name: f"{__name__}.commands.{name}:{name}" for name in names},
+        "learn-reliefs": f"{__name__}.commands.learn_reliefs:learn_reliefs",
+    }

@@ -25,7 +25,7 @@ IN_VOLTS = {name for name in SHIPPED if "likelihood" in name} | {
 }
 """Those that weigh a pad's volts: they cannot do with less."""
 KNOWN_IN_GRAMS = {
-    *("identify", "identify-any", "identify-locate"),
+    *("identify", "identify-any", "identify-locate", "identify-reliefs"),
     *("thesis-identify", "identify-decoupled", "identify-footprint"),
 }
 """Those that know the thesis' objects, by their grams."""

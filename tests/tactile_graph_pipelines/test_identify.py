@@ -43,7 +43,8 @@ def test_the_circle_it_finds_is_that_of_circle_3():
 
 
 @pytest.mark.parametrize(
-    "name", ["features", "describe", "identify", "identify-any", "identify-locate"]
+    "name",
+    ["features", "describe", "identify", "identify-any", "identify-locate", "identify-reliefs"],
 )
 def test_an_empty_pad_is_skipped_and_only_the_footprint_is_computed(name):
     pipeline = load(name)

@@ -20,9 +20,9 @@ FRAMES = 2
 PIPELINES = (
     "adaptive", "bayes-circle", "bayes-lines", "bayes-objects", "bayes-rectangle", "bayes-smooth",
     "circle-by-order", "circle-followed", "circle-full", "circle-likelihood", "circle-restored",
-    "identify-likelihood", "locate", "locate-circle", "locate-contacts", "locate-objects",
-    "locate-rectangle", "object-likelihood", "objects-likelihood", "rectangle-likelihood",
-    "rectangle-straight", "thesis-lines", "thesis-smooth",
+    "identify-likelihood", "identify-reliefs", "locate", "locate-circle", "locate-contacts",
+    "locate-objects", "locate-rectangle", "object-likelihood", "objects-likelihood",
+    "rectangle-likelihood", "rectangle-straight", "thesis-lines", "thesis-smooth",
 )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ LONGEST_LINE = 2048
 
 SLOW = {name for name in NAMES if "likelihood" in name or "locate" in name} | {
     *("adaptive", "bayes-circle", "bayes-lines", "bayes-objects", "bayes-rectangle"),
-    *("circle-by-order", "circle-followed", "circle-full", "objects"),
+    *("circle-by-order", "circle-followed", "circle-full", "identify-reliefs", "objects"),
     *tactile_graph_thesis.tactile_graph_pipelines(),
 }
 """Their kernels alone compile for a quarter of a minute, or they are steps between others."""

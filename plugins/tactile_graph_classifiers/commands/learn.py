@@ -18,6 +18,7 @@ from tactile_graph_classifiers.measuring.shapes import SHAPES
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.many import Place
+    from tactile_graph.pipeline.wiring import Ref
     from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.measuring.reader import Given, Readings
 
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
               help="What its footprint is; the recording's truth says it otherwise.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--keep-presses", is_flag=True,
+              help="Keep the images too: 'tactile-graph learn-reliefs' learns reliefs of"
+                   " them.")  # fmt: skip
 @workers_options
 def learn(
     name: str,
@@ -46,6 +50,7 @@ def learn(
     pipeline: str,
     shape: str | None,
     span: Span,
+    keep_presses: bool,
     workers: int | None,
     on: str | None,
 ) -> None:
@@ -63,7 +68,8 @@ def learn(
     if not recordings and source is None:
         raise UsageError("name the recordings to learn from, or a --source")
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    asked = Given(opened, measuring_output(opened, only), seed)
+    output = measuring_output(opened, only)
+    asked = Given(opened, output, seed, image_of(opened, output, only) if keep_presses else None)
     place = place_for(workers, on, opened.runner([asked.output], seed).plan)
     report = Report()
     try:
@@ -78,8 +84,10 @@ def learn(
     readings = [m.values.tolist() for m in read.rows]
     lesson = Lesson(name, shape or read.shape, readings, read.sources)  # type: ignore[arg-type]
     store = ObjectDatabase(database, timeout_s)
-    store.learn(Setting(first.names, first.quantity, opened.name), [lesson])
-    total = next(s for s in store.summaries() if s.name == " ".join(name.split()))
+    plain_name = " ".join(name.split())
+    presses = {plain_name: read.presses} if keep_presses else None
+    store.learn(Setting(first.names, first.quantity, opened.name), [lesson], presses=presses)
+    total = next(s for s in store.summaries() if s.name == plain_name)
     say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
         f"{len(read.rows)} readings learned, {total.n_readings} in all"
@@ -110,6 +118,29 @@ def _read(
         for number in workers.left_out:
             report.trouble(f"frame {span.start + number}", KILLER)
     return found
+
+
+def image_of(pipeline: Pipeline, output: str, only: tuple[str, ...]) -> Ref:
+    """Return where the image stands that an output measures.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    output : str
+        As `measuring_output` has it.
+    only : tuple of str
+        Nodes asked for instead of the outputs.
+
+    Raises
+    ------
+    UsageError
+        If it measures none.
+    """
+    node = (pipeline.ref(output) if only else pipeline.outputs[output]).node
+    for bound in pipeline.nodes[node].inputs:
+        if bound.port.name == "image" and len(bound.refs) == 1:
+            return bound.refs[0]
+    raise UsageError(f"--keep-presses: node {node!r} measures no port 'image'")
 
 
 def measuring_output(pipeline: Pipeline, only: tuple[str, ...]) -> str:

@@ -7,11 +7,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.errors import DataError, one_of
 from tactile_graph_classifiers.database.known import Known, KnownObject
+from tactile_graph_classifiers.database.relief_rows import Kept
 from tactile_graph_classifiers.database.statistics import Statistics
 
 SAMPLE = Path(__file__).parents[1] / "samples" / "thesis-objects.yaml"
 """Readings of the objects of thesis tables 4.6 and 4.9 on the simulated pad."""
+
+RELIEFS = SAMPLE.with_name("thesis-reliefs.sqlite")
+"""The objects of table 4.9 with their reliefs, learned of simulated presses."""
 
 
 def load_known(database: Path | dict[str, Any] | None, features: Sequence[str] | None) -> Known:
@@ -44,6 +49,34 @@ def load_known(database: Path | dict[str, Any] | None, features: Sequence[str] |
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
     return ObjectDatabase(path).known().chosen(features)
+
+
+def load_reliefs(database: Path | None) -> tuple[Known, Kept]:
+    """Return the objects of a database and their reliefs.
+
+    Parameters
+    ----------
+    database : Path or None
+        An SQLite file; if None, the sample that comes with the plugin.
+
+    Raises
+    ------
+    DataError
+        If it cannot be read, or an object has no relief of its present readings.
+    """
+    from tactile_graph_classifiers.database.store import ObjectDatabase
+
+    path = RELIEFS if database is None else Path(database)
+    if _is_export(path):
+        raise DataError(str(path), "is an export, which holds no reliefs; name the database itself")
+    known, kept, lacking = ObjectDatabase(path).reliefs()
+    if lacking:
+        raise DataError(
+            str(path),
+            f"{one_of(lacking, 30)}: no relief was learned of the present readings; 'tactile-graph"
+            " learn-reliefs' learns it",
+        )
+    return known, kept
 
 
 def _is_export(path: Path) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +12,14 @@ from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
 from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.connection import reading, writing
 from tactile_graph_classifiers.database.known import Known
+from tactile_graph_classifiers.database.relief_rows import (
+    Kept,
+    Press,
+    add_presses,
+    keep,
+    kept_in,
+    presses_of,
+)
 from tactile_graph_classifiers.database.rows import (
     Contents,
     Lesson,
@@ -50,7 +58,13 @@ class ObjectDatabase:
 
     # -- learning and forgetting -------------------------------------------------------------
 
-    def learn(self, setting: Setting, lessons: Iterable[Lesson], new: bool = False) -> None:
+    def learn(
+        self,
+        setting: Setting,
+        lessons: Iterable[Lesson],
+        new: bool = False,
+        presses: Mapping[str, Sequence[Press]] | None = None,
+    ) -> None:
         """Add readings to objects, all of them or none.
 
         Parameters
@@ -59,6 +73,8 @@ class ObjectDatabase:
         lessons : iterable of Lesson
         new : bool
             Whether none of the objects may be there already.
+        presses : mapping, optional
+            By a lesson's name the images of its readings, to learn reliefs of.
 
         Raises
         ------
@@ -80,6 +96,8 @@ class ObjectDatabase:
             settle(connection, setting, None)  # features first: values refer to them
             for lesson in checked:
                 objects[lesson.name] = add(connection, lesson, objects.get(lesson.name))
+                if presses:
+                    add_presses(connection, lesson.name, presses[lesson.name])
             settle(connection, setting, None)
 
     def keep(self, choice: Choice, of: Known) -> None:
@@ -95,6 +113,27 @@ class ObjectDatabase:
             there = contents(connection, str(self.path))
             if self._known(there).same_readings(of):
                 settle(connection, there.setting, choice)
+
+    def keep_reliefs(self, reliefs: Kept, of: Known) -> None:
+        """Keep learned reliefs, unless the objects have changed since.
+
+        Parameters
+        ----------
+        reliefs : Kept
+        of : Known
+            Whose presses they were learned of.
+
+        Raises
+        ------
+        DataError
+            If the objects are others by now.
+        """
+        with writing(self.path, self.timeout_s) as connection:
+            if not self._known(contents(connection, str(self.path))).same_readings(of):
+                raise DataError(
+                    str(self.path), "was changed while reliefs were learned; learn them again"
+                )
+            keep(connection, reliefs)
 
     def forget(self, name: str) -> int:
         """Remove an object with all its readings; return how many these were.
@@ -170,6 +209,30 @@ class ObjectDatabase:
         """
         with reading(self.path, self.timeout_s) as connection:
             return self._known(contents(connection, str(self.path)))
+
+    def presses(self) -> tuple[Known, list[list[Press | None]]]:
+        """Return everything, and the image of each reading of each object where it was kept.
+
+        Raises
+        ------
+        DataError
+            As `known`, or if an image is not as it was written.
+        """
+        with reading(self.path, self.timeout_s) as connection:
+            known = self._known(contents(connection, str(self.path)))
+            return known, [presses_of(connection, it, str(self.path)) for it in known.names]
+
+    def reliefs(self) -> tuple[Known, Kept, list[str]]:
+        """Return everything, the reliefs, and the objects that have none of just their readings.
+
+        Raises
+        ------
+        DataError
+            As `known`, or if a relief is not as it was written.
+        """
+        with reading(self.path, self.timeout_s) as connection:
+            known = self._known(contents(connection, str(self.path)))
+            return known, *kept_in(connection, str(self.path))
 
     def _known(self, found: Contents) -> Known:
         setting, objects = found.setting, tuple(it.known for it in found.objects)

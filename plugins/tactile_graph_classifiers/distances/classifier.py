@@ -61,13 +61,30 @@ class Lookup:
     ) -> None:
         from tactile_graph_classifiers.database.opening import load_known
 
-        self.known: Known = load_known(database, features)
+        self._take(load_known(database, features), database is not None)
+
+    @classmethod
+    def of(cls, known: Known, named: bool) -> Lookup:
+        """Return the lookup of objects that were read already.
+
+        Parameters
+        ----------
+        known : Known
+        named : bool
+            Whether the setting ``database`` names where they are from.
+        """
+        made = cls.__new__(cls)
+        made._take(known, named)
+        return made
+
+    def _take(self, known: Known, named: bool) -> None:
+        self.known: Known = known
         if not self.known.objects:
             raise DataError(self.known.where, "no object was learned yet")
         quantity = self.known.quantity
         self.taken = Taken(
             {"features": (quantity,)} if is_quantity(quantity) else {},
-            "" if database is None else "database",
+            "database" if named else "",
             f"{self.known.where}: {self.known.remedy}",
         )
         # One attribute for both: threads may share a classifier.

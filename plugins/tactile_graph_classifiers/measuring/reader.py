@@ -7,21 +7,33 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from tactile_graph import Pipeline
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Image, Pipeline
 from tactile_graph.compiled import warm_up
+from tactile_graph.errors import DataError
 from tactile_graph.inspect import Failed, Skipped
 from tactile_graph.many import Portion
 from tactile_graph.wires.frame import Frame
+from tactile_graph_classifiers.database.relief_rows import Press
 from tactile_graph_classifiers.measuring.measurements import Measurements
 from tactile_graph_classifiers.measuring.shapes import true_shape
 
+SQUARE = 0.02
+"""By how much a cell's sides may differ where reliefs are learned, which are turned on the grid."""
+
 
 class Given(NamedTuple):
-    """What reads: a pipeline, its output that gives measurements, and the seed."""
+    """What reads: a pipeline, its output that gives measurements, and the seed.
+
+    With ``image``, the reference of what is measured, that is kept too.
+    """
 
     pipeline: Pipeline
     output: str
     seed: int
+    image: Any = None
 
 
 @dataclass
@@ -39,6 +51,8 @@ class Readings:
         By reason, how many frames gave no reading.
     n_failed : int
         How many of these because a step failed.
+    presses : list of Press
+        The images they were measured of, if they are to be kept.
     """
 
     rows: list[Measurements] = field(default_factory=list)
@@ -46,6 +60,7 @@ class Readings:
     shapes: set[str] = field(default_factory=set)
     left_out: Counter[str] = field(default_factory=Counter)
     n_failed: int = 0
+    presses: list[Press] = field(default_factory=list)
 
     @property
     def shape(self) -> str:
@@ -59,6 +74,7 @@ class Readings:
         self.shapes |= later.shapes
         self.left_out.update(later.left_out)
         self.n_failed += later.n_failed
+        self.presses += later.presses
 
 
 class Reader:
@@ -71,7 +87,7 @@ class Reader:
 
     def __init__(self, given: Given) -> None:
         warm_up()  # the same code for each frame, whoever reads it
-        self._pipeline, self._output = given.pipeline, given.output
+        self._pipeline, self._output, self._image = given.pipeline, given.output, given.image
         self._runner = given.pipeline.runner([given.output], given.seed)
 
     def __call__(self, portion: Portion) -> Readings:
@@ -82,15 +98,45 @@ class Reader:
         """Return the readings of frames."""
         found = Readings()
         for frame in frames:
-            outcome: Any = self._runner(frame).outcome(self._output)
+            result = self._runner(frame)
+            outcome: Any = result.outcome(self._output)
             if isinstance(outcome, Failed | Skipped):
                 found.left_out[_why(outcome.reason)] += 1
                 found.n_failed += isinstance(outcome, Failed)
                 continue
+            if self._image is not None:
+                found.presses.append(_press(result.outcome_at(self._image)))
             found.rows.append(getattr(outcome, "measurements", outcome))
             found.sources.append(_source(self._pipeline, frame))
             found.shapes.add(true_shape(frame))
         return found
+
+
+def _press(image: Any) -> Press:
+    """Return an image as a press to be kept.
+
+    Raises
+    ------
+    DataError
+        If it is no image, or its cells are not square.
+    """
+    if not isinstance(image, Image):
+        raise DataError("presses", "what is measured is no image")
+    along, down = image.pitch_cm
+    if abs(along / down - 1.0) > SQUARE:
+        raise DataError(
+            "presses",
+            f"reliefs are learned on square cells, and these are {along:g} x {down:g} cm",
+        )
+    return Press(pressed(image), along)
+
+
+def pressed(image: Image) -> NDArray[np.float64]:
+    """Return the values of an image, NaN where a cell is broken."""
+    values = np.array(image.values, dtype=np.float64)
+    if image.valid is not None:
+        values[~image.valid] = np.nan
+    return values
 
 
 def _why(reason: str) -> str:

@@ -267,3 +267,28 @@ def test_a_database_of_the_thesis_features_serves_the_default_pipeline(recording
     assert text.splitlines()[-1] == "right: 3 of 3"
     text = answer("identify", recordings["large"], "--frames", 3, "--pipeline", "identify")[1]
     assert text.splitlines()[-1] == "right: 3 of 3"
+
+
+def test_reliefs_are_learned_of_presses_that_were_kept(recordings):
+    learned(recordings)
+    code, text = call("learn-reliefs")
+    assert code != 0
+    assert "small" in text
+    assert "fewer than 8 presses are kept" in text
+    assert "--keep-presses" in text
+    code, text = call("identify", recordings["small"], "--pipeline", "identify-reliefs")
+    assert code != 0
+    assert "no relief was learned of the present readings; 'tactile-graph learn-reliefs'" in text
+
+
+@pytest.mark.slow  # reliefs are learned
+def test_objects_are_identified_by_their_reliefs(recordings):
+    for name in ("small", "large"):
+        assert call("learn", name, recordings[name], "--keep-presses")[0] == 0
+    code, text = call("learn-reliefs")
+    assert code == 0, text
+    assert "reliefs of 2 objects learned" in text
+    code, text = answer("identify", recordings["large"], "--pipeline", "identify-reliefs")
+    assert code == 0
+    assert text.count("\n") > 12
+    assert "right: 1" in text  # 10 to 12 of 12

@@ -1,0 +1,54 @@
+"""A bowl pressed on an even pad, for the tests of reliefs, and simulated objects on a strip."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from tactile_graph_classifiers.reliefs.kernels import NODES
+from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
+from tactile_graph_classifiers.reliefs.presses import Presses
+from tactile_graph_classifiers.reliefs.relief import Relief
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from pressed_objects import STRIP, Pad, Thing, box, disc
+
+SHAPE = (12, 20)
+BOX = np.array([0, 2, 12, 16])
+STRIP_LAW = Law(STRIP.blur_cells, STRIP.law, STRIP.threshold)
+THINGS = [Thing("disc", disc(1.1), 0.4), Thing("box", box(3.0, 1.5), 0.4)]
+
+
+def bowl(n: int = 61) -> np.ndarray:
+    """Return an elliptic bowl, 0.1 of full scale deep a cell from its middle."""
+    at = (np.arange(n) - n // 2) / NODES
+    v, u = np.meshgrid(at, at, indexing="ij")
+    return 0.1 * u**2 + 0.2 * v**2
+
+
+def even_pad() -> PadReading:
+    """Return an even pad, whose readings vary by little."""
+    return PadReading(
+        STRIP_LAW, np.ones(SHAPE), np.zeros(SHAPE), 0.99, np.array([1e-6, 1e-4, 1e-4])
+    )
+
+
+def as_presses(values, boxes, centres) -> Presses:
+    """Return readings of full scale as presses."""
+    values = np.asarray(values, dtype=np.float64)
+    return Presses(values, np.ones(values.shape, dtype=bool), np.asarray(boxes),
+                   np.asarray(centres, dtype=np.float64))  # fmt: skip
+
+
+def relief(depth, presses, misfits, usual: float = 0.4) -> Relief:
+    """Return a relief."""
+    return Relief(depth, np.asarray(presses), usual, 0.01, np.asarray(misfits, dtype=np.float64),
+                  depth, np.zeros(2))  # fmt: skip
+
+
+def pressed_on_a_strip(things: list[Thing], n: int, seed: int) -> list[np.ndarray]:
+    """Return n presses of each thing."""
+    pad = Pad(STRIP, np.random.default_rng(seed))
+    return [np.array([pad.press(t).image.values for _ in range(n)], float) for t in things]
