@@ -30,10 +30,10 @@ from tactile_graph.wires.frame import Frame
 
 LATE_SHARE = 0.0008
 """Of frames: a little less than the one in a thousand of which it is said that it may be late."""
-HEADROOM = 0.3
+HEADROOM = 0.4
 """Share of the time in which a frame may wait that each choice leaves to those after it in its
 ladder: so there is room for what one falls back on, and a rare long time is not at once late."""
-MOST_HEADROOM = 0.7
+MOST_HEADROOM = 0.8
 WINDOW = 1000
 """How many last times tell how far single ones stray."""
 FOLLOWS = 0.1
@@ -221,7 +221,7 @@ def kind_of(frame: Frame) -> int:
     factor of eight, tells frames of noise alone, where any number of cells may.
     """
     values = frame.image.values
-    low, high = float(values.min()), float(values.max())
+    low, high = float(np.fmin.reduce(values, axis=None)), float(np.fmax.reduce(values, axis=None))
     n_high = np.count_nonzero(values > 0.5 * (low + high))
     reach = round(log2(high - low) / 3) if 0 < high - low < inf else -512
     return 64 * reach + int(4 * log2(n_high + 1))

@@ -11,6 +11,7 @@ import pytest
 
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Frame, Image, Pipeline, loads
+from tactile_graph.engine.deadlines.deadline import kind_of, waits_longer
 from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph.live import Deadline, Recorded
 from tactile_graph.steps import TimeGap
@@ -270,6 +271,71 @@ def test_a_long_first_time_on_one_kind_of_frame_is_forgotten_among_others() -> N
         taken.append(not seen.decisions)
     assert not any(taken[1:20])
     assert all(taken[-40:])
+
+
+def test_frames_that_have_waited_leave_room_for_what_one_falls_back_on() -> None:
+    """Though the better choice would still be done in time."""
+    timed = Timed(LADDER)
+    for _ in range(3):
+        timed(20 * MS)
+    first_that_waits_too_long = None
+    for waited in range(1, 16):
+        timed.deadline.arrived_ns = TIME.now_ns - waited * MS
+        if timed((20 - waited) * MS).decisions:
+            first_that_waits_too_long = waited
+            break
+    took, least = TIMES["best"] + TIMES["shared"], TIMES["cheap"]
+    room_ms = (20 * MS - took - least) / MS
+    assert first_that_waits_too_long == pytest.approx(0.6 * room_ms, abs=1.5)
+
+
+@pytest.mark.parametrize(("beneath", "share"), [(0, 1.0), (1, 0.6), (2, 0.2), (9, 0.2)])
+def test_each_choice_further_up_leaves_more_room(beneath: int, share: float) -> None:
+    assert 1.0 / (1.0 + waits_longer(beneath)) == pytest.approx(share)
+
+
+def test_a_stream_too_fast_for_the_best_choice_is_on_time_all_the_same() -> None:
+    """A frame each 1 ms; 1.3 ms for the best choice, one time in a hundred three times that."""
+    rng = np.random.default_rng(5)
+    times = (1.3 * MS * rng.lognormal(0.0, 0.47, 6000)).astype(int).tolist()
+    COSTS["best"] = lambda i: times[i]
+    COSTS["middle"] = lambda i: MS // 20
+    timed, late, best = Timed(LADDER), 0, 0
+    begun_ns = TIME.now_ns
+    for i in range(len(times)):
+        arrived_ns = begun_ns + i * MS
+        TIME.now_ns = max(TIME.now_ns, arrived_ns)
+        timed.deadline.arrived_ns = arrived_ns
+        result = timed(arrived_ns + 10 * MS - TIME.now_ns)
+        late += TIME.now_ns > timed.deadline.due_ns
+        best += not result.decisions
+    assert late <= 6
+    assert best / len(times) > 0.5
+
+
+def test_a_frame_of_noise_is_of_another_kind_than_a_large_object() -> None:
+    """Times on one say nothing of the other, though as many cells read high."""
+    rng = np.random.default_rng(1)
+    noise = rng.normal(0.0, 0.002, (16, 16))
+    large = np.where(noise > 0.0, 1.0, 0.0)
+    n_high = [int((v > 0.5 * (v.min() + v.max())).sum()) for v in (noise, large)]
+    assert 0.3 < n_high[0] / n_high[1] < 3.0
+    kinds = [kind_of(Frame.of(v, 1.0)) for v in (noise, large, 1.5 * large)]
+    assert abs(kinds[0] - kinds[1]) > 64
+    assert kinds[1] == kinds[2]
+
+
+def test_a_missing_cell_leaves_a_frame_its_kind() -> None:
+    values = np.zeros((16, 16))
+    values[4:9, 4:9] = 1.0
+    missing = values.copy()
+    missing[0, 0] = np.nan
+    assert kind_of(Frame.of(missing, 1.0)) == kind_of(Frame.of(values, 1.0))
+
+
+@pytest.mark.parametrize("fill", [0.0, 3.0, np.nan, np.inf])
+def test_a_frame_of_one_value_or_of_none_has_a_kind(fill: float) -> None:
+    assert isinstance(kind_of(Frame.of(np.full((4, 4), fill), 1.0)), int)
 
 
 @pytest.mark.slow
