@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from tactile_graph import Frame, load
+from tactile_graph_classifiers.commands.learn import image_of
+from tactile_graph_classifiers.database.rows import Lesson, Setting
+from tactile_graph_classifiers.database.store import ObjectDatabase
+from tactile_graph_classifiers.measuring.reader import Given, Reader
 from tactile_graph_classifiers.reliefs.kernels import NODES
+from tactile_graph_classifiers.reliefs.of_database import learned_of
 from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
 from tactile_graph_classifiers.reliefs.presses import Presses
 from tactile_graph_classifiers.reliefs.relief import Relief
@@ -52,3 +59,20 @@ def pressed_on_a_strip(things: list[Thing], n: int, seed: int) -> list[np.ndarra
     """Return n presses of each thing."""
     pad = Pad(STRIP, np.random.default_rng(seed))
     return [np.array([pad.press(t).image.values for _ in range(n)], float) for t in things]
+
+
+def learned_with_reliefs(path: Path, pressed: Mapping[str, Sequence[Frame]]) -> Path:
+    """Learn objects of their frames, with their reliefs, and return the database's path."""
+    pipeline = load("describe")
+    reader = Reader(Given(pipeline, "features", 0, image_of(pipeline, "features", ())))
+    store = ObjectDatabase(path)
+    for name, frames in pressed.items():
+        found = reader.readings(frames)
+        rows = np.array([one.values for one in found.rows])
+        unit = str(frames[0].image.quantity)
+        setting = Setting(found.rows[0].names, unit)
+        lesson = Lesson(name, "", rows, found.sources)
+        store.learn(setting, [lesson], presses={name: found.presses})
+    known, images = store.presses()
+    store.keep_reliefs(learned_of(known, images, lambda _: None).kept(), known)
+    return store.path

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers_reliefs import learned_with_reliefs
+from tactile_graph import Frame, Image
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind
 from tactile_graph.testing import examine_step, isolated
@@ -47,6 +49,8 @@ SETTINGS: dict[str, dict[str, Any]] = {
     **dict.fromkeys(("fit_footprints", "locate_objects"), ONE_DISC),
 }
 QUICK = ("erode", "fit_circle", "hull", "contacts", "force", "tare")
+NEEDS_RELIEFS = ("nearest_relief",)
+"""Known of one pad only; a test of their own learns objects on it."""
 NEEDS_A_PAD = ("correct_place", "correct_readings", "threshold_learned")
 
 
@@ -86,7 +90,7 @@ def test_every_step_of_a_family_does(family: str, pad: str) -> None:
     (plugin,) = (p for p in registry.plugins if p.name == family)
     settings = {**SETTINGS, **{name: {"pad": pad} for name in NEEDS_A_PAD}}
     broken, untried = [], []
-    for name in plugin.offers["steps"]:
+    for name in {*plugin.offers["steps"]}.difference(NEEDS_RELIEFS):
         report = examine_step(name, settings=settings.get(name), registry=registry)
         broken += report.lines()
         if registry.step(name).kind is not Kind.SOURCE:
@@ -94,6 +98,30 @@ def test_every_step_of_a_family_does(family: str, pad: str) -> None:
     assert (broken, untried) == ([], [])
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NEEDS_RELIEFS)
+def test_a_step_of_reliefs_does(name: str, tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
+
+    def frames(radius_cells: float) -> list[Frame]:
+        places = rng.uniform((2.6, 2.6), (5.4, 6.4), (15, 2))
+        return [soft_disc(row, column, radius_cells, rng) for row, column in places]
+
+    path = tmp_path / "objects.sqlite"
+    learned_with_reliefs(path, {"small": frames(1.5), "large": frames(2.4)})
+    report = examine_step(name, settings={"database": str(path)})
+    assert (report.untried, report.lines()) == ("", [])
+    assert report.n_values
+
+
+def soft_disc(row: float, column: float, radius_cells: float, rng: np.random.Generator) -> Frame:
+    """Return a frame of the ordinary case's pad, in volts."""
+    y, x = np.mgrid[: SHAPE[0], : SHAPE[1]] + 0.5
+    volts = np.clip(radius_cells + 0.5 - np.hypot(x - column, y - row), 0.0, 1.0)
+    volts *= 1.0 + 0.03 * rng.standard_normal(SHAPE)
+    return Frame(Image(volts, PITCH_CM, (0.0, 0.0), "volt"), 0, 0.0)
+
+
 def test_what_is_told_here_exists() -> None:
-    names = {*SETTINGS, *NEEDS_A_PAD, *QUICK}
+    names = {*SETTINGS, *NEEDS_A_PAD, *NEEDS_RELIEFS, *QUICK}
     assert names <= set(installed().names("steps"))

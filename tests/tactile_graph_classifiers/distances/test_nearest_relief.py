@@ -7,17 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers_reliefs import STRIP, THINGS, Pad, Thing, disc
+from helpers_reliefs import STRIP, THINGS, Pad, Thing, disc, learned_with_reliefs
 from tactile_graph import Frame, Image, load
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.commands.learn import image_of
-from tactile_graph_classifiers.database.rows import Lesson, Setting
-from tactile_graph_classifiers.database.store import ObjectDatabase
 from tactile_graph_classifiers.distances.identity import UNKNOWN
 from tactile_graph_classifiers.distances.nearest_relief import NearestRelief
 from tactile_graph_classifiers.measuring.reader import Given, Reader
 from tactile_graph_classifiers.measuring.shapes import true_name
-from tactile_graph_classifiers.reliefs.of_database import learned_of
 
 
 def pressed(pad: Pad, thing: Thing, n: int) -> list[Frame]:
@@ -37,16 +34,8 @@ def pad() -> Pad:
 
 @pytest.fixture(scope="module")
 def database(pad: Pad, tmp_path_factory) -> Path:
-    store = ObjectDatabase(tmp_path_factory.mktemp("reliefs") / "objects.sqlite")
-    for thing in THINGS:
-        found = readings(pressed(pad, thing, 15))
-        first = found.rows[0]
-        rows = np.array([one.values for one in found.rows])
-        lesson = Lesson(thing.name, "", rows, found.sources)
-        store.learn(Setting(first.names, "raw"), [lesson], presses={thing.name: found.presses})
-    known, images = store.presses()
-    store.keep_reliefs(learned_of(known, images, lambda _: None).kept(), known)
-    return store.path
+    path = tmp_path_factory.mktemp("reliefs") / "objects.sqlite"
+    return learned_with_reliefs(path, {thing.name: pressed(pad, thing, 15) for thing in THINGS})
 
 
 @pytest.mark.slow  # reliefs are learned
