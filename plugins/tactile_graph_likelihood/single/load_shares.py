@@ -7,8 +7,9 @@ With r the distance from the centre over that of the outline in the same directi
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
 even face, 1/2 a ball on an elastic pad (Hertz), 1 a ball on a soft layer, below 0 a stiff face or
 a cup that presses with its rim. u and v are the offsets from the centre, right and down, over half
-the outline's larger extent. Over any outline that is as wide on both sides of its centre
-``(1 + fall) (1 - r**2) ** fall`` has the mean 1.
+the outline's larger extent; of a rectangle or an ellipse each of its axes is stretched to the length
+1 instead, so that a lean across it is as likely as one along it. Over any outline that is as wide on
+both sides of its centre ``(1 + fall) (1 - r**2) ** fall`` has the mean 1.
 """
 
 from __future__ import annotations
@@ -78,8 +79,7 @@ def press(
     """
     fall = min(max(noise[FALL], LEAST_FALL), MOST_FALL)
     leans = noise[LEAN_X] != 0.0 or noise[LEAN_Y] != 0.0
-    left, top, right, bottom = bounds(kind, corners, p)
-    extent = 0.5 * max(right - left, bottom - top)
+    lean_x, lean_y = _leans_per_cm(kind, corners, p, noise)
     centre_x, centre_y, lines = _gauge(kind, corners, p)
     half, pitch = 0.5 * grid[3], grid[2]
     first_x, first_y = grid[0] + half - centre_x, grid[1] + half - centre_y
@@ -90,10 +90,26 @@ def press(
                 continue
             x = first_x + (box[1] + j) * pitch
             if leans:
-                shares[i, j] *= math.exp((noise[LEAN_X] * x + noise[LEAN_Y] * y) / extent)
+                shares[i, j] *= math.exp(lean_x * x + lean_y * y)
             if fall != 0.0:
                 r, steep = _distance(kind, lines, x, y)
                 shares[i, j] *= _mean_pressure(r, half * steep, fall)
+
+
+@compiled_as_is
+def _leans_per_cm(kind: int, corners: int, p: Values, noise: Values) -> tuple[float, float]:
+    """Return how much the logarithm of the pressure rises a cm to the right, and down."""
+    lean_x, lean_y = noise[LEAN_X], noise[LEAN_Y]
+    if kind == OVAL:
+        p = as_ellipse(p)
+    if kind in (ELLIPSE, OVAL, RECTANGLE):
+        cos, sin = math.cos(p[4]), math.sin(p[4])
+        along = (lean_x * cos - lean_y * sin) / p[2]
+        across = (lean_x * sin + lean_y * cos) / p[3]
+        return along * cos + across * sin, across * cos - along * sin
+    left, top, right, bottom = bounds(kind, corners, p)
+    extent = 0.5 * max(right - left, bottom - top)
+    return lean_x / extent, lean_y / extent
 
 
 @compiled_as_is
