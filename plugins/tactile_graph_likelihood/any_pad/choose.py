@@ -113,7 +113,7 @@ def probabilities(
     """Return the probability of each shape by its fits, given that it is one of them."""
     shared = shared_by((t for its in tops.values() for t in its.values()), readings.touched)
     logs = {
-        name: float(np.logaddexp.reduce(list(log_chances(its, shared).values())))
+        name: float(np.logaddexp.reduce(list(log_chances(its, shared, readings.touched).values())))
         for name, its in tops.items()
     }
     return shares_by(logs)

@@ -65,7 +65,10 @@ face presses quite like that, and foam shares gains that the fit takes for the o
 
 UNSURER = 1.3
 """Times the variance of a normal distribution around an outline with an angle that a sample of it
-would come to: between two rows of elements nothing holds its sides."""
+would come to: between two rows of elements nothing holds its sides. Of one that presses evenly only
+where a quick answer will do: else it is sampled."""
+
+FOAM = "foam"
 
 PATTERN = 3.0
 """Pattern left over from which on an outline is not taken to press evenly where no pressure is
@@ -256,13 +259,24 @@ class AnyPad:
         elif large and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
         found = {EVEN: even}
-        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(even))
+        hidden = self._reaches_beyond(readings, even)
         least = CLEAR if self.quick else FAINT
-        for part in [] if large or hidden else asked_by([even.fit], FIRST, least):
+        for part in [] if large else asked_by([even.fit], FIRST, least):
+            if hidden and part != FOAM:
+                continue
             top = its._pressed(part, readings, even)
+            if hidden and self._reaches_beyond(readings, top):
+                continue
             if top.mode.height > -math.inf:
                 found[part] = top
         return found
+
+    def _reaches_beyond(self, readings: Readings, top: Likeliest) -> bool:
+        """Return whether a most likely outline is partly beyond the pad's edge.
+
+        Foam, which makes outlines too large, may be why.
+        """
+        return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
 
     def _by_clump(self, readings: Readings, found: Likeliest) -> Likeliest:
         """Return a likelier outline around what hangs together, where some elements lie apart."""
@@ -284,7 +298,8 @@ class AnyPad:
 
     def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
         """Return the posterior around the most likely outlines, over all pressures."""
-        logs = log_chances(tops, shared_by(tops.values(), readings.touched))
+        shared = shared_by(tops.values(), readings.touched)
+        logs = log_chances(tops, shared, readings.touched)
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
         found = {best: self._looked_at(best, readings, tops[best])}
@@ -298,12 +313,15 @@ class AnyPad:
         elif best != EVEN:
             its = replace(its, pressures={best: 1.0})
         total = sum(shares.values())
-        pressed = 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
-        if self.quick and self.told.kind != DISC:
-            pressed *= UNSURER
+        pressed = sum(share * self._wider(part) for part, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops))
         return self._on_any_pad(its, readings, evidence, pressed, hidden)
+
+    def _wider(self, part: str) -> float:
+        """Return by how much the variance under a pressure is larger than that of its fit."""
+        unsure = self.told.kind != DISC and (self.quick or part != EVEN)
+        return (1.0 + PRESSED.get(part, 0.0)) * (UNSURER if unsure else 1.0)
 
     def _hidden(self, alike: float, readings: Readings, n_looked_at: int) -> float:
         """Return the variance in cm^2 of lengths that a pattern hides where it is not looked into.
@@ -344,7 +362,7 @@ class AnyPad:
         taken whose points are worth fewer than there are unknowns, as where strays explain all
         there is, unless it promises less than a normal distribution around the top.
         """
-        hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
+        hidden = self._reaches_beyond(readings, top)
         if (hidden or not self.quick) and (part == EVEN or self.told.kind == DISC):
             try:
                 found = self._sampled(part, readings, top)
@@ -381,14 +399,14 @@ def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
     return min(variance_inflation(top.fit.neighbours, touched) for top in tops)
 
 
-def log_chances(tops: Mapping[str, Likeliest], shared: float) -> dict[str, float]:
+def log_chances(tops: Mapping[str, Likeliest], shared: float, touched: int) -> dict[str, float]:
     """Return the log probability of each pressure with its fit, up to a constant.
 
     Evidence takes elements for independent; it is worth as many times less as they are ``shared``.
     """
     before = {EVEN: 1.0}
     if len(tops) > 1:
-        before = chances({part: top.fit for part, top in tops.items() if part != EVEN})
+        before = chances({part: top.fit for part, top in tops.items() if part != EVEN}, touched)
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
 
 

@@ -31,6 +31,9 @@ SHARED, SPREAD = 5.0, 2.0
 """Mean and deviation, where there is foam, of how alike neighbours' residuals are: it shares their
 gains, which no outline explains. Without foam they are 0 and 1."""
 
+SHARED_BY = 80
+"""Touched elements from which on it is so; among fewer are fewer neighbours."""
+
 
 class Pattern(NamedTuple):
     """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
@@ -147,7 +150,9 @@ def asked_by(
     return [part for part in others if asked[part]]
 
 
-def chances(others: Mapping[str, Posterior | GoodnessOfFit | None]) -> dict[str, float]:
+def chances(
+    others: Mapping[str, Posterior | GoodnessOfFit | None], touched: int = SHARED_BY
+) -> dict[str, float]:
     """Return the probability of each pressure before the loads' evidence is heard.
 
     Parameters
@@ -155,13 +160,16 @@ def chances(others: Mapping[str, Posterior | GoodnessOfFit | None]) -> dict[str,
     others : mapping of str to Posterior, GoodnessOfFit or None
         Those that were looked at, but the even one. A round face and foam are told apart by how
         alike neighbours are once the fall is explained; None where nobody knows.
+    touched : int
+        Elements that read a load.
     """
     found = {"lean": LEAN} if "lean" in others else {}
     if "fall" in others and "foam" in others:
         log_odds = math.log(FOAM_ODDS)
         if (fall := others["fall"]) is not None:
             log_odds += 0.5 * fall.neighbours**2
-            log_odds -= 0.5 * ((fall.neighbours - SHARED) / SPREAD) ** 2 + math.log(SPREAD)
+            shared = SHARED * math.sqrt(min(touched / SHARED_BY, 1.0))
+            log_odds -= 0.5 * ((fall.neighbours - shared) / SPREAD) ** 2 + math.log(SPREAD)
         foam = 1.0 / (1.0 + math.exp(-min(max(log_odds, -700.0), 700.0)))
         found |= {"fall": ROUND * (1.0 - foam), "foam": ROUND * foam}
     else:
