@@ -6,10 +6,10 @@ rim, and blurred as by foam.
 With r the distance from the centre over that of the outline in the same direction, a place bears
 ``(1 + fall) (1 - r**2) ** fall * exp(lean_x * u + lean_y * v)`` times the mean: a fall of 0 is an
 even face, 1/2 a ball on an elastic pad (Hertz), 1 a ball on a soft layer, below 0 a stiff face or
-a cup that presses with its rim. u and v are the offsets from the centre, right and down, over half
-the outline's larger extent; of a rectangle or an ellipse each axis is taken to the length 1 instead,
-so that a lean across it is as likely as one along it. Over any outline that is as wide on both sides
-of its centre ``(1 + fall) (1 - r**2) ** fall`` has the mean 1.
+a cup that presses with its rim. u and v are the offsets from the centre, right and down, over
+half the outline's larger extent; of a rectangle or an ellipse each axis is taken to the length 1
+instead, so that a lean across it is as likely as one along it. Over any outline that is as wide on
+both sides of its centre ``(1 + fall) (1 - r**2) ** fall`` has the mean 1.
 """
 
 from __future__ import annotations
