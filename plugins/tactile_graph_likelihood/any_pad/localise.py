@@ -22,7 +22,10 @@ from tactile_graph_likelihood.any_pad.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.posterior import (
     HIDDEN,
+    AnyPadPosterior,
+    evenly_spread,
     on_any_pad,
+    resized,
     stretched,
 )
 from tactile_graph_likelihood.any_pad.turn_on import (
@@ -32,7 +35,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     straightened,
     unbent,
 )
-from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes, unknowns
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import FootprintSettings
 from tactile_graph_likelihood.single.any_pressure import (
     CLEAR,
@@ -65,8 +68,17 @@ face presses quite like that, and foam shares gains that the fit takes for the o
 
 UNSURER = 1.3
 """Times the variance of a normal distribution around an outline with an angle that a sample of it
-would come to: between two rows of elements nothing holds its sides. Of one that presses evenly only
-where a quick answer will do: else it is sampled."""
+would come to, for a quick answer: between two rows of elements nothing holds its sides."""
+
+UNSUREST = 2.0
+"""The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
+
+SHARPER = 0.6
+"""As `FAINT`, the fall of a rectangle: its own shape tells more of that."""
+
+UNSEEN, NO_FALL, SOME_FALL = 0.06, -0.5, 1.0
+"""Share of a rectangle's sizes by which a fall to its rim may make it look smaller, unseen, where
+residuals fall by so many deviations; none where they fall by fewer than the second number."""
 
 FOAM = "foam"
 
@@ -260,7 +272,7 @@ class AnyPad:
             even = model.likeliest(readings, even, attempts=MORE)
         found = {EVEN: even}
         hidden = self._reaches_beyond(readings, even)
-        least = CLEAR if self.quick else FAINT
+        least = CLEAR if self.quick else self._faint
         for part in [] if large else asked_by([even.fit], FIRST, least):
             if hidden and part != FOAM:
                 continue
@@ -270,6 +282,10 @@ class AnyPad:
             if top.mode.height > -math.inf:
                 found[part] = top
         return found
+
+    @cached_property
+    def _faint(self) -> Pattern:
+        return FAINT._replace(fall=SHARPER) if self.told.kind == RECTANGLE else FAINT
 
     def _reaches_beyond(self, readings: Readings, top: Likeliest) -> bool:
         """Return whether a most likely outline is partly beyond the pad's edge.
@@ -316,12 +332,21 @@ class AnyPad:
         pressed = sum(share * self._wider(part) for part, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops))
-        return self._on_any_pad(its, readings, evidence, pressed, hidden)
+        whole = self._on_any_pad(its, readings, evidence, pressed, hidden)
+        large = readings.states.size > LARGE_PAD
+        if self.told.kind != RECTANGLE or self.quick or large:
+            return whole
+        whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
+        return whole if self._reaches_beyond(readings, tops[best]) else evenly_spread(whole)
 
     def _wider(self, part: str) -> float:
         """Return by how much the variance under a pressure is larger than that of its fit."""
-        unsure = self.told.kind != DISC and (self.quick or part != EVEN)
-        return (1.0 + PRESSED.get(part, 0.0)) * (UNSURER if unsure else 1.0)
+        wider = 1.0 + PRESSED.get(part, 0.0)
+        if self.told.kind == DISC:
+            return wider
+        if self.quick:
+            return UNSURER * wider
+        return UNSUREST * wider if part != EVEN and self.told.kind == RECTANGLE else wider
 
     def _hidden(self, alike: float, readings: Readings, n_looked_at: int) -> float:
         """Return the variance in cm^2 of lengths that a pattern hides where it is not looked into.
@@ -342,7 +367,7 @@ class AnyPad:
 
     def _on_any_pad(
         self, its: Posterior, readings: Readings, evidence: float, pressed: float, hidden: float
-    ) -> Posterior:
+    ) -> AnyPadPosterior:
         """Return a posterior widened by what neighbours share, and by what a pattern may hide.
 
         ``pressed`` is a factor on its variance, ``hidden`` a variance in cm^2 of its lengths.
@@ -408,6 +433,11 @@ def log_chances(tops: Mapping[str, Likeliest], shared: float, touched: int) -> d
     if len(tops) > 1:
         before = chances({part: top.fit for part, top in tops.items() if part != EVEN}, touched)
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
+
+
+def unseen_share(fall: float) -> float:
+    """Return the share of a fall to the rim that may be there by what residuals show of it."""
+    return min(max((fall - NO_FALL) / (SOME_FALL - NO_FALL), 0.0), 1.0)
 
 
 def hidden_by(pattern: float, readings: Readings) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields, replace
 
+import numpy as np
+
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
@@ -21,9 +23,9 @@ readings count as none of the model's: above it they are those of good answers b
 HIDDEN = 0.25
 """Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
 
-EVENLY = 2.0
-"""Independent points that one of a disc's evenly spread points is worth; in five dimensions and
-more they are too far apart."""
+EVENLY, EVENLY_AROUND = 2.0, 3.0
+"""Independent points that one of a disc's and one of a rectangle's evenly spread points is worth;
+of what reaches beyond the pad's edge and of other outlines one."""
 
 
 LEAST = 1e-6  # cm: a size that is none
@@ -38,14 +40,17 @@ class AnyPadPosterior(Posterior):
     ----------
     usual_std_cm : float
         Deviation of the centre that readings as even as told would leave.
+    evenly : float
+        Independent points that one of its own is worth.
     """
 
     usual_std_cm: float = math.inf
+    evenly: float = 1.0
 
     @property
     def independent_points(self) -> float:
         """How many points, each by itself, would tell the covariance as well."""
-        return (EVENLY if self.kind == DISC else 1.0) * self.equal_points
+        return self.evenly * self.equal_points
 
     @property
     def fits(self) -> bool:
@@ -92,7 +97,22 @@ def on_any_pad(
         covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
-    return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
+    usual *= unevenness / math.sqrt(max(size, LEAST))
+    evenly = EVENLY if found.kind == DISC else 1.0
+    return AnyPadPosterior(**values, usual_std_cm=usual, evenly=evenly)
+
+
+def evenly_spread(found: AnyPadPosterior) -> AnyPadPosterior:
+    """Return a rectangle's posterior whose points are worth what those around a clear top are."""
+    return replace(found, evenly=EVENLY_AROUND)
+
+
+def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
+    """Return a posterior whose sizes may all be larger, or smaller, by a share of them."""
+    lengths = slice(2, 2 + sizes.call(found.kind))
+    off, covariance = share * found.mean[lengths], found.covariance.copy()
+    covariance[lengths, lengths] += np.outer(off, off)
+    return replace(found, covariance=covariance)
 
 
 def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:

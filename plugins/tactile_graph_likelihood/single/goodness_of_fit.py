@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
-from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.geometry.outlines import RECTANGLE, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
     CONTRAST,
+    FALL,
     LEAST,
     ON,
     OVER,
@@ -25,7 +27,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.load_shares import shares_around
+from tactile_graph_likelihood.single.load_shares import press, shares_around
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
 
@@ -34,6 +36,7 @@ SEEN = -1.0  # the same, for what reads a load at all
 MOST = 3.5  # a stray's residual counts as no more
 DENSITY = 1.0 / ROOT_TWO_PI
 FEWEST = 8  # residuals, for a trend
+BALL = 0.5  # fall of a ball's pressure
 RIM = 0.15  # pressure squared at the rim: the outermost elements are covered in part only
 
 
@@ -177,6 +180,39 @@ def dome(share: Values) -> Values:
 
 
 @compiled_as_is
+def dome_over(problem: Problem, p: Values, noise: Values, box: Box, share: Values) -> Values:
+    """Return the logarithm of a ball's pressure where an outline covers anything.
+
+    Parameters
+    ----------
+    problem, p
+        As in `log_posterior.log_likelihood`.
+    noise : ndarray, shape (9,)
+        At that point.
+    box, share
+        As of `load_shares.shares_around`.
+
+    Notes
+    -----
+    That of a rectangle has edges, as its own shape has: by its moments, of `dome`, its corners
+    would lie beyond the rim.
+    """
+    if problem.kind != RECTANGLE:
+        return dome(share)
+    ball, out = noise.copy(), np.zeros(share.shape)
+    ball[FALL] = BALL
+    for i in range(share.shape[0]):
+        for j in range(share.shape[1]):
+            out[i, j] = 1.0 if share[i, j] > 0.0 else 0.0
+    press(problem.kind, problem.corners, p, problem.grid, ball, box, out)
+    for i in range(share.shape[0]):
+        for j in range(share.shape[1]):
+            if out[i, j] > 0.0:
+                out[i, j] = math.log(out[i, j])
+    return out
+
+
+@compiled_as_is
 def trend(residuals: Values, domes: Values) -> tuple[float, float]:
     """Return how much residuals lean to a side, and fall to the rim, in standard deviations.
 
@@ -302,5 +338,5 @@ def goodness_of_fit(problem: Problem, p: Values) -> GoodnessOfFit:
     noise, load = noise_at(problem, p), p[unknowns(kind, corners)]
     box, share = shares_around(kind, corners, p, problem.grid, noise, states.shape)
     left = unexplained(share, load, box[0], box[1], problem.logs, states, noise, p.shape[0])
-    lean, fall = trend(left.leaning, dome(share))
+    lean, fall = trend(left.leaning, dome_over(problem, p, noise, box, share))
     return GoodnessOfFit(left.surprise, neighbours_alike(left.residuals), lean, fall)
