@@ -60,6 +60,19 @@ def distances(shape, x, y):
     return np.maximum(2 * np.abs(u) / shape.length_cm, 2 * np.abs(v) / shape.breadth_cm)
 
 
+def half_axes(shape):
+    """Return half the length and half the breadth of an ellipse or a rectangle."""
+    if isinstance(shape, Ellipse):
+        return shape.semi_major_cm, shape.semi_minor_cm
+    return 0.5 * shape.length_cm, 0.5 * shape.breadth_cm
+
+
+def along_axes(shape):
+    """Return the directions of an outline's axes, right and down, as columns."""
+    cos, sin = math.cos(shape.angle_rad), math.sin(shape.angle_rad)
+    return np.array([[cos, sin], [-sin, cos]])
+
+
 def by_places(shape, fall, lean):
     """Return the pressure's mean over each element, from many places on it."""
     steps = (np.arange(FINE) + 0.5) / FINE
@@ -69,7 +82,12 @@ def by_places(shape, fall, lean):
     extent = 0.5 * np.ptp(shape.outline_cm(), axis=0).max()
     middle = shape.xy_cm.mean(axis=0) if isinstance(shape, Polygon) else (shape.x_cm, shape.y_cm)
     pressure = np.where(r < 1.0, (1 + fall) * np.maximum(1 - r * r, 1e-9) ** fall, 0.0)
-    pressure *= np.exp((lean[0] * (x - middle[0]) + lean[1] * (y - middle[1])) / extent)
+    right, down = x - middle[0], y - middle[1]
+    if isinstance(shape, Ellipse | Rectangle):
+        axes = along_axes(shape)
+        stretched = axes @ np.diag(1.0 / np.array(half_axes(shape))) @ axes.T
+        lean = stretched @ np.array(lean) * extent
+    pressure *= np.exp((lean[0] * right + lean[1] * down) / extent)
     return pressure.reshape(16, FINE, 16, FINE).mean(axis=(1, 3))
 
 
@@ -94,6 +112,18 @@ def test_the_pressure_of_an_element_is_its_mean_over_it(shape, fall, lean):
     assert off.mean() < 0.012 * (1 + fall)
     assert found.sum() == pytest.approx(expected.sum(), rel=0.04)
     assert np.isfinite(found).all()
+
+
+@pytest.mark.slow  # much is compiled
+@pytest.mark.parametrize("shape", SHAPES[1:3], ids=lambda s: type(s).__name__)
+def test_a_lean_across_is_as_large_as_one_along(shape):
+    even = by_kernel(shape, 0.0, (0.0, 0.0))
+    at = 1.3 * np.arange(16) + 0.5
+    x, y = np.meshgrid(at - shape.x_cm, at - shape.y_cm)
+    for half, (right, down) in zip(half_axes(shape), along_axes(shape).T, strict=True):
+        leaning = by_kernel(shape, 0.0, (0.6 * right, 0.6 * down))
+        expected = even * np.exp(0.6 * (x * right + y * down) / half)
+        np.testing.assert_allclose(leaning, expected, rtol=1e-9)
 
 
 @pytest.mark.slow  # much is compiled
@@ -228,6 +258,8 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     assert foam[1] < 0.02
     assert foam[3] > 0.8
     assert chances({"foam": others["foam"]}) == {"even": 1.0 - ROUND, "foam": ROUND}
+    fewer = chances({**others, "fall": replace(others["fall"], neighbours=2.0)}, 30)
+    assert fewer["foam"] / ROUND > 2.0 * foam[2]  # among few elements, few neighbours are alike
     unknown = chances({"fall": None, "foam": None})
     assert unknown["foam"] / unknown["fall"] == pytest.approx(FOAM_ODDS)
 
