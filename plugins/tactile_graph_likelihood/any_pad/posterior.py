@@ -23,9 +23,9 @@ readings count as none of the model's: above it they are those of good answers b
 HIDDEN = 0.25
 """Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
 
-EVENLY, EVENLY_AROUND = 2.0, 3.0
-"""Independent points that one of a disc's and one of a rectangle's evenly spread points is worth;
-of what reaches beyond the pad's edge and of other outlines one."""
+EVENLY = 2.0
+"""Independent points that one of a disc's or a rectangle's evenly spread points is worth; of a
+rectangle that reaches beyond the pad's edge, and of other outlines, one."""
 
 
 LEAST = 1e-6  # cm: a size that is none
@@ -104,7 +104,7 @@ def on_any_pad(
 
 def evenly_spread(found: AnyPadPosterior) -> AnyPadPosterior:
     """Return a rectangle's posterior whose points are worth what those around a clear top are."""
-    return replace(found, evenly=EVENLY_AROUND)
+    return replace(found, evenly=EVENLY)
 
 
 def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:

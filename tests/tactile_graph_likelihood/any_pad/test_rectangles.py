@@ -46,8 +46,8 @@ def test_all_sizes_may_be_off_together():
 def test_evenly_spread_points_are_worth_more_than_independent_ones():
     found = evenly_spread(posterior())
     assert posterior().reach == pytest.approx(normal_reach(5, 20.0))
-    assert found.reach == pytest.approx(normal_reach(5, 60.0))
-    assert found.independent_points == 3.0 * found.equal_points
+    assert found.reach == pytest.approx(normal_reach(5, 40.0))
+    assert found.independent_points == 2.0 * found.equal_points
 
 
 def test_the_more_residuals_fall_to_the_rim_the_more_of_a_fall_may_be_there():
