@@ -101,6 +101,8 @@ class AnyPad:
         stands for itself as a normal distribution, an even face's with the law's exponent, and
         other pressures are looked at where the pattern is clear. A fainter one widens the
         posterior. On small pads only: see `suited`.
+    sampled_above_cm : float
+        The deviation of its centre from which on a quick disc is sampled after all.
 
     Notes
     -----
@@ -114,9 +116,16 @@ class AnyPad:
     told: Model
     law: float = LAW
     quick: bool = False
+    sampled_above_cm: float = math.inf
 
     @classmethod
-    def of(cls, settings: FootprintSettings, kind: int, quick: bool = False) -> AnyPad:
+    def of(
+        cls,
+        settings: FootprintSettings,
+        kind: int,
+        quick: bool = False,
+        sampled_above_cm: float | None = None,
+    ) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
         sigma, voids = told.noise.sigma, told.noise.voids
@@ -126,7 +135,8 @@ class AnyPad:
             sigma = unevenness_left(settings.known_pad, sigma)
         evened = sigma < told.noise.sigma
         noise = replace(told.noise, sigma=sigma, voids=voids)
-        return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick)
+        above_cm = math.inf if sampled_above_cm is None else sampled_above_cm
+        return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick, above_cm)
 
     @cached_property
     def _thorough(self) -> AnyPad:
@@ -345,15 +355,21 @@ class AnyPad:
         there is, unless it promises less than a normal distribution around the top.
         """
         hidden = is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
-        if (hidden or not self.quick) and (part == EVEN or self.told.kind == DISC):
-            try:
-                found = self._sampled(part, readings, top)
-            except Degenerate:
-                return self._normal(part, top)
-            if found.equal_points > self._count:
-                return found
-            return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
-        return self._normal(part, top)
+        normal = self._normal(part, top) if self.quick and not hidden else None
+        if normal is not None and not self._is_too_vague(normal):
+            return normal
+        if part != EVEN and self.told.kind != DISC:
+            return self._normal(part, top)
+        try:
+            found = self._sampled(part, readings, top)
+        except Degenerate:
+            return normal or self._normal(part, top)
+        if found.equal_points > self._count:
+            return found
+        return max(found, normal or self._normal(part, top), key=lambda its: its.centre_std_cm)
+
+    def _is_too_vague(self, normal: Posterior) -> bool:
+        return self.told.kind == DISC and normal.centre_std_cm > self.sampled_above_cm
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
@@ -364,6 +380,10 @@ class AnyPad:
             self.told.noise, point[-2:], readings.touched, strays, self.law, edge_of(readings)
         )
         loose = looseness(readings)
+        if part == EVEN and self.quick and self.told.kind == DISC:
+            return self._with(noise, "contrast").posterior_around(
+                readings, _first(top, 1 + self._count), loose
+            )
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
             model = self._with(noise, "contrast")
@@ -371,9 +391,13 @@ class AnyPad:
                 model = replace(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
         model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
-        p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
-        mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
+        mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
+
+
+def _first(top: Likeliest, count: int) -> Mode:
+    """Return the first numbers of a top, the others known."""
+    return Mode(top.mode.p[:count].copy(), top.mode.root[:count, :count].copy(), top.mode.height)
 
 
 def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
