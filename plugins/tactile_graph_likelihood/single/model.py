@@ -27,7 +27,7 @@ from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
+from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
@@ -248,10 +248,10 @@ class Model:
         count : int
             How many: the outline's, its load, and what of the noise comes first.
         """
-        p, spread = top.mode.p[:count], np.linalg.inv(top.mode.root[:count, :count])
-        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.table_of(count)[:BLOCK]
-        points, weights = p + steps @ spread, np.full(BLOCK, 1.0 / BLOCK)
-        likeliest, mean, covariance = p, p, spread.T @ spread
+        steps = self.table_of(count)[:BLOCK]
+        points, covariance = normal_points.call(top.mode.p, top.mode.root, steps)
+        weights, p = np.full(BLOCK, 1.0 / BLOCK), top.mode.p[:count]
+        likeliest, mean = p, p
         if self.kind == ELLIPSE:
             likeliest, mean, covariance = _as_ellipses(p, points, weights)
         return Posterior(
