@@ -323,26 +323,15 @@ class Model:
 
     def prior_vector(self, readings: Readings) -> Values:
         """Return the prior as the kernels take it, see `outline_prior`."""
+        left, top, *_ = readings.grid.tolist()
         width, height = readings.size_cm
-        return np.array(
-            [
-                readings.grid[0],
-                readings.grid[1],
-                width,
-                height,
-                *self.range_cm(readings),
-                self.whole,
-                math.nan,
-                0.0,
-            ]
-        )
+        smallest, largest = self.range_cm(readings)
+        return np.array([left, top, width, height, smallest, largest, self.whole, math.nan, 0.0])
 
     def _noise_at(self, pitch_cm: float) -> tuple[Values, Places, Values]:
         kept = self._kept.get(pitch_cm)
         if kept is None:
-            noise = self.noise
-            kept = noise.vector(pitch_cm), noise.places, noise.guess(pitch_cm)
-            self._kept[pitch_cm] = kept
+            kept = self._kept[pitch_cm] = self.noise.as_taken(pitch_cm)
         return kept
 
     @cached_property
