@@ -294,8 +294,8 @@ class AboveNoise:
         found = _risen_by_element(image, its, self._deviations)
         mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
         near = together.call(found.shows)
+        each = found.least if isinstance(found.least, float) else found.least[found.shows]
         level = found.zero + float(np.max(found.least))
-        least_each = np.broadcast_to(found.least, found.shows.shape)
         with np.errstate(over="ignore"):
-            rises = found.above[found.shows] / np.maximum(least_each[found.shows], TINY)
+            rises = found.above[found.shows] / np.maximum(each, TINY)
         return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE), near)
