@@ -18,7 +18,7 @@ from tactile_graph_likelihood.any_pad.shown import (
     told_of_elements,
 )
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings, TurnOn, grid_of
 from tactile_graph_pads.pad import Pad
@@ -28,6 +28,9 @@ SAME = 0.02
 
 NEARLY = 0.03
 """Of a cell's width, by which its height may differ: sizes come out wrong by half of that."""
+
+UNIFORM = np.array([OFF, ON, UNKNOWN, OFF, ON], np.uint8)
+"""What states come to where all elements show from the same load: `UNDER` and `OVER` are none."""
 
 MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
@@ -136,7 +139,14 @@ def _loads(
 
 def uniform(readings: Readings) -> Readings:
     """Return readings whose elements all show from the same load: what large pads' kernels take."""
-    under = readings.states == UNDER
-    least_log = float(np.median(readings.logs[under])) if under.any() else readings.least_log
-    states = np.where(under, OFF, np.where(readings.states == OVER, ON, readings.states))
-    return readings._replace(states=states.astype(np.uint8), least_log=least_log)
+    hidden = readings.logs[readings.states == UNDER]
+    least_log = _median(hidden) if len(hidden) else readings.least_log
+    return readings._replace(states=UNIFORM[readings.states], least_log=least_log)
+
+
+def _median(values: Values) -> float:
+    """Return the median of values that are put in another order: a copy takes longer than it."""
+    above = len(values) // 2
+    below = above - 1 + len(values) % 2
+    values.partition((below, above))
+    return 0.5 * float(values[below] + values[above])
