@@ -81,17 +81,20 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     if its is not None:
         known = _both(known, its.good)
         loads, least_loads = loads / its.gain, least_loads / its.gain
-    seen, floor = shown_loads.call(loads, least_loads, shows, known)
+    seen, floor = shown_loads.direct(loads, least_loads, shows, known)
     if not seen.size:
         raise Degenerate("no reading rises above the noise: no outline fits")
     turn_on, told = None, -math.inf
     if image.quantity in LAWFUL and pad.law.turn_on_g > 0.0:
-        hidden = np.sort(least_loads, axis=None)
+        hidden = least_loads.flatten()
+        hidden.sort()
         turn_on = _turn_on(pad, float(hidden[len(hidden) // 2]))
         told = turn_on.log_load
     logs_seen = np.log(seen)
-    edge, logs, states = told_of_elements.call(
-        logs_seen, np.sort(logs_seen), np.log(floor), shows, known, told
+    ordered = logs_seen.copy()
+    ordered.sort()
+    edge, logs, states = told_of_elements.direct(
+        logs_seen, ordered, np.log(floor), shows, known, told
     )
     found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on)
     return uniform(found) if states.size > LARGE_PAD else found
@@ -119,7 +122,7 @@ def _loads(
     The second has one row where columns are alike. What has no law is its own load; so are volts
     that are not the circuit's.
     """
-    least_each = np.atleast_2d(least)
+    least_each = np.array([[least]]) if isinstance(least, float) else least
     if quantity == "siemens":
         loads = pad.law.load_of(above)
         possible = np.isfinite(loads)
