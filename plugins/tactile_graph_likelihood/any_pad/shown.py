@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
+from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, UNKNOWN, States
 from tactile_graph_pads.law import load_kernel
@@ -31,7 +31,7 @@ LEAST = 1e-300
 """Load, in whatever unit, whose logarithm is taken for that of all below."""
 
 
-@compiled_as_is
+@compiled_later
 def loads_behind(
     above: Values, siemens: Values, valid: Cells, least: Values, law: Values
 ) -> tuple[bool, Values, Values, Cells]:
@@ -89,7 +89,7 @@ def loads_behind(
     return 2 * n_valid >= n_shown, loads, least_loads, possible
 
 
-@compiled_as_is
+@compiled_later
 def shown_loads(
     loads: Values, least_loads: Values, shows: Cells, known: Cells
 ) -> tuple[Values, Values]:
@@ -116,7 +116,7 @@ def shown_loads(
     return seen[:count], floor
 
 
-@compiled_as_is
+@compiled_later
 def least_that_shows(ordered: Values, told: float) -> float:
     """Return the logarithm of the least load that shows, by the least readings and what is told.
 
@@ -141,7 +141,7 @@ def least_that_shows(ordered: Values, told: float) -> float:
     return float(min(max(told, bottom - GAPS * spacing), bottom))
 
 
-@compiled_as_is
+@compiled_later
 def ceiling_of(ordered: Values) -> float:
     """Return the logarithm of the load at which readings end, infinite where they do not.
 
@@ -166,7 +166,7 @@ def ceiling_of(ordered: Values) -> float:
     return float(ordered[at]) - 0.5 * ALIKE if ends else math.inf
 
 
-@compiled_as_is
+@compiled_later
 def told_of_elements(
     seen: Values, ordered: Values, floor: Values, shows: Cells, known: Cells, told: float
 ) -> tuple[float, Values, States]:
