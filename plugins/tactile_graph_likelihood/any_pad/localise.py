@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -45,6 +45,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     log_of,
     mixed,
 )
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
@@ -134,13 +135,13 @@ class AnyPad:
         elif settings.sigma is None:
             sigma = unevenness_left(settings.known_pad, sigma)
         evened = sigma < told.noise.sigma
-        noise = replace(told.noise, sigma=sigma, voids=voids)
+        noise = changed(told.noise, sigma=sigma, voids=voids)
         above_cm = math.inf if sampled_above_cm is None else sampled_above_cm
-        return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick, above_cm)
+        return cls(changed(told, noise=noise), 0.0 if evened else LAW, quick, above_cm)
 
     @cached_property
     def _thorough(self) -> AnyPad:
-        return replace(self, quick=False)
+        return changed(self, quick=False)
 
     def suited(self, readings: Readings) -> AnyPad:
         """Return these fits, or on pads of more than 1024 elements those that are not quick."""
@@ -165,7 +166,7 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        return replace(self.told, noise=replace(noise, estimated=estimated))
+        return changed(self.told, noise=changed(noise, estimated=estimated))
 
     def _search(self, noise: Noise, *estimated: str) -> Model:
         """Return a model that goes over the pad's edge, unless it must not, as if there were none.
@@ -173,7 +174,7 @@ class AnyPad:
         Where the edge makes a step in the prior, a search would be caught before it.
         """
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
-        return replace(self._with(noise, *estimated), whole=whole)
+        return changed(self._with(noise, *estimated), whole=whole)
 
     def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
         """Return the even face's most likely outline by one attempt, and readings as it has them.
@@ -235,7 +236,7 @@ class AnyPad:
 
     def knowing(self, strays: float) -> AnyPad:
         """Return fits that are told of so many strays."""
-        return replace(self, told=replace(self.told, noise=replace(self.told.noise, strays=strays)))
+        return changed(self, told=changed(self.told, noise=changed(self.told.noise, strays=strays)))
 
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
@@ -303,10 +304,10 @@ class AnyPad:
                 found[part] = self._normal(part, tops[part])
         its = found[best]
         if len(found) > 1:
-            weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
+            weighed = {p: changed(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         elif best != EVEN:
-            its = replace(its, pressures={best: 1.0})
+            its = changed(its, pressures={best: 1.0})
         total = sum(shares.values())
         pressed = 1.0 + sum(PRESSED.get(p, 0.0) * share for p, share in shares.items()) / total
         if self.quick and self.told.kind != DISC:
@@ -388,9 +389,9 @@ class AnyPad:
             begin = np.append(point[: self._count], noise.contrast)
             model = self._with(noise, "contrast")
             if is_scattered(self.told.kind, readings, point):
-                model = replace(model, most_points=FEW_POINTS)
+                model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
-        model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
+        model = self._with(changed(noise, contrast=1.0), *([] if part == EVEN else [part]))
         mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
 

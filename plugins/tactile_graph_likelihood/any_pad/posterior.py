@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -84,6 +85,7 @@ def on_any_pad(
     if found.kind != DISC:
         size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
     values = {name: getattr(found, name) for name in _FIELDS}
+    values["usual_std_cm"] = usual * unevenness / math.sqrt(max(size, LEAST))
     values["log_evidence"] = log_evidence
     if inflation > 1.0:
         values["covariance"] = inflation * found.covariance
@@ -92,7 +94,9 @@ def on_any_pad(
         covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
-    return AnyPadPosterior(**values, usual_std_cm=usual * unevenness / math.sqrt(max(size, LEAST)))
+    its = object.__new__(AnyPadPosterior)
+    vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
+    return its
 
 
 def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
@@ -106,4 +110,4 @@ def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
         y += (stretch - 1.0) * (y - top_cm)
     covariance[1] *= stretch
     covariance[:, 1] *= stretch
-    return replace(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)
+    return changed(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)
