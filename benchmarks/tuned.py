@@ -13,6 +13,9 @@ of ``circles``, ``locate`` a third of it and two thirds of discs and rectangles.
 time at which each kind of error is no greater than today's: how far off where something lies,
 missed there, answered where nothing lies.
 
+Beside it stands what people had before any guard was tuned: guards set by eye, of `adaptive` as it
+was then (``ladders/circle-by-eye.yaml``) and of ``rectangle-likelihood``, run by today's steps.
+
 An error counts as equal if its mean is at most a twentieth greater, and half of that is allowed in
 choosing: two ways to an answer never err alike to the bit.
 
@@ -79,6 +82,8 @@ class Case:
         Frames of a kind of pad of the second simulator: which, how many, and of which seed.
     fields : tuple of str
         What guards may ask: what tells neither a pad's units and noise nor which thing lies there.
+    by_eye : str
+        The ladder, or the pipeline, whose guards were set by eye, where these are others.
     """
 
     ladder: str
@@ -86,11 +91,18 @@ class Case:
     own: Callable[[int, int], Frames]
     other: Callable[[str, int, int], Frames]
     fields: tuple[str, ...]
+    by_eye: str = ""
 
     @property
     def path(self) -> str | Path:
         """What is tuned: a file, or the name of a pipeline."""
         return LADDERS / f"{self.ladder}.yaml" if self.ladder else self.by_hand
+
+    @property
+    def eye_path(self) -> str | Path:
+        """What had its guards set by eye: a file, or the name of a pipeline."""
+        path = LADDERS / f"{self.by_eye}.yaml"
+        return path if path.exists() else self.by_eye or self.by_hand
 
 
 def simulated(scene: str) -> Callable[[int, int], Frames]:
@@ -155,10 +167,11 @@ CIRCLES = ("cells.share", *COUNTED[:2], "even.uneven", "even.n_cells", "even.cen
            "quick.centre_std_cm", "quick.surprise", "quick.fits", "quick.posterior.alike",
            "quick.posterior.lean", "quick.posterior.fall", "quick.posterior.neighbours",
            "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
-RECTANGLES = (*COUNTED[:2], "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise",
-              "likely.fits", "located.centre_std_cm", "located.angle_std_deg",
-              "located.surprise", "located.fits", "loaded.misfit", "loaded.ambiguous",
-              "loaded.n_points")  # fmt: skip
+RECTANGLES = (*COUNTED[:2], "quick.centre_std_cm", "quick.angle_std_deg", "quick.surprise",
+              "quick.fits", "quick.posterior.alike", "quick.posterior.neighbours",
+              "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise", "likely.fits",
+              "located.centre_std_cm", "located.angle_std_deg", "located.surprise",
+              "located.fits", "loaded.misfit", "loaded.ambiguous", "loaded.n_points")  # fmt: skip
 NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distance",
             "near.margin", "likely.known", "likely.probability")  # fmt: skip
 
@@ -186,17 +199,20 @@ def either_or_none(kind: str, n: int, seed: int) -> Frames:
 
 
 CASES = {
-    "circles": Case("circle-ladder", "adaptive", simulated("discs"), benched("disc"), CIRCLES),
+    "circles": Case("circle-ladder", "adaptive", simulated("discs"), benched("disc"), CIRCLES,
+                    "circle-by-eye"),
     "rectangles": Case(
         "rectangle-ladder", "locate-rectangle", simulated("rectangles"), benched("rectangle"),
-        RECTANGLES,
+        RECTANGLES, "rectangle-likelihood",
     ),
     "identification": Case(
         "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
     ),
-    "mixture": Case("circle-ladder", "adaptive", half_stream, half_empty, CIRCLES),
+    "mixture": Case("circle-ladder", "adaptive", half_stream, half_empty, CIRCLES,
+                    "circle-by-eye"),
     "locate": Case("", "locate", either_shape, either_or_none, COUNTED),
-    "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty, CIRCLES),
+    "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty, CIRCLES,
+                   "circle-by-eye"),
 }  # fmt: skip
 
 
@@ -227,6 +243,9 @@ class Told(NamedTuple):
     """Of what the oracle saves against running everything."""
     share_today: float
     """Of what it saves against the ladder guarded by hand."""
+    eye: Weight
+    eye_ratio: Interval
+    eye_difference: Weight
 
 
 def tuning_of(name: str, n: int, seed: int) -> tuple[Tuning, dict[str, Frames]]:
@@ -256,8 +275,9 @@ def run(name: str, n: int, seed: int) -> tuple[dict[str, Told], Tuned]:
 
 def _told(name: str, label: str, frames: Frames, tuning: Tuning) -> Told:
     tuned = finished(tuning, lambda what, n, of: None)
-    pair = {"hand": load(CASES[name].by_hand), CHOSEN: tuned.pipeline}
-    ran = rerun(pair, frames, tuning.judged, rounds=3, seed=0)
+    case = CASES[name]
+    every = {"hand": load(case.by_hand), "eye": load(case.eye_path), CHOSEN: tuned.pipeline}
+    ran = rerun(every, frames, tuning.judged, rounds=3, seed=0)
     groups = tuning.split.groups[tuning.split.reporting]
     today_us = tuned.points[GIVEN].weight.time_us.mean
     return Told(
@@ -265,6 +285,8 @@ def _told(name: str, label: str, frames: Frames, tuning: Tuning) -> Told:
         interval_of(ran[CHOSEN][0], groups, 0, ran["hand"][0]),
         weight_of(tuning, ran[CHOSEN], ran["hand"]), tuned.everything_us, tuned.oracle_us(),
         tuned.share_of_saving(), tuned.share_of_saving(over_us=today_us),
+        weight_of(tuning, ran["eye"]), interval_of(ran[CHOSEN][0], groups, 0, ran["eye"][0]),
+        weight_of(tuning, ran[CHOSEN], ran["eye"]),
     )  # fmt: skip
 
 
@@ -275,8 +297,25 @@ COLUMNS = ("case", "frames", "by hand, µs", "tuned, µs", "ratio", "error where
            "over today's")  # fmt: skip
 
 
+EYE_COLUMNS = ("case", "frames", "by eye, µs", "tuned, µs", "ratio", "error where something lies",
+               "more", "missed", "false on empty")  # fmt: skip
+
+
+def eye_row(told: Told) -> list[str]:
+    ratio, eye, tuned = told.eye_ratio, told.eye, told.tuned
+    return [
+        told.case, f"{told.n} {told.frames}",
+        f"{eye.time_us.mean:.0f}", f"{tuned.time_us.mean:.0f}",
+        f"{ratio.mean:.2f} ({ratio.low:.2f} to {ratio.high:.2f})",
+        f"{eye.error.mean:.3f} → {tuned.error.mean:.3f}", _more(told.eye_difference.error),
+        *(_shares(*kinds, more) for *kinds, more in zip(eye[2:], tuned[2:],
+                                                        told.eye_difference[2:], strict=True)),
+    ]  # fmt: skip
+
+
 def row(told: Told) -> list[str]:
     ratio, hand, tuned = told.ratio, told.hand, told.tuned
+    shares = (told.share, told.share_today)
     return [
         told.case, f"{told.n} {told.frames}",
         f"{hand.time_us.mean:.0f}", f"{tuned.time_us.mean:.0f}",
@@ -285,7 +324,7 @@ def row(told: Told) -> list[str]:
         *(_shares(*kinds, more) for *kinds, more in zip(hand[2:], tuned[2:], told.difference[2:],
                                                         strict=True)),
         f"{told.everything_us:.0f}", f"{told.oracle_us:.0f}",
-        *(f"{100 * x:.0f} %" if x == x else "none to reach" for x in told[-2:]),
+        *(f"{100 * x:.0f} %" if x == x else "none to reach" for x in shares),
     ]  # fmt: skip
 
 
@@ -325,6 +364,11 @@ def markdown(found: Sequence[Told]) -> Iterator[str]:
         yield "| " + " | ".join(row(told)) + " |"
     yield ""
     yield from map(verdicts, found)
+    yield ""
+    yield "| " + " | ".join(EYE_COLUMNS) + " |"
+    yield "|" + "---|" * len(EYE_COLUMNS)
+    for told in found:
+        yield "| " + " | ".join(eye_row(told)) + " |"
 
 
 def main() -> None:

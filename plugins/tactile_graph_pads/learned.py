@@ -44,6 +44,19 @@ class Elements(NamedTuple):
         return np.asarray(self.state == GOOD)
 
 
+class AtRest(NamedTuple):
+    """What elements read while nothing lies on them; every array has the shape (rows, columns).
+
+    ``offset`` is 0 where elements are ``stuck``, ``noise`` the deviation of a reading with what
+    the pad has drifted, ``good`` says which can be believed.
+    """
+
+    offset: Array
+    noise: Array
+    good: NDArray[np.bool_]
+    stuck: NDArray[np.bool_]
+
+
 @dataclass(frozen=True)
 class TurnOn:
     """The least reading that shows beside nothing at all.
@@ -129,6 +142,17 @@ class Learned:
             If the file is not there, or not a table of this pad.
         """
         return read_elements(Path(self.elements), (self.rows, self.columns))
+
+    @cached_property
+    def at_rest(self) -> AtRest:
+        """What frames are freed of; errors as of `table`."""
+        table = self.table
+        good, stuck = table.good, np.asarray(table.state == "stuck")
+        offset = np.where(stuck, 0.0, table.offset)
+        found = AtRest(offset, np.hypot(table.noise, self.drift), good, stuck)
+        for each in found:
+            each.setflags(write=False)
+        return found
 
 
 def write_elements(path: Path, elements: Elements) -> None:

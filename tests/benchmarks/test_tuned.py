@@ -37,3 +37,9 @@ def test_every_ladder_answers_what_its_truth_can_judge(name: str) -> None:
     assert set(answers_of(ladder, (output,)).quantities) & {"centre", "identity"}
     (frame, *_) = tuned.frames_of(case, tuned.UNSEEN[:1], 2, 1, own=False)
     assert ladder.run(frame).outcome(output) is not None
+
+
+@pytest.mark.parametrize("name", ["circles", "stream", "mixture", "rectangles"])
+def test_guards_set_by_eye_are_others_than_those_to_be_beaten(name: str) -> None:
+    case = tuned.CASES[name]
+    assert load(case.eye_path).key != load(case.by_hand).key

@@ -10,9 +10,13 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
-from tactile_graph.wires import Image, Mask
+from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph_likelihood.any_pad.clump import NEAR
-from tactile_graph_likelihood.any_pad.frame_noise import FrameNoise, frame_noise
+from tactile_graph_likelihood.any_pad.frame_noise import (
+    frame_noise,
+    in_order,
+    noise_of_sorted,
+)
 from tactile_graph_likelihood.any_pad.learned_pad import Taught, taught
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.readings import LARGEST
@@ -27,6 +31,10 @@ MOST_TOGETHER = 9
 TINY = float(np.finfo(np.float64).tiny)
 MOST_RISE = 1e6
 """Rise that is told of a frame without noise."""
+
+EVERY = np.zeros((0, 0), np.bool_)
+"""Stands for cells all of which are known."""
+EVERY.setflags(write=False)
 
 
 class Risen(NamedTuple):
@@ -62,26 +70,58 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     DataError
         If a valid cell is not finite or beyond 1e100.
     """
+    its = taught(pad, image)
+    if its is not None:
+        return _risen_by_element(image, its, deviations)
+    zero, least, _, _, _, shows, above = _rising(image, deviations, True)
+    return Risen(above, least, shows, zero, None)
+
+
+def _risen_by_element(image: Image, its: Taught, deviations: float) -> Risen:
+    """Return the same where something is known of each element."""
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     if not np.abs(values).max(initial=0.0) <= LARGEST:
-        raise DataError("image", f"readings must be finite and at most {LARGEST:g}")
-    its, known = taught(pad, image), image.valid
-    if its is not None:
-        values = values - its.offset
-        known = its.good if known is None else its.good & known
-    readings = values.ravel() if known is None else values[known]
-    noise = frame_noise(readings) if readings.size else FrameNoise(0.0, 0.0, 0.0)
+        raise _unbounded()
+    values = values - its.offset
+    known = its.good if image.valid is None else its.good & image.valid
+    noise = frame_noise(values[known])
     least: float | Values = float(max(deviations * noise.sigma, 0.5 * noise.step))
-    if its is not None and its.noise is not None:
+    if its.noise is not None:
         least = np.maximum(deviations * its.noise, max(its.least, 0.5 * noise.step))
     above = values - noise.zero
     shows = above > least
-    kept = shows if its is None else shows & (its.good | its.stuck)
-    if known is not None:
-        shows &= known
+    kept = shows & (its.good | its.stuck)
     if image.valid is not None:
         kept = kept & image.valid
-    return Risen(np.where(kept, above, 0.0), least, shows, noise.zero, its)
+    return Risen(np.where(kept, above, 0.0), least, shows & known, noise.zero, its)
+
+
+def _unbounded() -> DataError:
+    return DataError("image", f"readings must be finite and at most {LARGEST:g}")
+
+
+def _rising(
+    image: Image, deviations: float, wanted: bool
+) -> tuple[float, float, int, int, float, NDArray[np.bool_], Values]:
+    """Return what `rising` does of an image of whose elements nothing is known.
+
+    Raises
+    ------
+    DataError
+        If a valid cell is not finite or beyond 1e100.
+    """
+    values, known = np.ascontiguousarray(image.values, dtype=np.float64), EVERY
+    values.setflags(write=False)
+    if image.valid is None:
+        readings = values.ravel()
+    else:
+        known = np.ascontiguousarray(image.valid)
+        known.setflags(write=False)
+        readings = values[known]
+    bounded, *found = rising.direct(values, known, in_order(readings), float(deviations), wanted)
+    if not bounded:
+        raise _unbounded()
+    return found  # type: ignore[return-value]
 
 
 def _together_plain(shows: NDArray[np.bool_]) -> int:
@@ -111,6 +151,79 @@ def together(shows):  # type: ignore[no-untyped-def]
                 return MOST_TOGETHER
             most = max(most, count)
     return most
+
+
+def _rising_plain(
+    values: Values, known: NDArray[np.bool_], sample: Values, deviations: float, wanted: bool
+) -> tuple[bool, float, float, int, int, float, NDArray[np.bool_], Values]:
+    """Return what rises above the noise.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows, columns)
+    known : ndarray of bool, the same shape
+        The cells that count; `EVERY` for all.
+    sample : ndarray, shape (N,)
+        Of their values, in ascending order.
+    deviations : float
+        Standard deviations of noise that count as none.
+    wanted : bool
+        Whether the last is asked for.
+
+    Returns
+    -------
+    bounded : bool
+        Whether values are finite and at most 1e100; the others say nothing where they are not.
+    zero, least : float
+        What untouched elements read, and what a reading must rise above that.
+    count, near : int
+        Cells that do, and as of `together`.
+    most : float
+        How far the largest rises, 0 where none does.
+    shows : ndarray of bool, shape (rows, columns)
+    above : ndarray, shape (rows, columns)
+        How far they rise, 0 where no more than noise; if it is not wanted, of shape (0, 0).
+    """
+    kept = values if known is EVERY else np.where(known, values, 0.0)
+    if not np.abs(kept).max(initial=0.0) <= LARGEST:
+        return False, 0.0, 0.0, 0, 0, 0.0, EVERY, np.zeros((0, 0))
+    zero, sigma, step = noise_of_sorted.reference(sample)
+    least = max(deviations * sigma, 0.5 * step)
+    above = kept - zero
+    shows = above > least
+    if known is not EVERY:
+        shows &= known
+    above = np.where(shows, above, 0.0)
+    near, most = _together_plain(shows), float(above.max(initial=0.0))
+    count = int(np.count_nonzero(shows))
+    return True, zero, least, count, near, most, shows, above if wanted else np.zeros((0, 0))
+
+
+@compiled_twin_of(_rising_plain)
+def rising(values, known, sample, deviations, wanted):  # type: ignore[no-untyped-def]
+    """Do the same in loops."""
+    (rows, columns), every = values.shape, known.size == 0
+    shows = np.empty((rows, columns), np.bool_)
+    above = np.empty((rows, columns) if wanted else (0, 0))
+    unbounded = count = 0
+    for i in range(rows):
+        for j in range(columns):
+            unbounded += (every or known[i, j]) and not abs(values[i, j]) <= LARGEST
+    if unbounded > 0:
+        return False, 0.0, 0.0, 0, 0, 0.0, shows, above
+    zero, sigma, step = noise_of_sorted(sample)
+    least, most = max(deviations * sigma, 0.5 * step), 0.0
+    for i in range(rows):
+        for j in range(columns):
+            rise = values[i, j] - zero
+            its = (every or known[i, j]) and rise > least
+            shows[i, j] = its
+            if its:
+                count += 1
+                most = max(most, rise)
+            if wanted:
+                above[i, j] = rise if its else 0.0
+    return True, zero, least, count, together(shows), most, shows, above
 
 
 class Showing(NamedTuple):
@@ -173,14 +286,16 @@ class AboveNoise:
         ValueError
             If a valid cell is not finite or beyond 1e100.
         """
-        found = risen(image, self._pad, self._deviations)
+        its = taught(self._pad, image)
+        if its is None:
+            zero, least, count, near, most, shows, _ = _rising(image, self._deviations, False)
+            mask = quick_mask(shows, image.pitch_cm, image.origin_cm, count)
+            return Showing(mask, zero + least, min(most / max(least, TINY), MOST_RISE), near)
+        found = _risen_by_element(image, its, self._deviations)
         mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
         near = together.call(found.shows)
-        if isinstance(found.least, float):
-            most = float(found.above[found.shows].max()) if mask.count else 0.0
-            rise = most / max(found.least, TINY)
-            return Showing(mask, found.zero + found.least, min(rise, MOST_RISE), near)
+        each = found.least if isinstance(found.least, float) else found.least[found.shows]
         level = found.zero + float(np.max(found.least))
         with np.errstate(over="ignore"):
-            rises = found.above[found.shows] / np.maximum(found.least[found.shows], TINY)
+            rises = found.above[found.shows] / np.maximum(each, TINY)
         return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE), near)

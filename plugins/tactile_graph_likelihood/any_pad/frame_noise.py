@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
+from tactile_graph.compiled import compiled_twin_of
 from tactile_graph_likelihood.geometry.outlines import Values
 
 UNTOUCHED = 0.25
@@ -52,9 +55,21 @@ def frame_noise(readings: Values) -> FrameNoise:
     The zero is the middle of the shortest stretch that holds a quarter of the readings; the noise
     is what lies below it, and the stretch's own width.
     """
+    return FrameNoise(*noise_of_sorted.call(in_order(readings)))
+
+
+def in_order(readings: Values) -> Values:
+    """Return readings in ascending order; of more than 4096 a part that is as good."""
     values = readings[:: max(len(readings) // MOST, 1)].copy()
     values.sort()
+    return values
+
+
+def _noise_plain(values: Values) -> tuple[float, float, float]:
+    """Return zero, noise and step of readings in ascending order, zeros if there are none."""
     n = len(values)
+    if n == 0:
+        return 0.0, 0.0, 0.0
     steps = values[1:] - values[:-1]
     steps = steps[steps > 0.0]
     step = float(steps.min()) if len(steps) else 0.0
@@ -64,5 +79,35 @@ def frame_noise(readings: Values) -> FrameNoise:
     zero = 0.5 * float(values[at] + values[at + many - 1])
     below = zero - values[: int(values.searchsorted(zero))]
     if len(below) < FEWEST:
-        return FrameNoise(zero, 0.0, step)
-    return FrameNoise(zero, max(math.sqrt(below @ below / len(below)), widths[at] / WIDTH), step)
+        return zero, 0.0, step
+    total = float(np.add.accumulate(below * below)[-1])  # one by one, as loops add
+    return zero, max(math.sqrt(total / len(below)), float(widths[at]) / WIDTH), step
+
+
+@compiled_twin_of(_noise_plain)
+def noise_of_sorted(values):  # type: ignore[no-untyped-def]
+    """Do the same in loops."""
+    n = values.shape[0]
+    if n == 0:
+        return 0.0, 0.0, 0.0
+    step = np.inf
+    for i in range(n - 1):
+        rise = values[i + 1] - values[i]
+        if 0.0 < rise < step:
+            step = rise
+    if step == np.inf:
+        step = 0.0
+    many = max(int(UNTOUCHED * n), 1)
+    at, width = 0, values[many - 1] - values[0]
+    for i in range(1, n - many + 1):
+        its = values[i + many - 1] - values[i]
+        if its < width:
+            at, width = i, its
+    zero = 0.5 * (values[at] + values[at + many - 1])
+    below, total = 0, 0.0
+    while below < n and values[below] < zero:
+        total += (zero - values[below]) * (zero - values[below])
+        below += 1
+    if below < FEWEST:
+        return zero, 0.0, step
+    return zero, max(math.sqrt(total / below), width / WIDTH), step

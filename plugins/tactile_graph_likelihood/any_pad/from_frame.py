@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from tactile_graph_likelihood.any_pad.turn_on import Edge, contrast_by
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
+from tactile_graph_likelihood.single.changed import changed
+from tactile_graph_likelihood.single.element_terms import ON, OVER
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -74,7 +75,7 @@ def learned(
     contrast = 1.0 + law * other
     if law > 0.0 and edge is not None:
         contrast = contrast_by(other, edge, touched)
-    return replace(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+    return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
 
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
@@ -82,8 +83,9 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     x, y = p[:2].tolist()
     left, top, pitch, side, *_ = readings.grid.tolist()
     wide, high = _half_extents(model.kind, p)
-    inside = readings.shows[lines(y - top, high, pitch, side), lines(x - left, wide, pitch, side)]
-    beyond = readings.touched - int(np.count_nonzero(inside))
+    rows, columns = lines(y - top, high, pitch, side), lines(x - left, wide, pitch, side)
+    inside = readings.states[rows, columns]
+    beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
     bare = readings.states.size - inside.size
     found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
     return min(found, MOST_STRAYS)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_pads.learned import Elements, Learned
+from tactile_graph_pads.learned import Learned
 from tactile_graph_pads.learning.place import PlaceCorrection, read_place
 from tactile_graph_pads.pad import Pad
 
@@ -72,18 +72,16 @@ def taught(pad: Pad, image: Image) -> Taught | None:
         known |= {"siemens", "gram"}
     if image.quantity not in known:
         return None
-    return _of_elements(learned, learned.table, image.quantity)
+    return _of_elements(learned, image.quantity)
 
 
-def _of_elements(learned: Learned, table: Elements, quantity: str) -> Taught:
-    as_recorded, stuck = quantity == learned.reading, table.state == "stuck"
+def _of_elements(learned: Learned, quantity: str) -> Taught:
+    offset, noise, good, stuck = learned.at_rest
     load = "gram" if quantity in LAWFUL else quantity
-    gain = table.gain if learned.gain_of == load else 1.0
-    if not as_recorded:
-        return Taught(0.0, gain, None, 0.0, table.good, stuck)
-    noise = np.hypot(table.noise, learned.drift)
-    offset = np.where(stuck, 0.0, table.offset)
-    return Taught(offset, gain, noise, learned.touched_from, table.good, stuck)
+    gain = learned.table.gain if learned.gain_of == load else 1.0
+    if quantity != learned.reading:
+        return Taught(0.0, gain, None, 0.0, good, stuck)
+    return Taught(offset, gain, noise, learned.touched_from, good, stuck)
 
 
 def unevenness_left(pad: Pad, sigma: float) -> float:

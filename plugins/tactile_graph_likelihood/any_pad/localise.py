@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -48,6 +48,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     log_of,
     mixed,
 )
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
@@ -116,6 +117,8 @@ class AnyPad:
         stands for itself as a normal distribution, an even face's with the law's exponent, and
         other pressures are looked at where the pattern is clear. A fainter one widens the
         posterior. On small pads only: see `suited`.
+    sampled_above_cm : float
+        The deviation of its centre from which on a quick disc is sampled after all.
 
     Notes
     -----
@@ -129,9 +132,16 @@ class AnyPad:
     told: Model
     law: float = LAW
     quick: bool = False
+    sampled_above_cm: float = math.inf
 
     @classmethod
-    def of(cls, settings: FootprintSettings, kind: int, quick: bool = False) -> AnyPad:
+    def of(
+        cls,
+        settings: FootprintSettings,
+        kind: int,
+        quick: bool = False,
+        sampled_above_cm: float | None = None,
+    ) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
         sigma, voids = told.noise.sigma, told.noise.voids
@@ -140,12 +150,13 @@ class AnyPad:
         elif settings.sigma is None:
             sigma = unevenness_left(settings.known_pad, sigma)
         evened = sigma < told.noise.sigma
-        noise = replace(told.noise, sigma=sigma, voids=voids)
-        return cls(replace(told, noise=noise), 0.0 if evened else LAW, quick)
+        noise = changed(told.noise, sigma=sigma, voids=voids)
+        above_cm = math.inf if sampled_above_cm is None else sampled_above_cm
+        return cls(changed(told, noise=noise), 0.0 if evened else LAW, quick, above_cm)
 
     @cached_property
     def _thorough(self) -> AnyPad:
-        return replace(self, quick=False)
+        return changed(self, quick=False)
 
     def suited(self, readings: Readings) -> AnyPad:
         """Return these fits, or on pads of more than 1024 elements those that are not quick."""
@@ -170,7 +181,7 @@ class AnyPad:
         return unknowns.call(self.told.kind, self.told.corners) + 1
 
     def _with(self, noise: Noise, *estimated: str) -> Model:
-        return replace(self.told, noise=replace(noise, estimated=estimated))
+        return changed(self.told, noise=changed(noise, estimated=estimated))
 
     def _search(self, noise: Noise, *estimated: str) -> Model:
         """Return a model that goes over the pad's edge, unless it must not, as if there were none.
@@ -178,7 +189,7 @@ class AnyPad:
         Where the edge makes a step in the prior, a search would be caught before it.
         """
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
-        return replace(self._with(noise, *estimated), whole=whole)
+        return changed(self._with(noise, *estimated), whole=whole)
 
     def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
         """Return the even face's most likely outline by one attempt, and readings as it has them.
@@ -240,7 +251,7 @@ class AnyPad:
 
     def knowing(self, strays: float) -> AnyPad:
         """Return fits that are told of so many strays."""
-        return replace(self, told=replace(self.told, noise=replace(self.told.noise, strays=strays)))
+        return changed(self, told=changed(self.told, noise=changed(self.told.noise, strays=strays)))
 
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
@@ -324,10 +335,10 @@ class AnyPad:
                 found[part] = self._normal(part, tops[part])
         its = found[best]
         if len(found) > 1:
-            weighed = {p: replace(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
+            weighed = {p: changed(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         elif best != EVEN:
-            its = replace(its, pressures={best: 1.0})
+            its = changed(its, pressures={best: 1.0})
         total = sum(shares.values())
         pressed = sum(share * self._wider(part) for part, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
@@ -388,15 +399,21 @@ class AnyPad:
         there is, unless it promises less than a normal distribution around the top.
         """
         hidden = self._reaches_beyond(readings, top)
-        if (hidden or not self.quick) and (part == EVEN or self.told.kind == DISC):
-            try:
-                found = self._sampled(part, readings, top)
-            except Degenerate:
-                return self._normal(part, top)
-            if found.equal_points > self._count:
-                return found
-            return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
-        return self._normal(part, top)
+        normal = self._normal(part, top) if self.quick and not hidden else None
+        if normal is not None and not self._is_too_vague(normal):
+            return normal
+        if part != EVEN and self.told.kind != DISC:
+            return self._normal(part, top)
+        try:
+            found = self._sampled(part, readings, top)
+        except Degenerate:
+            return normal or self._normal(part, top)
+        if found.equal_points > self._count:
+            return found
+        return max(found, normal or self._normal(part, top), key=lambda its: its.centre_std_cm)
+
+    def _is_too_vague(self, normal: Posterior) -> bool:
+        return self.told.kind == DISC and normal.centre_std_cm > self.sampled_above_cm
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
@@ -407,16 +424,24 @@ class AnyPad:
             self.told.noise, point[-2:], readings.touched, strays, self.law, edge_of(readings)
         )
         loose = looseness(readings)
+        if part == EVEN and self.quick and self.told.kind == DISC:
+            return self._with(noise, "contrast").posterior_around(
+                readings, _first(top, 1 + self._count), loose
+            )
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
             model = self._with(noise, "contrast")
             if is_scattered(self.told.kind, readings, point):
-                model = replace(model, most_points=FEW_POINTS)
+                model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
-        model = self._with(replace(noise, contrast=1.0), *([] if part == EVEN else [part]))
-        p, root, k = top.mode.p, top.mode.root, self._count + len(PRESSURES[part])
-        mode = Mode(p[:k].copy(), root[:k, :k].copy(), top.mode.height)
+        model = self._with(changed(noise, contrast=1.0), *([] if part == EVEN else [part]))
+        mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
+
+
+def _first(top: Likeliest, count: int) -> Mode:
+    """Return the first numbers of a top, the others known."""
+    return Mode(top.mode.p[:count].copy(), top.mode.root[:count, :count].copy(), top.mode.height)
 
 
 def shared_by(tops: Iterable[Likeliest], touched: int) -> float:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import DISC, sizes
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -89,6 +90,7 @@ def on_any_pad(
     if found.kind != DISC:
         size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
     values = {name: getattr(found, name) for name in _FIELDS}
+    values["usual_std_cm"] = usual * unevenness / math.sqrt(max(size, LEAST))
     values["log_evidence"] = log_evidence
     if inflation > 1.0:
         values["covariance"] = inflation * found.covariance
@@ -97,14 +99,15 @@ def on_any_pad(
         covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
-    usual *= unevenness / math.sqrt(max(size, LEAST))
-    evenly = EVENLY if found.kind == DISC else 1.0
-    return AnyPadPosterior(**values, usual_std_cm=usual, evenly=evenly)
+    values["evenly"] = EVENLY if found.kind == DISC else 1.0
+    its = object.__new__(AnyPadPosterior)
+    vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
+    return its
 
 
 def evenly_spread(found: AnyPadPosterior) -> AnyPadPosterior:
     """Return a rectangle's posterior whose points are worth what those around a clear top are."""
-    return replace(found, evenly=EVENLY)
+    return changed(found, evenly=EVENLY)
 
 
 def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
@@ -112,7 +115,7 @@ def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
     lengths = slice(2, 2 + sizes.call(found.kind))
     off, covariance = share * found.mean[lengths], found.covariance.copy()
     covariance[lengths, lengths] += np.outer(off, off)
-    return replace(found, covariance=covariance)
+    return changed(found, covariance=covariance)
 
 
 def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
@@ -126,4 +129,4 @@ def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
         y += (stretch - 1.0) * (y - top_cm)
     covariance[1] *= stretch
     covariance[:, 1] *= stretch
-    return replace(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)
+    return changed(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)

@@ -107,7 +107,8 @@ def edge_of(readings: Readings) -> Edge | None:
     m = min(SPACED, len(logs) - 1)
     if turn_on is None or m < 1:
         return None
-    lowest = np.sort(np.partition(logs, m)[: m + 1]) - turn_on.log_load
+    logs.partition(m)
+    lowest = np.sort(logs[: m + 1]) - turn_on.log_load
     if turn_on.bend > 0.0 and lowest[FEW - 1] < 0.0:
         return None
     bottom, spacing = float(lowest[0]), float(lowest[-1] - lowest[0]) / m

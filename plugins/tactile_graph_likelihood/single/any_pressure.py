@@ -13,6 +13,7 @@ import numpy as np
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import weighted_moments
 from tactile_graph_likelihood.single.model import Model, Start
@@ -197,7 +198,7 @@ def mixed(its: Mapping[str, Posterior], before: Mapping[str, float]) -> Posterio
     weights = np.concatenate([s * one.weights for s, one in zip(shares, every, strict=True)])
     mean, covariance = np.empty(n), np.empty((n, n))
     weighted_moments.call(points, weights, len(points), mean, covariance)
-    return replace(
+    return changed(
         best, points=points, weights=weights, mean=mean, covariance=covariance,
         most_likely=best.most_likely[:n], log_evidence=log_evidence,
         equal_points=float(1.0 / (weights @ weights)),

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 
@@ -137,3 +139,45 @@ def weighted_moments(
         for m in range(k + 1):
             matrix[k, m] /= max(kept, 0.05)
             matrix[m, k] = matrix[k, m]
+
+
+@compiled_as_is
+def normal_points(p: Values, root: Values, steps: Values) -> tuple[Values, Values]:
+    """Return points of a normal distribution of a mode's first numbers, the others known.
+
+    Parameters
+    ----------
+    p : ndarray, shape (K,)
+    root : ndarray, shape (K, K)
+        Of the information there, a lower triangle; of the first n numbers its first n rows are.
+    steps : ndarray, shape (N, n)
+        Points of Student's t, of `FREEDOM` and unit scale.
+
+    Returns
+    -------
+    points : ndarray, shape (N, n)
+        With the distribution's own variance.
+    covariance : ndarray, shape (n, n)
+    """
+    n, scale = steps.shape[1], math.sqrt(1.0 - 2.0 / FREEDOM)
+    spread, covariance = np.zeros((n, n)), np.zeros((n, n))
+    for j in range(n):
+        spread[j, j] = 1.0 / root[j, j]
+        for i in range(j + 1, n):
+            total = 0.0
+            for k in range(j, i):
+                total -= root[i, k] * spread[k, j]
+            spread[i, j] = total / root[i, i]
+    for i in range(n):
+        for j in range(i + 1):
+            for k in range(i, n):
+                covariance[i, j] += spread[k, i] * spread[k, j]
+            covariance[j, i] = covariance[i, j]
+    points = np.empty(steps.shape)
+    for i in range(steps.shape[0]):
+        for j in range(n):
+            along = 0.0
+            for k in range(j, n):
+                along += steps[i, k] * spread[k, j]
+            points[i, j] = p[j] + scale * along
+    return points, covariance

@@ -27,7 +27,7 @@ from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.importance import FREEDOM, weighted_moments
+from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise
@@ -248,10 +248,10 @@ class Model:
         count : int
             How many: the outline's, its load, and what of the noise comes first.
         """
-        p, spread = top.mode.p[:count], np.linalg.inv(top.mode.root[:count, :count])
-        steps = math.sqrt(1.0 - 2.0 / FREEDOM) * self.table_of(count)[:BLOCK]
-        points, weights = p + steps @ spread, np.full(BLOCK, 1.0 / BLOCK)
-        likeliest, mean, covariance = p, p, spread.T @ spread
+        steps = self.table_of(count)[:BLOCK]
+        points, covariance = normal_points.call(top.mode.p, top.mode.root, steps)
+        weights, p = np.full(BLOCK, 1.0 / BLOCK), top.mode.p[:count]
+        likeliest, mean = p, p
         if self.kind == ELLIPSE:
             likeliest, mean, covariance = _as_ellipses(p, points, weights)
         return Posterior(
@@ -323,26 +323,15 @@ class Model:
 
     def prior_vector(self, readings: Readings) -> Values:
         """Return the prior as the kernels take it, see `outline_prior`."""
+        left, top, *_ = readings.grid.tolist()
         width, height = readings.size_cm
-        return np.array(
-            [
-                readings.grid[0],
-                readings.grid[1],
-                width,
-                height,
-                *self.range_cm(readings),
-                self.whole,
-                math.nan,
-                0.0,
-            ]
-        )
+        smallest, largest = self.range_cm(readings)
+        return np.array([left, top, width, height, smallest, largest, self.whole, math.nan, 0.0])
 
     def _noise_at(self, pitch_cm: float) -> tuple[Values, Places, Values]:
         kept = self._kept.get(pitch_cm)
         if kept is None:
-            noise = self.noise
-            kept = noise.vector(pitch_cm), noise.places, noise.guess(pitch_cm)
-            self._kept[pitch_cm] = kept
+            kept = self._kept[pitch_cm] = self.noise.as_taken(pitch_cm)
         return kept
 
     @cached_property

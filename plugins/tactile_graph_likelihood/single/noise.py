@@ -79,40 +79,51 @@ class Noise:
 
     def vector(self, pitch_cm: float) -> Values:
         """Return the numbers as the kernels take them."""
+        return np.array(self._numbers(pitch_cm))
+
+    def _numbers(self, pitch_cm: float) -> list[float]:
         foam = self.foam_cm / pitch_cm
         if "foam" in self.estimated and foam <= 0.0:
             foam = GUESSED_FOAM
-        return np.array(
-            [
-                max(self.sigma, LEAST_SIGMA),
-                min(max(self.voids, LEAST_VOIDS), MOST_VOIDS),
-                self.strays,
-                math.log(self.least) if self.least > 0.0 else -700.0,
-                foam,
-                FALL_GUESSED if "fall" in self.estimated else 0.0,
-                0.0,
-                0.0,
-                self.contrast,
-            ]
-        )
+        return [
+            max(self.sigma, LEAST_SIGMA),
+            min(max(self.voids, LEAST_VOIDS), MOST_VOIDS),
+            self.strays,
+            math.log(self.least) if self.least > 0.0 else -700.0,
+            foam,
+            FALL_GUESSED if "fall" in self.estimated else 0.0,
+            0.0,
+            0.0,
+            self.contrast,
+        ]
 
     @property
     def places(self) -> Places:
         """Which places of the vector are estimated."""
-        found = [place for name in self.estimated for place in ESTIMATED[name]]
-        return np.array(found, dtype=np.int64)
+        return np.array(self._estimated, dtype=np.int64)
+
+    @property
+    def _estimated(self) -> list[int]:
+        return [place for name in self.estimated for place in ESTIMATED[name]]
 
     def guess(self, pitch_cm: float) -> Values:
         """Return mean and standard deviation of each estimated coordinate, shape (M, 2)."""
-        vector = self.vector(pitch_cm)
-        places = self.places
-        out = np.empty((len(places), 2))
-        for k, place in enumerate(places):
-            middle = vector[place]
+        return self.as_taken(pitch_cm)[2]
+
+    def as_taken(self, pitch_cm: float) -> tuple[Values, Places, Values]:
+        """Return `vector`, `places` and `guess` at once."""
+        numbers, places = self._numbers(pitch_cm), self._estimated
+        guess: list[float] = []
+        for place in places:
+            middle = numbers[place]
             if place < FALL:
                 middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
-            out[k] = middle, SPREADS[place]
-        return out
+            guess += [middle, SPREADS[place]]
+        return (
+            np.array(numbers),
+            np.array(places, dtype=np.int64),
+            np.array(guess, dtype=np.float64).reshape(len(places), 2),
+        )
 
 
 def noise_of(pad: Pad, **given: object) -> Noise:

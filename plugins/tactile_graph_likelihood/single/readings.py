@@ -68,8 +68,9 @@ class Readings(NamedTuple):
     def size_cm(self) -> tuple[float, float]:
         """Width and height from the first element's edge to the last one's."""
         rows, columns = self.states.shape
-        gap = self.grid[2] - self.grid[3]
-        return columns * self.grid[2] - gap, rows * self.grid[2] - gap
+        _, _, pitch, side, *_ = self.grid.tolist()
+        gap = pitch - side
+        return columns * pitch - gap, rows * pitch - gap
 
     @property
     def shows(self) -> NDArray[np.bool_]:

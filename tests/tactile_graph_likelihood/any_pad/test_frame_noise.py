@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.any_pad.frame_noise import frame_noise
+from helpers_modes import plainly
+from tactile_graph_likelihood.any_pad.frame_noise import (
+    frame_noise,
+    in_order,
+    noise_of_sorted,
+)
 
 
 def readings(rng, touched, sigma=2e-3, zero=0.0):
@@ -40,3 +45,11 @@ def test_a_frame_without_noise_has_none():
 def test_of_a_large_pad_a_part_is_enough():
     rng = np.random.default_rng(2)
     assert frame_noise(2e-3 * rng.standard_normal(65536)).sigma == pytest.approx(2e-3, rel=0.1)
+
+
+@pytest.mark.parametrize("n", [0, 1, 3, 4, 5, 9, 256, 5000])
+def test_noise_is_told_alike_in_loops(n):
+    rng = np.random.default_rng(n)
+    for values in (rng.standard_normal(n), np.round(rng.standard_normal(n)), np.zeros(n)):
+        ordered = in_order(values)
+        assert plainly(noise_of_sorted)(ordered) == noise_of_sorted.reference(ordered)

@@ -102,6 +102,22 @@ def test_a_quick_disc_is_as_good_and_no_surer_than_it_may_be(kind, centre_cm):
 
 
 @pytest.mark.slow
+@many
+def test_a_quick_disc_is_sampled_where_it_is_vaguer_than_allowed():
+    frames = [*Bench(KINDS["gains 0.9"], np.random.default_rng(7)).frames(12, "disc")]
+    quick = [LocateDisc(quick=True)(f.image) for f in frames]
+    stds = sorted(found.centre_std_cm for found in quick)
+    always = [LocateDisc(quick=True, sampled_above_cm=0.0)(f.image) for f in frames]
+    # The distribution around the likeliest disc is narrower than what is told of any pad.
+    middle_cm = 0.8 * stds[len(stds) // 2]
+    some = [LocateDisc(quick=True, sampled_above_cm=middle_cm)(f.image) for f in frames]
+    which = [[*map(found.__eq__, pair)] for found, *pair in zip(some, quick, always, strict=True)]
+    assert all(any(pair) for pair in which)
+    assert [False, True] in which
+    assert [True, False] in which
+
+
+@pytest.mark.slow
 @plain
 def test_on_a_large_pad_a_quick_disc_is_the_disc():
     rng = np.random.default_rng(3)

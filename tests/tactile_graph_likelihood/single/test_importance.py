@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from tactile_graph_likelihood.geometry.linear import cholesky, inverted, solved
 from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.importance import FREEDOM, weigh
+from tactile_graph_likelihood.single.importance import FREEDOM, normal_points, weigh
 
 
 def test_even_points_have_the_moments_of_students_t():
@@ -54,3 +55,16 @@ def test_small_matrices(which):
     np.testing.assert_allclose(matrix @ x, np.arange(5.0), atol=1e-9)
     np.testing.assert_allclose(getattr(inverted, which)(root) @ matrix, np.eye(5), atol=1e-8)
     assert not getattr(cholesky, which)(-matrix, root)
+
+
+@pytest.mark.parametrize("n", [1, 4, 7])
+def test_normal_points_spread_as_the_inverse_of_what_is_known(n):
+    rng = np.random.default_rng(n)
+    root = np.tril(rng.standard_normal((7, 7))) + 3.0 * np.eye(7)
+    p, steps = rng.standard_normal(7), rng.standard_normal((32, n))
+    points, covariance = plainly(normal_points)(p, root, steps)
+    known = root[:n, :n] @ root[:n, :n].T
+    np.testing.assert_allclose(covariance, np.linalg.inv(known), rtol=1e-9, atol=1e-14)
+    # each step of Student's t becomes one of the same length in standard deviations
+    lengths = ((points - p[:n]) @ known * (points - p[:n])).sum(axis=1)
+    np.testing.assert_allclose(lengths, (1.0 - 2.0 / FREEDOM) * (steps**2).sum(axis=1), rtol=1e-9)

@@ -1,0 +1,86 @@
+"""What rises above the noise, by plain code, by loops and by machine code alike."""
+
+import numpy as np
+import pytest
+
+from helpers_modes import held, plainly
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, AboveNoise, risen, rising
+from tactile_graph_likelihood.any_pad.frame_noise import in_order
+from tactile_graph_pads.pad import load_pad
+
+PAD = load_pad("thesis")
+
+
+def pressed(rng, shape):
+    values = 1e-3 * rng.standard_normal(shape)
+    rows, columns = shape
+    values[rows // 4 : rows // 2, columns // 4 : columns // 2] += rng.uniform(0.001, 0.3)
+    return values
+
+
+def image_of(values, valid=None):
+    return Image(values, (1.3, 1.3), (-0.15, -0.15), "volt", valid)
+
+
+@pytest.mark.slow  # much is compiled
+@pytest.mark.parametrize("shape", [(0, 0), (0, 5), (1, 1), (1, 9), (3, 2), (16, 16), (65, 70)])
+@pytest.mark.parametrize("share", [None, 0.0, 0.5, 0.9])
+@pytest.mark.parametrize("wrong", [None, np.nan, np.inf, -1e101])
+def test_plain_code_loops_and_machine_code_answer_to_the_bit(shape, share, wrong):
+    rng = np.random.default_rng(2)
+    values, known = pressed(rng, shape), EVERY
+    if wrong is not None and values.size:
+        values.flat[values.size // 2] = wrong
+    if share is not None:
+        known = held(rng.random(shape) < share)
+    values = held(values)
+    sample = in_order(values.ravel() if share is None else values[known])
+    given = values, known, sample, SHOWS, True
+    ways = [way(*given) for way in (rising.reference, plainly(rising), rising.compiled)]
+    for way in ways[1:]:
+        assert way[0] == ways[0][0]
+        if way[0]:
+            assert way[1:6] == ways[0][1:6]
+            np.testing.assert_array_equal(way[6], ways[0][6])
+            np.testing.assert_array_equal(way[7], ways[0][7])
+
+
+def test_readings_that_rise_are_told_above_the_zero_and_others_as_none():
+    values = pressed(np.random.default_rng(4), (16, 16)) + 1.5
+    found = risen(image_of(values.copy()), PAD)
+    assert found.zero == pytest.approx(1.5, abs=1e-3)
+    np.testing.assert_array_equal(found.shows, values - found.zero > found.least)
+    np.testing.assert_array_equal(found.above, np.where(found.shows, values - found.zero, 0.0))
+
+
+def test_what_invalid_cells_hold_does_not_matter():
+    values = pressed(np.random.default_rng(5), (16, 16))
+    valid = np.ones((16, 16), np.bool_)
+    valid[5] = False
+    values[5] = 0.0
+    other = values.copy()
+    other[5, :3] = np.nan, np.inf, 1e200
+    quiet, loud = (AboveNoise()(image_of(v, valid.copy())) for v in (values, other))
+    assert quiet[1:] == loud[1:]
+    np.testing.assert_array_equal(quiet.mask.values, loud.mask.values)
+    assert not quiet.mask.values[5].any()
+    assert quiet.mask.count == np.count_nonzero(quiet.mask.values)
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf, 1.1e100, -1.1e100])
+def test_valid_readings_must_be_numbers_of_a_pad(wrong):
+    values = np.zeros((4, 4))
+    values[1, 2] = wrong
+    with pytest.raises(DataError, match=r"image: readings must be finite and at most 1e\+100"):
+        AboveNoise()(image_of(values))
+
+
+def test_whole_numbers_and_single_precision_are_read_as_they_are():
+    counts = np.round(4096 * pressed(np.random.default_rng(6), (16, 16)))
+    as_double = AboveNoise()(image_of(counts))
+    for kind in (np.int32, np.float32):
+        found = AboveNoise()(image_of(counts.astype(kind)))
+        assert found[1:] == as_double[1:]
+        np.testing.assert_array_equal(found.mask.values, as_double.mask.values)
