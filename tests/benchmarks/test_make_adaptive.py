@@ -25,7 +25,10 @@ def told(ratio: float = 0.5, **more: float) -> Told:
         k: Interval(x / 2, 0.0, x) for k, x in more.items()
     }
     time = Interval(ratio, ratio - 0.1, ratio + 0.1)
-    return Told("c", "f", 9, hand, hand, time, Weight(**kinds), 1.0, 1.0, 0.9, 0.9)
+    more_of_it = Weight(**kinds)
+    return Told(
+        "c", "f", 9, hand, hand, time, more_of_it, 1.0, 1.0, 0.9, 0.9, hand, time, more_of_it
+    )  # fmt: skip
 
 
 def test_every_product_is_tuned_against_itself():
