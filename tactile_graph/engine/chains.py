@@ -26,7 +26,7 @@ from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.linked import Linked
-from tactile_graph.steps.signature import Kind, Signature
+from tactile_graph.steps.signature import Signature
 from tactile_graph.wires.image import Mask
 from tactile_graph.wires.parts import MaskParts
 
@@ -266,11 +266,11 @@ def form_of(
     made : callable
         Gives the step with its settings, where it is a class.
     """
-    form = getattr(signature.target, "linked", None)
-    if form is None or signature.rng or signature.gap or len(signature.ports) != 1:
+    if getattr(signature.target, "linked", None) is None:
         return None
-    of_class = signature.kind is Kind.CLASS
-    found: Linked | None = made().linked() if of_class else form(**signature.arguments(settings))
+    if signature.rng or signature.gap or len(signature.ports) != 1:
+        return None
+    found: Linked | None = signature.form("linked", settings, made)()
     return found
 
 

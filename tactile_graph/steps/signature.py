@@ -8,7 +8,7 @@ import typing
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -120,6 +120,24 @@ class Signature:
             its = {n: v for n, v in values.items() if n in records and records[n] is record}
             out[record.parameter] = record.made(its)
         return out
+
+    def form(
+        self, name: str, settings: Mapping[str, Any], made: Callable[[], Any]
+    ) -> Callable[..., Any]:
+        """Return another form that the target offers by an attribute, its settings taken.
+
+        Parameters
+        ----------
+        name : str
+            Of the attribute: a function's takes the settings beside, a class's is a method.
+        settings : mapping
+            Every setting of the step.
+        made : callable
+            Gives the step with its settings, where it is a class.
+        """
+        if self.kind is Kind.CLASS:
+            return getattr(made(), name)  # type: ignore[no-any-return]
+        return partial(getattr(self.target, name), **self.arguments(settings))
 
     @property
     def fields(self) -> tuple[str, ...]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import repeat
 from time import perf_counter_ns as clock
 from typing import Any, get_type_hints
@@ -21,7 +20,7 @@ from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped
 from tactile_graph.errors import PluginError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
-from tactile_graph.steps.signature import Kind, Signature
+from tactile_graph.steps.signature import Signature
 from tactile_graph.wires.stacks import Answered, Column, Listed, Rows, Stack, field_of
 
 Call = Callable[..., Any]
@@ -116,9 +115,7 @@ def form_of(
     except (NameError, KeyError) as error:
         told = f"step {signature.name!r}: its stacked form must annotate each port: {error}"
         raise PluginError(told) from None
-    if signature.kind is Kind.CLASS:
-        return StackedForm(made().stacked, kinds)
-    return StackedForm(partial(form, **signature.arguments(settings)), kinds)
+    return StackedForm(signature.form("stacked", settings, made), kinds)
 
 
 def in_order(node: Node) -> bool:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from helpers_browser import BROWSER, QUIET
 from helpers_html import read_html
 from tactile_graph_compare import Comparison, compare
 from tactile_graph_compare.report import write_report
 
-BROWSER = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
-)
 pytestmark = [
     pytest.mark.slow,  # a browser starts for each
     pytest.mark.usefixtures("hand_made"),
@@ -24,12 +21,7 @@ pytestmark = [
 ]
 OPTIONS = (
     "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
+    *QUIET,
     "--hide-scrollbars",
     "--host-resolver-rules=MAP * ~NOTFOUND",
 )
