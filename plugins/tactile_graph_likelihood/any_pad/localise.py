@@ -399,18 +399,19 @@ class AnyPad:
         there is, unless it promises less than a normal distribution around the top.
         """
         hidden = self._reaches_beyond(readings, top)
-        normal = self._normal(part, top) if self.quick and not hidden else None
-        if normal is not None and not self._is_too_vague(normal):
-            return normal
+        if self.quick and not hidden:
+            normal = self._normal(part, top)
+            if not self._is_too_vague(normal):
+                return normal
         if part != EVEN and self.told.kind != DISC:
             return self._normal(part, top)
         try:
             found = self._sampled(part, readings, top)
         except Degenerate:
-            return normal or self._normal(part, top)
+            return self._normal(part, top)
         if found.equal_points > self._count:
             return found
-        return max(found, normal or self._normal(part, top), key=lambda its: its.centre_std_cm)
+        return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
 
     def _is_too_vague(self, normal: Posterior) -> bool:
         return self.told.kind == DISC and normal.centre_std_cm > self.sampled_above_cm
