@@ -7,12 +7,12 @@ import os
 import signal
 import sys
 import threading
-from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
+from tactile_graph.many.worker_processes import DeadWorkerError, WorkerProcesses
 from tactile_graph.plugins.registry import restrict, selected
 
 FORKED = "tactile_graph.many.forked"
@@ -29,17 +29,8 @@ def opened(address: str, n_workers: int | None) -> Opened:
     if address:
         raise UsageError(f"--on processes={address}: processes are on this machine; no address")
     n = n_workers or os.cpu_count() or 1
-    context = _context()
-    # Workers have no other end of it: when it closes, or this process dies, they see its end.
-    lifeline, held = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(n, context, _begin, (lifeline, selected()))
-
-    def end() -> None:
-        held.close()
-        pool.shutdown(wait=False, cancel_futures=True)
-        lifeline.close()
-
-    return Opened(pool, n, end)
+    workers = WorkerProcesses(n, _context(), _begin, (selected(),))
+    return Opened(workers, n, workers.kill, (DeadWorkerError,))
 
 
 def _context() -> BaseContext:
