@@ -8,8 +8,10 @@ Each case is a ladder of ``benchmarks/ladders``: every way to one answer, guarde
 that people have today. It is tuned on frames of the project's simulator and of half the kinds of
 pad of `second_simulator`, which shares no code with it, and told on two sets that chose nothing:
 *unseen frames*, of the same pads with another seed, and *unseen pads*, of the other kinds. The case
-``stream`` holds 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` is half of it and half
-of ``circles``, ``locate`` a third of it and two thirds of discs and rectangles. Sought is the least
+``stream`` is 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` is half of it and half
+of ``circles``, ``locate`` a third of it and two thirds of discs and rectangles. Of these three kinds
+of frame as many are drawn, and each counts for as many as it stands for: what is rare costs most,
+and a few frames do not tell how much. Sought is the least
 time at which each kind of error is no greater than today's: how far off where something lies,
 missed there, answered where nothing lies.
 
@@ -45,11 +47,12 @@ from tactile_graph import Circle, Frame, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import TrueObject
 from tactile_graph_tune import Request, Tuned
-from tactile_graph_tune.finish import finished, weight_of
+from tactile_graph_tune.finish import finished, ratio_of, weight_of
 from tactile_graph_tune.output.figure import write_figure
 from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.searching import Tuning, searched
-from tactile_graph_tune.split import Interval, interval_of
+from tactile_graph_tune.shares import EMPTY, Share
+from tactile_graph_tune.split import Interval
 from tactile_graph_tune.tuned import CHOSEN, GIVEN, Weight
 
 LADDERS = Path(__file__).parent / "ladders"
@@ -82,6 +85,8 @@ class Case:
         Frames of a kind of pad of the second simulator: which, how many, and of which seed.
     fields : tuple of str
         What guards may ask: what tells neither a pad's units and noise nor which thing lies there.
+    shares : tuple of Share
+        How many of the frames to come are of which kind.
     by_eye : str
         The ladder, or the pipeline, whose guards were set by eye, where these are others.
     """
@@ -92,6 +97,7 @@ class Case:
     other: Callable[[str, int, int], Frames]
     fields: tuple[str, ...]
     by_eye: str = ""
+    shares: tuple[Share, ...] = ()
 
     @property
     def path(self) -> str | Path:
@@ -133,18 +139,32 @@ def named(kind: str, n: int, seed: int) -> Frames:
     return made
 
 
-def mostly_empty(kind: str, n: int, seed: int) -> Frames:
-    """80 % empty frames, 15 % clean, 5 % of the kind itself, in random order."""
+PARTS = ("empty", "clean", "hard")
+THIRDS = {"empty": 1.0 / 3.0, "clean": 1.0 / 3.0}
+
+
+def stream_shares(of_all: float = 1.0) -> tuple[Share, ...]:
+    """How many frames are of the stream's empty and clean ones, where it is a part of them.
+
+    Frames of no label of it, or its hard ones where it is all, have the rest.
+    """
+    hard = () if of_all == 1.0 else (Share("hard *", 0.05 * of_all),)
+    return (Share(EMPTY, 0.8 * of_all), Share("clean *", 0.15 * of_all), *hard)
+
+
+def stream_parts(kind: str, n: int, seed: int) -> Frames:
+    """A third each of empty frames, of clean ones, and of the kind itself, in random order."""
     rng = np.random.default_rng([seed, 3, *kind.encode()])
     hard = KINDS[kind]
     clean = Kind(noise_v=hard.noise_v, sigma=0.0, voids=0.0)
     made: Frames = []
-    for i in range(n):
-        part = rng.choice(["empty", "clean", "hard"], p=[0.8, 0.15, 0.05])
+    for i, k in enumerate(rng.permutation(n).tolist()):
+        part = PARTS[k % len(PARTS)]
         bench = Bench(hard if part != "clean" else clean, rng)
         weight_g, radius_cm = bench.kind.discs[i % len(bench.kind.discs)]
         thing = TrueObject(_put(bench, radius_cm), EMPTY_G if part == "empty" else weight_g)
         frame = bench.frame([thing], i)
+        frame = replace(frame, label=part)
         made.append(replace(frame, truth=()) if part == "empty" else frame)
     return made
 
@@ -157,7 +177,9 @@ def _put(bench: Bench, radius_cm: float) -> Circle:
 
 
 def streamed(n: int, seed: int) -> Frames:
-    return list(stream(n, seed).frames)
+    made = stream(n, seed, THIRDS)
+    pairs = zip(made.frames, made.classes, strict=True)
+    return [replace(f, label=name.split(":")[0]) for f, name in pairs]
 
 
 COUNTED = ("footprint.mask.count", "footprint.mask.fraction", "footprint.rise",
@@ -182,7 +204,7 @@ def half_stream(n: int, seed: int) -> Frames:
 
 
 def half_empty(kind: str, n: int, seed: int) -> Frames:
-    return benched("disc")(kind, n // 2, seed) + mostly_empty(kind, n - n // 2, seed)
+    return benched("disc")(kind, n // 2, seed) + stream_parts(kind, n - n // 2, seed)
 
 
 def either_shape(n: int, seed: int) -> Frames:
@@ -195,7 +217,7 @@ def either_shape(n: int, seed: int) -> Frames:
 def either_or_none(kind: str, n: int, seed: int) -> Frames:
     third = n // 3
     return (benched("disc")(kind, third, seed) + benched("rectangle")(kind, third, seed)
-            + mostly_empty(kind, n - 2 * third, seed))  # fmt: skip
+            + stream_parts(kind, n - 2 * third, seed))  # fmt: skip
 
 
 CASES = {
@@ -209,10 +231,11 @@ CASES = {
         "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
     ),
     "mixture": Case("circle-ladder", "adaptive", half_stream, half_empty, CIRCLES,
-                    "circle-by-eye"),
-    "locate": Case("", "locate", either_shape, either_or_none, COUNTED),
-    "stream": Case("circle-ladder", "adaptive", streamed, mostly_empty, CIRCLES,
-                   "circle-by-eye"),
+                    "circle-by-eye", stream_shares(1.0 / 2.0)),
+    "locate": Case("", "locate", either_shape, either_or_none, COUNTED,
+                   shares=stream_shares(1.0 / 3.0)),
+    "stream": Case("circle-ladder", "adaptive", streamed, stream_parts, CIRCLES,
+                   "circle-by-eye", stream_shares()),
 }  # fmt: skip
 
 
@@ -224,7 +247,8 @@ def frames_of(case: Case, kinds: Sequence[str], n: int, seed: int, own: bool) ->
     made = [(f, "own") for f in case.own(n, seed)] if own else []
     each = max(2, n // len(kinds))
     made += [(f, kind) for kind in kinds for f in case.other(kind, each, seed)]
-    return [replace(f, index=i, label=label) for i, (f, label) in enumerate(made)]
+    labels = [f"{f.label} {label}".strip() for f, label in made]
+    return [replace(f, index=i, label=labels[i]) for i, (f, _) in enumerate(made)]
 
 
 class Told(NamedTuple):
@@ -248,7 +272,9 @@ class Told(NamedTuple):
     eye_difference: Weight
 
 
-def tuning_of(name: str, n: int, seed: int) -> tuple[Tuning, dict[str, Frames]]:
+def tuning_of(
+    name: str, n: int, seed: int, margin: float = MARGIN
+) -> tuple[Tuning, dict[str, Frames]]:
     """Return what the search found for a case, and the frames to report on."""
     case = CASES[name]
     choosing = frames_of(case, SEEN, n, seed, own=True)
@@ -258,13 +284,13 @@ def tuning_of(name: str, n: int, seed: int) -> tuple[Tuning, dict[str, Frames]]:
     }
     apart = [f for frames in told.values() for f in frames]
     ladder = load(case.path)
-    request = Request(ladder, margin=MARGIN, fields=case.fields, seed=seed)
+    request = Request(ladder, margin=margin, fields=case.fields, seed=seed, shares=case.shares)
     return searched(request, choosing, apart, lambda what, n, of: None), told
 
 
-def run(name: str, n: int, seed: int) -> tuple[dict[str, Told], Tuned]:
+def run(name: str, n: int, seed: int, margin: float = MARGIN) -> tuple[dict[str, Told], Tuned]:
     """Tune a case and return what it came to on frames and on pads it has not seen."""
-    tuning, told = tuning_of(name, n, seed)
+    tuning, told = tuning_of(name, n, seed, margin)
     rows = np.split(tuning.split.reporting, [len(told["unseen frames"])])
     found = {}
     for (label, frames), part in zip(told.items(), rows, strict=True):
@@ -278,14 +304,13 @@ def _told(name: str, label: str, frames: Frames, tuning: Tuning) -> Told:
     case = CASES[name]
     every = {"hand": load(case.by_hand), "eye": load(case.eye_path), CHOSEN: tuned.pipeline}
     ran = rerun(every, frames, tuning.judged, rounds=3, seed=0)
-    groups = tuning.split.groups[tuning.split.reporting]
     today_us = tuned.points[GIVEN].weight.time_us.mean
     return Told(
         name, label, len(frames), weight_of(tuning, ran["hand"]), weight_of(tuning, ran[CHOSEN]),
-        interval_of(ran[CHOSEN][0], groups, 0, ran["hand"][0]),
+        ratio_of(tuning, ran[CHOSEN][0], ran["hand"][0]),
         weight_of(tuning, ran[CHOSEN], ran["hand"]), tuned.everything_us, tuned.oracle_us(),
         tuned.share_of_saving(), tuned.share_of_saving(over_us=today_us),
-        weight_of(tuning, ran["eye"]), interval_of(ran[CHOSEN][0], groups, 0, ran["eye"][0]),
+        weight_of(tuning, ran["eye"]), ratio_of(tuning, ran[CHOSEN][0], ran["eye"][0]),
         weight_of(tuning, ran[CHOSEN], ran["eye"]),
     )  # fmt: skip
 

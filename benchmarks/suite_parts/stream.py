@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -50,9 +50,12 @@ class Stream:
         return tuple(i for i, c in enumerate(self.classes) if case in (c, c.split(":")[0], WHOLE))
 
 
-def stream(n_frames: int, seed: int) -> Stream:
-    """Return the stream in its random order; every class has at least one frame."""
-    counts = {name: round(share * n_frames) for name, share in SHARES.items()}
+def stream(n_frames: int, seed: int, shares: Mapping[str, float] = SHARES) -> Stream:
+    """Return the stream in its random order; every class has at least one frame.
+
+    ``shares`` are those of empty and of clean frames.
+    """
+    counts = {name: round(share * n_frames) for name, share in shares.items()}
     left = n_frames - sum(counts.values())
     counts |= {name: max(1, (left + i) // len(HARD)) for i, name in enumerate(HARD)}
     made = [(f, name) for name, n in counts.items() for f in _frames(name, n, seed)]

@@ -43,7 +43,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         judged=tuning.judged,
         n_choosing=len(tuning.split.choosing),
         n_reporting=len(tuning.split.reporting),
-        how=tuning.split.how,
+        how=tuning.how,
         n_weighed=tuning.front.n_weighed,
         points=points,
         front=tuple(
@@ -53,7 +53,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         everything_us=tuning.everything_us(),
         worths=worths,
         settings=_settings(tuning, pipelines[CHOSEN]),
-        ratio=_interval(tuning, tuned_us, given_us),
+        ratio=ratio_of(tuning, tuned_us, given_us),
         difference=weight_of(tuning, (tuned_us, tuned), (given_us, given)),
         pipeline=pipelines[CHOSEN],
         text=text,
@@ -77,9 +77,12 @@ def _columns(tuning: Tuning, choice: Choice) -> tuple[Reals, Reals]:
     return found.time_us[rows], found.loss[rows]
 
 
-def _interval(tuning: Tuning, values: Reals, over: Reals | None = None) -> Interval:
-    groups = tuning.split.groups[tuning.split.reporting]
-    return interval_of(values, groups, tuning.request.seed, over)
+def ratio_of(tuning: Tuning, values: Reals, over: Reals) -> Interval:
+    """Return the weighed mean of a column of the frames that report over that of another."""
+    rows = tuning.split.reporting
+    weights = tuning.truths.weights[rows]
+    seed = tuning.request.seed
+    return interval_of(weights * values, tuning.split.groups[rows], seed, weights * over)
 
 
 Columns = tuple[Reals, Reals]
@@ -95,8 +98,8 @@ def weight_of(tuning: Tuning, found: Columns, less: Columns | None = None) -> We
         time_us = time_us - less[0]
         others = {name: part for name, part, _ in truths.parts(less[1])}
         kinds = {name: (part - others[name], of) for name, (part, of) in kinds.items()}
-    means = {name: _interval(tuning, part, of.astype(float)) for name, (part, of) in kinds.items()}
-    return Weight(_interval(tuning, time_us), **means)
+    means = {name: ratio_of(tuning, part, of.astype(float)) for name, (part, of) in kinds.items()}
+    return Weight(ratio_of(tuning, time_us, np.ones(len(time_us))), **means)
 
 
 def _predicted(tuning: Tuning, choice: Choice) -> Weight:
@@ -107,7 +110,8 @@ def _worth(tuning: Tuning, place: str) -> GuardWorth:
     choice = tuning.chosen
     without = replace(choice, chosen={p: c for p, c in choice.chosen.items() if p != place})
     found, other = _columns(tuning, choice), _columns(tuning, without)
-    saved, whole = float((other[0] - found[0]).mean()), float(other[0].mean())
+    weights = tuning.truths.weights[tuning.split.reporting]
+    saved, whole = (float(np.average(t, weights=weights)) for t in (other[0] - found[0], other[0]))
     return GuardWorth(
         place=place,
         comparisons=choice.chosen[place],
@@ -188,7 +192,7 @@ def _head(tuning: Tuning) -> str:
     return (
         f"Guards and order by 'tactile-graph tune {tuning.request.pipeline.name}': "
         f"{tuning.front.n_weighed} choices weighed on {len(tuning.split.choosing)} frames, "
-        f"numbers of {len(tuning.split.reporting)} others ({tuning.split.how}); error: of the "
+        f"numbers of {len(tuning.split.reporting)} others ({tuning.how}); error: of the "
         f"{judged.quantity} where something lies, a missed one counting {judged.price:g} "
         f"{judged.unit}".rstrip()
     )

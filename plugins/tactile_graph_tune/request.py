@@ -15,6 +15,7 @@ from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.many import Place
 from tactile_graph.pipeline.document import assignment
 from tactile_graph_compare.variants.prepare import setting_names
+from tactile_graph_tune.shares import Share
 
 STEPS = 5
 MOST_VARIANTS = 32
@@ -60,6 +61,8 @@ class Request:
     rounds : int
         How often every frame is run: times are medians.
     seed : int
+    shares : sequence of Share
+        What share of the frames to come is of which kind; every frame counts alike if not given.
     place : Place, optional
         Where workers run everything on every frame; this process does where there is none.
     """
@@ -77,6 +80,7 @@ class Request:
     free: tuple[Free, ...] = ()
     rounds: int = 3
     seed: int = 0
+    shares: tuple[Share, ...] = ()
     place: Place | None = None
 
     def variants(self) -> list[dict[str, Any]]:

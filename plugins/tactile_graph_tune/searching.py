@@ -21,9 +21,10 @@ from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
 from tactile_graph_tune.search.search import Aim, Search, Space, orders_of, pruned
 from tactile_graph_tune.search.select import Goal, Rows, merged, selected
+from tactile_graph_tune.shares import weights_of
 from tactile_graph_tune.split import Split, halves_of, split_of
 from tactile_graph_tune.table.columns import Table
-from tactile_graph_tune.table.kinds import Means, Truths
+from tactile_graph_tune.table.kinds import Means, Reals, Truths
 from tactile_graph_tune.table.losses import PRICES, quantity_of
 from tactile_graph_tune.table.record import Judged, Rounds, leaves_of, record
 
@@ -71,6 +72,12 @@ class Tuning:
     chosen: Choice
 
     @property
+    def how(self) -> str:
+        """How frames were told apart, and for how many they count, in words."""
+        shares = ", ".join(map(str, self.request.shares))
+        return self.split.how + (f"; weighed so that {shares} of all" if shares else "")
+
+    @property
     def truths(self) -> Truths:
         """In which frames something lies."""
         return self.variants[0].table.truths
@@ -81,8 +88,8 @@ class Tuning:
 
     def everything_us(self) -> float:
         """Return the mean time of the frames that report, nothing skipped."""
-        nodes = self.variants[0].table.nodes.values()
-        return sum(float(c.time_us[self.split.reporting].mean()) for c in nodes)
+        table = self.variants[0].table.taken(self.split.reporting)
+        return sum(table.mean(c.time_us) for c in table.nodes.values())
 
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""
@@ -99,7 +106,10 @@ def searched(
     judged = _judged(request)
     every, n_apart = _known(frames, held_out)
     split = split_of(every, n_apart, request.seed)
-    variants = _variants(request, judged, every, lambda n, of: told("run everything", n, of))
+    weights = weights_of(every, request.shares, (split.choosing, split.reporting))
+    variants = _variants(
+        request, judged, every, weights, lambda n, of: told("run everything", n, of)
+    )
     _check_truths(variants, judged)
     _check_answers(variants, judged)
     spaces = [_space(v, v.table.taken(split.choosing), request) for v in variants]
@@ -183,7 +193,11 @@ def _judged(request: Request) -> Judged:
 
 
 def _variants(
-    request: Request, judged: Judged, frames: Sequence[Frame], told: Callable[[int, int], None]
+    request: Request,
+    judged: Judged,
+    frames: Sequence[Frame],
+    weights: Reals,
+    told: Callable[[int, int], None],
 ) -> list[Variant]:
     settings = request.variants()
     given = [
@@ -196,7 +210,7 @@ def _variants(
         parted = [d.keeping(kept) for d in given]
         opened = [d.opened() for d in parted]
         also = [c.field for p in parted[0].places.values() for c in p.given]
-        tables = record(opened, also, frames, judged, rounds)
+        tables = [t.weighed(weights) for t in record(opened, also, frames, judged, rounds)]
         nodes = set().union(*(bound(p, t) for p, t in zip(opened, tables, strict=True)))
         stay = {p.name for d in parted for p in d.places.values() if nodes & set(p.nodes)}
         if not stay:
@@ -216,7 +230,7 @@ def _variants(
 
 def _with_offers(its: Declared, pipeline: Pipeline, table: Table, bound_: set[str]) -> Declared:
     """Offer a guard to the costliest steps of the file that have none."""
-    mean = {n: float(c.time_us.mean()) for n, c in table.nodes.items()}
+    mean = {n: table.mean(c.time_us) for n, c in table.nodes.items()}
     least = COSTLY * sum(mean.values())
     guarded = {n for p in its.places.values() for n in p.nodes}
     costly = [

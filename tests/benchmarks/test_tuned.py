@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tactile_graph import load
 from tactile_graph_compare.score.answers import answers_of
+from tactile_graph_tune.shares import weights_of
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 sys.path.insert(0, str(FOLDER))
@@ -20,12 +23,19 @@ def test_pads_that_report_are_of_other_kinds_than_those_that_choose() -> None:
     assert set(tuned.SEEN) | set(tuned.UNSEEN) == set(tuned.KINDS)
 
 
-def test_a_mostly_empty_pad_is_empty_four_times_in_five_and_says_so() -> None:
-    frames = tuned.mostly_empty("noise 1 mV", 60, 3)
+def test_the_parts_of_a_stream_are_as_many_and_count_for_what_they_stand_for() -> None:
+    frames = tuned.stream_parts("noise 1 mV", 60, 3) + tuned.streamed(60, 3)
     empty = [f for f in frames if not f.truth]
-    assert 36 <= len(empty) <= 56
+    assert len(empty) == 40
+    assert {f.label for f in empty} == {"empty"}
     assert max(abs(f.image.values).max() for f in empty) < 0.01
-    assert all(f.image.values.max() > 0.05 for f in frames if f.truth)
+    assert all(f.image.values.max() > 0.05 for f in frames[:60] if f.truth)
+    sides = [np.arange(60), np.arange(60, 120)]
+    labelled = [replace(f, label=f"{f.label} own") for f in frames]
+    weights = weights_of(labelled, tuned.stream_shares(), sides)
+    shares = {part: sum(w for f, w in zip(labelled, weights, strict=True) if part in f.label)
+              for part in tuned.PARTS}  # fmt: skip
+    assert [shares[part] / 120.0 for part in tuned.PARTS] == pytest.approx([0.8, 0.15, 0.05])
 
 
 @pytest.mark.slow

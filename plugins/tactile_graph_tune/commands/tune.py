@@ -82,6 +82,9 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               help="Find the least error that takes no longer, mean over the frames.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+@click.option("--share", "shares", metavar="KIND=SHARE", multiple=True,
+              help="Of the frames to come this share is of this kind: 'empty', or a label (* for "
+              "anything); can be repeated.  [default: as in the recordings]")  # fmt: skip
 @click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True,
               help="How often every frame is run; times are medians.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
@@ -102,18 +105,20 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     from tactile_graph.cli.output.progress import Bar
     from tactile_graph.cli.terminal import console
     from tactile_graph_tune.request import Request, parse_free
+    from tactile_graph_tune.shares import parse_share
     from tactile_graph_tune.tuner import tune as tuned_of
 
     asked = _Options(**options)
     _check_files(asked)
     free = tuple(parse_free(text) for text in asked.free)
+    shares = tuple(parse_share(text) for text in asked.shares)
     opened = open_pipeline(
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
     request = Request(
         opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
         asked.most_false, asked.most_us, asked.margin, asked.fields, free, asked.rounds, asked.seed,
-        place_asked(asked.workers, asked.on),
+        shares, place_asked(asked.workers, asked.on),
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
     try:
@@ -153,6 +158,7 @@ class _Options:
     most_false: float | None
     most_us: float | None
     margin: float
+    shares: tuple[str, ...]
     rounds: int
     seed: int
     written: str | None

@@ -76,17 +76,18 @@ class Bound:
     """
 
     def __init__(self, options: Options, truths: Truths) -> None:
-        full = truths.full
+        full, weights = truths.full, truths.weights[truths.full]
         times, losses = options.time_us[:, full], options.loss[:, full]
         missed = losses >= truths.price
-        self._share, self._n = float(full.mean()), int(full.sum())
-        self._time_us, n_options = times.ravel(), len(times)
-        limited: Reals = np.stack([losses.ravel(), missed.ravel()]).astype(np.float64)
-        self._limited = limited / max(1, self._n)
+        self._n, n_options = int(full.sum()), len(times)
+        each = weights / weights.sum() if self._n else weights
+        self._share = float(weights.sum() / truths.weights.sum())
+        self._time_us = (each * times).ravel()
+        self._limited: Reals = np.stack([(each * losses).ravel(), (each * missed).ravel()])
         # Of each frame's options, side by side in the columns, the shares sum to 1. (SciPy's types
         # know nothing of sparse constraints, which linprog takes.)
         self._shares: Any = sparse.hstack([sparse.identity(self._n, format="csr")] * n_options)
-        self.least_error = float(losses.min(axis=0).mean()) if self._n else 0.0
+        self.least_error = float(losses.min(axis=0) @ each) if self._n else 0.0
 
     def time_at(self, error: float, missed: float) -> float:
         """Return the least mean time within both; NaN where even the oracle errs or misses more."""
@@ -98,4 +99,4 @@ class Bound:
         )  # fmt: skip
         if found.fun is None:
             return float("nan")
-        return self._share * float(found.fun) / self._n
+        return self._share * float(found.fun)

@@ -72,6 +72,14 @@ class Table:
         """Frames."""
         return len(self.scored)
 
+    def weighed(self, weights: Reals) -> Table:
+        """Return the table, its frames counting for so many each, shape (n_frames,)."""
+        return replace(self, truths=replace(self.truths, weights=weights))
+
+    def mean(self, values: Reals) -> float:
+        """Return the weighed mean of a column."""
+        return float(np.average(values, weights=self.truths.weights))
+
     def taken(self, frames: NDArray[np.int64]) -> Table:
         """Return the table of some frames."""
         return Table(
@@ -90,7 +98,11 @@ def joined(tables: Sequence[Table]) -> Table:
         {k: _nodes([t.nodes[k] for t in tables]) for k in first.nodes},
         {k: _fields([t.fields[k] for t in tables]) for k in first.fields},
         {k: np.concatenate([t.losses[k] for t in tables]) for k in first.losses},
-        Truths(np.concatenate([t.truths.full for t in tables]), first.truths.price),
+        Truths(
+            np.concatenate([t.truths.full for t in tables]),
+            first.truths.price,
+            np.concatenate([t.truths.weights for t in tables]),
+        ),
         np.concatenate([t.scored for t in tables]),
     )
 

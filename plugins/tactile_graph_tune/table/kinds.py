@@ -56,10 +56,13 @@ class Truths:
     full : ndarray of bool, shape (n_frames,)
     price : float
         An error this great, or greater, is no answer.
+    weights : ndarray of float64, shape (n_frames,)
+        For how many frames each counts.
     """
 
     full: Flags
     price: float
+    weights: Reals
 
     @property
     def none(self) -> Reals:
@@ -68,7 +71,7 @@ class Truths:
 
     def taken(self, frames: NDArray[np.int64]) -> Truths:
         """Return some frames of it."""
-        return Truths(self.full[frames], self.price)
+        return Truths(self.full[frames], self.price, self.weights[frames])
 
     def parts(self, loss: Reals) -> list[tuple[str, Any, Flags]]:
         """Return each kind of error: its name, each frame's part in it, and of which frames."""
@@ -80,11 +83,15 @@ class Truths:
         ]
 
     def means(self, time_us: Reals, loss: Reals, failed: Flags) -> Means:
-        """Return the means of columns of shape (n_frames,) or (n_choices, n_frames).
+        """Return the weighed means of columns of shape (n_frames,) or (n_choices, n_frames).
 
         Where nothing lies in any frame there is no error, and nothing false where something lies in
         all.
         """
-        parts = self.parts(loss)
-        error, missed, false = (its.sum(axis=-1) / max(1, of.sum()) for _, its, of in parts)
-        return Means(time_us.mean(axis=-1), error, missed, false, failed.mean(axis=-1))
+
+        def mean(its: Any, of: Any = 1.0) -> Any:
+            n = (of * self.weights).sum()
+            return (its @ self.weights) / n if n > 0.0 else 0.0 * its.sum(axis=-1)
+
+        error, missed, false = (mean(its, of) for _, its, of in self.parts(loss))
+        return Means(mean(time_us), error, missed, false, mean(failed))

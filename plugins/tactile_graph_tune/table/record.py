@@ -228,7 +228,7 @@ class _Rows:
             },
             {f.name: _column(f) for f in self._fields},
             {k: np.where(np.isnan(v), price, v) for k, v in lost.items()},
-            Truths(truths > 0, price),
+            Truths(truths > 0, price, np.ones(len(truths))),
             (truths >= 0) & known,
         )
 

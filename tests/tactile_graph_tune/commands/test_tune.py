@@ -32,6 +32,13 @@ def test_a_ladder_comes_out_with_its_numbers_its_file_its_plot_and_all_figures(h
 
 
 @pytest.mark.slow
+def test_shares_of_the_frames_to_come_are_told(hand_made):
+    got = call("tune", "ladder.yaml", "--frames", "24", *QUICK, "--share", "empty=0.9")
+    assert got.exit_code == 0, got.output
+    assert "weighed so that empty 90 % of all" in " ".join(got.output.split())
+
+
+@pytest.mark.slow
 def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
     wrong = LADDER.replace("level_v: 0.5", "level_v: 1.5")  # nothing is that heavy
     Path("wrong.yaml").write_text(wrong)
@@ -49,6 +56,8 @@ def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
         (("ladder.yaml", "--answer", "circel"), "did you mean 'circle'"),
         (("ladder.yaml", "--error", "angel"), "did you mean 'angle'"),
         (("ladder.yaml", "--free", "footprint.level_x=1:2"), "did you mean 'footprint.level_v'"),
+        (("ladder.yaml", "--share", "empty"), "must be empty=SHARE or LABEL=SHARE"),
+        (("ladder.yaml", "--share", "film=0.5"), "--share film=0.5: no frame is of it"),
         (("ladder.yaml", "-o", "ladder.yaml"), "is there already; name another file"),
         (("ladder.yaml", "-o", "out.txt"), "a pipeline file ends in .yaml"),
         (("ladder.yaml", "--plot", "out.txt"), "its name must end in .png"),

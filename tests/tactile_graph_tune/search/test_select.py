@@ -13,7 +13,7 @@ from tactile_graph_tune.search.select import Goal, merged, selected
 from tactile_graph_tune.table.kinds import Means, Truths
 
 FOLDS = [np.array([0, 1]), np.array([2, 3])]
-TRUTHS = Truths(np.array([True, False, True, False]), 2.0)
+TRUTHS = Truths(np.array([True, False, True, False]), 2.0, np.ones(4))
 COLUMNS = {  # variant -> time and error of four frames, every other one empty
     0: ([9.0] * 4, [0.2, 2.0, 0.2, 2.0]),  # as given: false on empty
     1: ([1.0] * 4, [0.1, 0.0, 0.5, 0.0]),  # cheapest, and lucky on the first half

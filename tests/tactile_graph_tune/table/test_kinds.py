@@ -7,7 +7,7 @@ import pytest
 
 from tactile_graph_tune.table.kinds import Means, Truths
 
-TRUTHS = Truths(np.array([True, True, True, False, False]), 2.0)
+TRUTHS = Truths(np.array([True, True, True, False, False]), 2.0, np.ones(5))
 FAILED = np.array([False, False, True, False, False])
 
 
@@ -35,5 +35,7 @@ def test_a_gain_on_empty_frames_makes_up_for_no_error_elsewhere():
 
 @pytest.mark.parametrize("full", [True, False])
 def test_what_no_frame_tells_is_no_error(full):
-    found = Truths(np.full(2, full), 2.0).means(np.ones(2), np.full(2, 2.0), np.zeros(2, bool))
+    found = Truths(np.full(2, full), 2.0, np.ones(2)).means(
+        np.ones(2), np.full(2, 2.0), np.zeros(2, bool)
+    )
     assert found == ((1.0, 2.0, 1.0, 0.0, 0.0) if full else (1.0, 0.0, 0.0, 1.0, 0.0))
