@@ -9,9 +9,9 @@ that people have today. It is tuned on frames of the project's simulator and of 
 pad of `second_simulator`, which shares no code with it, and told on two sets that chose nothing:
 *unseen frames*, of the same pads with another seed, and *unseen pads*, of the other kinds. The case
 ``stream`` is 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` is half of it and half
-of ``circles``, ``locate`` a third of it and two thirds of discs and rectangles. Of these three kinds
-of frame as many are drawn, and each counts for as many as it stands for: what is rare costs most,
-and a few frames do not tell how much. Sought is the least
+of ``circles``, ``locate`` a third of it and two thirds of discs and rectangles. Of these three
+kinds of frame as many are drawn, and each counts for as many as it stands for: what is rare costs
+most, and a few frames do not tell how much. Sought is the least
 time at which each kind of error is no greater than today's: how far off where something lies,
 missed there, answered where nothing lies.
 

@@ -20,6 +20,7 @@ from tactile_graph_tune.table.kinds import Reals
 
 EMPTY = "empty"
 """The kind of a frame where nothing lies, whatever its label."""
+SIDES = ("choose", "report")
 SLACK = 1e-9
 
 
@@ -68,7 +69,9 @@ def parse_share(text: str) -> Share:
 
 
 def weights_of(
-    frames: Sequence[Frame], shares: Sequence[Share], sides: Sequence[NDArray[np.int64]]
+    frames: Sequence[Frame],
+    shares: Sequence[Share],
+    sides: tuple[NDArray[np.int64], NDArray[np.int64]],
 ) -> Reals:
     """Return for how many each frame counts, shape (n_frames,), 1 in the mean of either side.
 
@@ -78,8 +81,8 @@ def weights_of(
     ----------
     frames : sequence of Frame
     shares : sequence of Share
-    sides : sequence of ndarray of int64
-        The rows on each side; the shares hold on each.
+    sides : tuple of ndarray of int64
+        The rows that choose, and those that report; the shares hold on either side.
 
     Raises
     ------
@@ -94,13 +97,13 @@ def weights_of(
     left = 1.0 - sum(s.share for s in shares)
     wanted = [*(s.share for s in shares), left]
     _check(frames, shares, kinds, left)
-    for rows in sides:
+    for side, rows in enumerate(sides):
         counts = np.bincount(kinds[rows], minlength=len(wanted))
         for share, n in zip(shares, counts, strict=False):
             if not n:
                 raise UsageError(
                     f"--share {share.kind}={share.share:g}: there are such frames, but none among "
-                    f"the {len(rows)} of one side: half of the frames choose, the others report"
+                    f"the {len(rows)} that {SIDES[side]}: record more, in several stretches"
                 )
         each = len(rows) * np.array(wanted) / np.maximum(counts, 1)
         weights[rows] = each[kinds[rows]]
