@@ -24,7 +24,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from tuned import CASES, Told, markdown, run
+from tuned import CASES, Told, markdown, run, small_discs
 
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
@@ -33,7 +33,6 @@ PRODUCTS = {"adaptive": "mixture", "locate": "locate"}
 ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.01
 """Of today's error: what may be shipped, and what is allowed in choosing."""
 SHARE_MARGIN = 0.01
-SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1), (100.0, 300.0, 1000.0)
 N_SMALL = 120
 FOUND_CM = 2.0
 PIPELINES = Path(__file__).parents[1] / "pipelines" / "tactile_graph_pipelines"
@@ -49,17 +48,6 @@ def refuted_by(told: Told) -> Iterator[str]:
             yield f"{name}: maybe {100 * its.high:+.1f} % of the frames"
     if told.ratio.high >= 1.0:
         yield f"it may take {told.ratio.high:.2f} of the time"
-
-
-def small_discs(n: int, seed: int) -> list[Frame]:
-    """Return frames of discs no larger than a few elements, one in each."""
-    things = [
-        [{"shape": "disc", "weight_g": weight_g, "radius_cm": radius_cm}]
-        for radius_cm in SMALL_CM
-        for weight_g in SMALL_G
-    ]
-    source = load("contacts").with_source("simulate", scene={"in_turn": things}, frames=n)
-    return list(source.frames(seed))
 
 
 def found_in(pipeline: Pipeline, frames: list[Frame]) -> list[bool]:

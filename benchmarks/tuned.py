@@ -65,6 +65,8 @@ KNOWN = {
 }  # fmt: skip
 MARGIN, EQUAL = 0.025, 0.05
 """Shares by which an error may be greater than today's: in choosing, and to be called equal."""
+SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1), (100.0, 300.0, 1000.0)
+"""Radii and weights of discs no larger than a few elements."""
 EMPTY_G = 1e-6
 """Weight that no element shows, of an object that is not there."""
 
@@ -198,9 +200,22 @@ NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distanc
             "near.margin", "likely.known", "likely.probability")  # fmt: skip
 
 
+def small_discs(n: int, seed: int) -> Frames:
+    """Return frames of discs no larger than a few elements, one in each."""
+    things = [
+        [{"shape": "disc", "weight_g": weight_g, "radius_cm": radius_cm}]
+        for radius_cm in SMALL_CM
+        for weight_g in SMALL_G
+    ]
+    source = load("contacts").with_source("simulate", scene={"in_turn": things}, frames=n)
+    return list(source.frames(seed))
+
+
 def half_stream(n: int, seed: int) -> Frames:
-    """Half discs one after the other, half the stream: what a pipeline for all has to bear."""
-    return simulated("discs")(n // 2, seed) + streamed(n - n // 2, seed)
+    """Half discs one after the other, an eighth of all small ones, half the stream: what a pipeline
+    for all has to bear."""
+    discs = simulated("discs")(n // 2 - n // 8, seed) + small_discs(n // 8, seed)
+    return discs + streamed(n - len(discs), seed)
 
 
 def half_empty(kind: str, n: int, seed: int) -> Frames:

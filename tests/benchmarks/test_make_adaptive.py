@@ -10,7 +10,7 @@ import pytest
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 sys.path.insert(0, str(FOLDER))
 import make_adaptive  # noqa: E402
-from tuned import CASES, Told  # noqa: E402
+from tuned import CASES, Told, small_discs  # noqa: E402
 
 from tactile_graph import load, loads  # noqa: E402
 from tactile_graph_tune.split import Interval  # noqa: E402
@@ -53,7 +53,7 @@ def test_whatever_may_be_worse_by_more_than_its_margin_is_told(its, why):
 
 @pytest.mark.slow  # much is compiled
 def test_small_things_that_are_lost_speak_against_shipping():
-    small = make_adaptive.small_discs(8, 0)
+    small = small_discs(8, 0)
     today = load("locate-circle")
     worse = loads(today.text.replace(" or footprint.rise > 1.5", ""))
     (why,) = make_adaptive.lost(today, worse, small)
