@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-FORKED = "tactile_graph.many.forked"
 STORES = {".zarr": "zarr"}
 """Which library reads recordings of an ending, where it takes long to import."""
 
@@ -23,9 +22,8 @@ def begin_workers(words: Sequence[str]) -> None:
 
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return
-    from multiprocessing.forkserver import ensure_running, set_forkserver_preload
+    from tactile_graph.forkserver import begin_forkserver
 
     ends = (word.rstrip("/") for word in words)
     needed = {library for end in ends for e, library in STORES.items() if end.endswith(e)}
-    set_forkserver_preload([FORKED, *sorted(needed)])
-    ensure_running()
+    begin_forkserver(sorted(needed))

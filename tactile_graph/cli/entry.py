@@ -22,7 +22,20 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")
         sys.exit(130)
-    cli.main()
+    try:
+        cli.main()
+    except KeyboardInterrupt:  # another one, after what was to be said was said
+        sys.exit(130)
+    finally:
+        _end_at_once()
+
+
+def _end_at_once() -> None:
+    """From here on Ctrl-C ends this process without a word, while Python shuts down."""
+    import signal
+
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def _open_streams() -> None:

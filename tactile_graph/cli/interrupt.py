@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
+import sys
 import threading
 from types import FrameType, TracebackType
 from typing import Any, ClassVar
@@ -13,6 +15,8 @@ ENDS = tuple(
     if hasattr(signal, name)
 )
 """What comes at a shutdown, from a batch system, from a terminal that is closed."""
+AGAIN_S = 0.02
+"""Until what a callback has swallowed comes again."""
 
 
 class Ended(KeyboardInterrupt):
@@ -45,7 +49,9 @@ class Interrupts:
     """While entered, Ctrl-C raises KeyboardInterrupt, but not inside ``with interrupts.held:``.
 
     There it waits for the end of the block, so that what is being written is written whole. The
-    signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so.
+    signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is
+    raised where Python lets no error out, as in a callback that a library's machine code calls, or
+    in a ``__del__``, comes again right after.
     """
 
     latest: ClassVar[KeyboardInterrupt | None] = None
@@ -54,17 +60,31 @@ class Interrupts:
     def __init__(self) -> None:
         self.held = _Held()
         self._before: dict[int, Any] = {}
+        self._told_before: Any = None
 
     def __enter__(self) -> Interrupts:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, *ENDS):
                 if signal.getsignal(number) is not signal.SIG_IGN:
                     self._before[number] = signal.signal(number, self._came)
+            self._told_before, sys.unraisablehook = sys.unraisablehook, self._swallowed
         return self
 
     def __exit__(self, *_: object) -> None:
         for number, before in self._before.items():
             signal.signal(number, before)
+        if self._told_before is not None:
+            sys.unraisablehook, self._told_before = self._told_before, None
+
+    def _swallowed(self, what: Any) -> None:
+        """Have a signal come again that was raised in vain; other errors are told as before."""
+        error = Interrupts.latest
+        if error is None or error is not what.exc_value:
+            (self._told_before or sys.__unraisablehook__)(what)
+            return
+        again = threading.Timer(AGAIN_S, _thread.interrupt_main, (code_of(error) - 128,))
+        again.daemon = True
+        again.start()
 
     def _came(self, number: int, _frame: FrameType | None) -> None:
         error = KeyboardInterrupt() if number == signal.SIGINT else Ended(number)

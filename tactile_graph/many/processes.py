@@ -11,11 +11,10 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 
 from tactile_graph.errors import UsageError
+from tactile_graph.forkserver import begin_forkserver
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 from tactile_graph.many.worker_processes import DeadWorkerError, WorkerProcesses
 from tactile_graph.plugins.registry import restrict, selected
-
-FORKED = "tactile_graph.many.forked"
 
 
 def opened(address: str, n_workers: int | None) -> Opened:
@@ -36,9 +35,8 @@ def opened(address: str, n_workers: int | None) -> Opened:
 def _context() -> BaseContext:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([FORKED])  # unless the command line has begun it already
-    return context
+    begin_forkserver()  # unless the command line has begun it already
+    return multiprocessing.get_context("forkserver")
 
 
 def _begin(lifeline: Connection, selection: str) -> None:

@@ -74,6 +74,8 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     interrupted = taking.go()
     found = auditor.summarise(interrupted is not None)
     if not found.n_frames:
+        if interrupted is not None:
+            raise interrupted
         raise UsageError(
             f"none of {found.n_seen} frames is in the sample of {asked.sample:g}: give a larger "
             "--sample"

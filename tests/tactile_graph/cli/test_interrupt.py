@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import signal
+import sys
+import time
+from collections.abc import Callable
 
 import pytest
 
@@ -45,3 +49,46 @@ def test_what_ends_programs_is_held_like_ctrl_c_and_told_apart(number: signal.Si
     assert code_of(got.value) == 128 + number
     assert words_of(got.value) == f"ended by {number.name}"
     assert (code_of(KeyboardInterrupt()), words_of(KeyboardInterrupt())) == (130, "interrupted")
+
+
+class Deaf:
+    """Something whose end swallows what is raised in it."""
+
+    def __del__(self) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+
+def swallowed_by_an_end() -> None:
+    Deaf()
+
+
+def swallowed_by_a_callback() -> None:
+    """Raise Ctrl-C in what machine code calls, as a compiler's cache does."""
+    called = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+    called()
+
+
+def swallow(swallowed: Callable[[], None]) -> None:
+    with Interrupts():
+        swallowed()
+        time.sleep(30.0)
+
+
+@pytest.mark.parametrize("swallowed", [swallowed_by_an_end, swallowed_by_a_callback])
+def test_what_nothing_lets_out_comes_again(swallowed: Callable[[], None]):
+    before = sys.unraisablehook
+    with pytest.raises(KeyboardInterrupt):
+        swallow(swallowed)
+    assert sys.unraisablehook is before
+
+
+def test_other_errors_that_nothing_lets_out_are_told_as_before(monkeypatch: pytest.MonkeyPatch):
+    told: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda what: told.append(what.exc_value))
+
+    def fails() -> None:
+        raise ValueError("in a callback")
+
+    with Interrupts():
+        ctypes.CFUNCTYPE(None)(fails)()
+    assert [str(error) for error in told] == ["in a callback"]
