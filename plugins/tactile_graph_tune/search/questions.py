@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -136,12 +137,18 @@ def levels_between(known: Reals, n_finer: int = 0) -> list[float]:
     shares = np.linspace(0.0, 1.0, n_finer) if n_finer else np.array(SHARES)
     if between.size <= shares.size:
         return [float(b) for b in between]
-    at = np.searchsorted(distinct, np.quantile(known, shares)).clip(0, between.size - 1)
+    at = np.searchsorted(distinct, np.quantile(known, shares, method="lower")).clip(
+        0, between.size - 1
+    )
     return list(dict.fromkeys(float(b) for b in between[at]))
 
 
 def _short(low: float, high: float) -> float:
-    """Return the number of fewest digits that lies between two, about the middle."""
+    """Return the finite number of fewest digits that lies between two, about the middle."""
+    if math.isinf(low):
+        low = high - max(1.0, abs(high)) if math.isfinite(high) else -1.0
+    if math.isinf(high):
+        high = low + max(1.0, abs(low))
     middle = 0.5 * (low + high)
     for digits in range(1, 17):
         level = float(f"{middle:.{digits}g}")
