@@ -3,7 +3,8 @@
 Run with ``python benchmarks/make_adaptive.py`` (half an hour); ``--write`` puts what holds in the
 place of the shipped file, ``--frames N`` and ``--seed N`` make the run another one.
 
-``adaptive`` is tuned as the case ``mixture`` of `tuned`, from the ladder of every way to a circle;
+``adaptive`` is tuned as the case ``mixture`` of `tuned`, from a ladder of its own steps and a quick
+location (of every way to a circle, too much is chosen that holds on no other frames);
 ``locate``, which has one way only, by its own guard. Frames are of the project's simulator and of
 half the kinds of pad of the second one.
 

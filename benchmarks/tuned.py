@@ -191,6 +191,7 @@ CIRCLES = ("cells.share", *COUNTED[:2], "even.uneven", "even.n_cells", "even.cen
            "quick.centre_std_cm", "quick.surprise", "quick.fits", "quick.posterior.alike",
            "quick.posterior.lean", "quick.posterior.fall", "quick.posterior.neighbours",
            "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
+ADAPTIVE = tuple(f for f in CIRCLES if not f.startswith("likely."))
 RECTANGLES = (*COUNTED[:2], "quick.centre_std_cm", "quick.angle_std_deg", "quick.surprise",
               "quick.fits", "quick.posterior.alike", "quick.posterior.neighbours",
               "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise", "likely.fits",
@@ -245,7 +246,7 @@ CASES = {
     "identification": Case(
         "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
     ),
-    "mixture": Case("circle-ladder", "adaptive", half_stream, half_empty, CIRCLES,
+    "mixture": Case("adaptive-ladder", "adaptive", half_stream, half_empty, ADAPTIVE,
                     "circle-by-eye", stream_shares(1.0 / 2.0)),
     "locate": Case("", "locate", either_shape, either_or_none, COUNTED,
                    shares=stream_shares(1.0 / 3.0)),

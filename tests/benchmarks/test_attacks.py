@@ -39,6 +39,10 @@ def test_killed_commands_leave_whole_files() -> None:
     attacked("kills.py", "--tries", "8", "--only", "learn", "import", "calibrate", "images")
 
 
+def test_interrupted_workers_end_soon_and_leave_nothing() -> None:
+    attacked("interrupts.py", "--tries", "6", "--seed", "11")
+
+
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
     attacked("plugins.py", "--tries", "8")
 
