@@ -55,6 +55,9 @@ class Request:
         ``most_error`` nor ``most_us`` is given.
     fields : tuple of str
         The only fields that guards may ask; all where empty.
+    kept : tuple of str
+        Named conditions, and nodes by their own guard, that stay as the file has them: what the
+        frames at hand do not show may need them.
     free : tuple of Free
         Settings that may be chosen, besides those that the file marks; instead of its values where
         it marks the same.
@@ -77,6 +80,7 @@ class Request:
     most_us: float | None = None
     margin: float = 0.0
     fields: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
     free: tuple[Free, ...] = ()
     rounds: int = 3
     seed: int = 0

@@ -204,7 +204,7 @@ def _variants(
         declared(request.pipeline.with_settings(s) if s else request.pipeline, judged.answer)
         for s in settings
     ]
-    kept: set[str] = set()
+    kept = _kept(request, given[0])
     rounds = Rounds(request.rounds, request.seed, told, request.place)
     while True:
         parted = [d.keeping(kept) for d in given]
@@ -226,6 +226,18 @@ def _variants(
         found.append(Variant(k, values, its, pipeline, cascade, table, choice))
     _check_fields(request, found[0].table)
     return found
+
+
+def _kept(request: Request, its: Declared) -> set[str]:
+    """Return the places that are asked to stay as they are."""
+    for name in request.kept:
+        if name not in its.places:
+            hint = did_you_mean(name, its.places)
+            raise UsageError(
+                f"--keep {name}: no condition or guard of pipeline {request.pipeline.name!r} that "
+                f"could be chosen otherwise{hint}"
+            )
+    return set(request.kept)
 
 
 def _with_offers(its: Declared, pipeline: Pipeline, table: Table, bound_: set[str]) -> Declared:

@@ -69,3 +69,14 @@ def test_what_is_written_has_the_shipped_name_words_and_parent():
     assert made.startswith("# by tune\npipeline: adaptive\n")
     again = loads(made)
     assert (again.about, again.evolves, again.key) == (own.about, own.evolves, own.key)
+
+
+@pytest.mark.slow  # much is compiled
+def test_clean_frames_that_take_longer_speak_against_shipping():
+    clean = make_adaptive.clean_frames(8, 0)
+    assert len(clean) == 8
+    today = load("adaptive")
+    never = loads(today.text.replace("even.n_cells > 12", "even.n_cells > 300"))
+    (why,) = make_adaptive.slower(today, never, clean)
+    assert why.startswith("clean frames take ")
+    assert list(make_adaptive.slower(never, today, clean)) == []

@@ -41,6 +41,18 @@ def test_shares_of_the_frames_to_come_are_told(hand_made):
 
 
 @pytest.mark.slow
+def test_what_is_to_be_kept_is_kept(hand_made):
+    words = ("ladder.yaml", "--frames", "24", *QUICK, "--field", "footprint.count")
+    goal = ("--error-at-most", "2", "--missed-at-most", "1", "--false-at-most", "1")
+    assert call("tune", *words, *goal, "-o", "out.yaml").exit_code == 0
+    got = call("tune", *words, *goal, "--keep", "touched", "-o", "kept.yaml")
+    assert got.exit_code == 0, got.output
+    kept, free = Path("kept.yaml").read_text(), Path("out.yaml").read_text()
+    assert "touched: footprint.count > 0" in kept
+    assert "touched: footprint.count > 0\n" not in free
+
+
+@pytest.mark.slow
 def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
     wrong = LADDER.replace("level_v: 0.5", "level_v: 1.5")  # nothing is that heavy
     Path("wrong.yaml").write_text(wrong)
@@ -58,6 +70,7 @@ def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
         (("ladder.yaml", "--answer", "circel"), "did you mean 'circle'"),
         (("ladder.yaml", "--error", "angel"), "did you mean 'angle'"),
         (("ladder.yaml", "--free", "footprint.level_x=1:2"), "did you mean 'footprint.level_v'"),
+        (("ladder.yaml", "--keep", "tuoched"), "did you mean 'touched'"),
         (("ladder.yaml", "--share", "empty"), "must be empty=SHARE or LABEL=SHARE"),
         (("ladder.yaml", "--share", "film=0.5"), "--share film=0.5: no frame is of it"),
         (("ladder.yaml", "-o", "ladder.yaml"), "is there already; name another file"),
