@@ -24,7 +24,7 @@ TIED, SLIDING, HELD = 0.01, 2.0, 6.0
 gap, or a disc within an element, slides freely. Where slopes are exact nothing else says how far,
 and on a large pad few of the points to be sampled would come near."""
 
-ROUGH, ENOUGH = 4.0, 0.2  # gain in log posterior at which the first and second search end
+ROUGH, ENOUGH = 0.5, 0.2  # gain in log posterior at which the first and second search end
 SOFT = 0.05  # share of its load that an element takes from its surroundings in the first search
 NO_STRAYS = 1e-12
 

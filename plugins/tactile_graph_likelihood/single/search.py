@@ -225,8 +225,8 @@ def attempted(
         Where to begin; empty for the touched elements' moments.
     attempt : int
         0 begins at the start if there is one, and so does `NEAR`, which takes it for near the top.
-        So is an outline that has the moments of all that is touched: from there no search lets
-        elements feel beyond their edge first.
+        So is a disc that has the moments of all that is touched: from there no search lets elements
+        feel beyond their edge first. An outline with an angle would be caught beside the top.
     least : float
         Log posterior below which nobody asks how well it fits.
     p, root : ndarray, shape (K,) and (K, K)
@@ -243,7 +243,7 @@ def attempted(
         p[:] = start
     else:
         likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
-        softly = attempt > 0
+        softly = attempt > 0 or problem.kind != DISC
     height = maximise_softly_first(problem, p, root, softly)
     if height > least:
         return height, goodness_of_fit(problem, p)
