@@ -243,7 +243,7 @@ def attempted(
         p[:] = start
     else:
         likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
-        softly = attempt > 0 or problem.kind != DISC
+        softly = attempt > 0 or (attempt == 0 and problem.kind != DISC)
     height = maximise_softly_first(problem, p, root, softly)
     if height > least:
         return height, goodness_of_fit(problem, p)
