@@ -134,7 +134,7 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
         if part <= 0.0 or state == UNKNOWN:
             continue
         log = noise[LEAST] if state == OFF else problem.logs[row, column]
-        score = score_of(state, log, math.log(part) + load, scatter)
+        _, score = score_of(state, log, math.log(part) + load, scatter)
         if k < on_rim:
             for m in range(first):
                 along[m] = rise[m, k] / max(part, SLIVER)
@@ -168,9 +168,9 @@ def _rises_on_rim(problem: Problem, p: Values, box: Box, runs: Runs) -> tuple[Va
 def _score_of_covered(whole: CoveredWhole, load: float, least: float, scatter: Scatter) -> Score:
     """Return what the record of elements that are covered whole says."""
     nodes = int(whole.numbers[NODES])
-    off = score_of(OFF, least, load, scatter)
+    _, off = score_of(OFF, least, load, scatter)
     total = summed(NO_SCORE, off, whole.numbers[OFFS])
     for k in range(nodes):
-        on = score_of(ON, whole.readings[k], load, scatter)
+        _, on = score_of(ON, whole.readings[k], load, scatter)
         total = summed(total, on, whole.weights[k])
     return total

@@ -250,7 +250,7 @@ def _sum_up(
             state = states[i, j]
             if state != UNKNOWN:
                 log = noise[LEAST] if state == OFF else logs[i, j]
-                found = score_of(state, log, math.log(expected[i, j]), scatter)
+                _, found = score_of(state, log, math.log(expected[i, j]), scatter)
                 score, weight = found[0], found[1]
             excess = (total[i, j] - 1.0) / (OVERLAP * OVERLAP)
             push = 1.0 / (OVERLAP * OVERLAP) if excess > 0.0 else 0.0

@@ -34,6 +34,10 @@ SPAN = math.log(1e4)
 HIGH = 0.5
 """Share of strays that read the most that an element can."""
 
+UNFELT = -8.0
+"""Standard deviations of ln gain by which a load exceeds the least that shows, below which an
+untouched element's term is 0 up to rounding."""
+
 ROOT_TWO_PI = math.sqrt(2.0 * math.pi)
 SQRT_HALF = math.sqrt(0.5)
 
@@ -99,7 +103,7 @@ def terms(
             on[n_on] = (log - mu) * per_sigma
             n_on += 1 if state == ON else 0
             off[n_off] = (mu - (log if state == UNDER else least)) * per_sigma
-            n_off += 1 if state in (OFF, UNDER) else 0
+            n_off += 1 if state in (OFF, UNDER) and off[n_off] > UNFELT else 0
             if state == OVER:
                 z = (mu - log) * per_sigma
                 total += math.log(1.0 + odds * 0.5 * math.erfc(-SQRT_HALF * z))

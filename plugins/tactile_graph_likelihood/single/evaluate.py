@@ -32,12 +32,17 @@ def log_likelihood_at(problem: Problem, whole: CoveredWhole | None, p: Values) -
 @compiled_as_is
 def information_at(
     problem: Problem, whole: CoveredWhole | None, p: Values, out: Information
-) -> None:
-    """Write the slope of the log likelihood at a point, and an information matrix."""
+) -> float:
+    """Write the slope of the log likelihood at a point, and an information matrix.
+
+    Returns
+    -------
+    float
+        The log likelihood.
+    """
     if whole is None:
-        information(problem, p, out)
-        return
+        return information(problem, p, out)
     if whole.runs.shape[0] == 0:
-        information(problem, p, out)
-    else:
-        information_by_rim(problem, whole, p, out)
+        return information(problem, p, out)
+    information_by_rim(problem, whole, p, out)
+    return log_likelihood_by_rim(problem, whole, p)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, window
+from tactile_graph_likelihood.geometry.covered import Box, covered, window
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, unknowns
 from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
 from tactile_graph_likelihood.single.element_terms import (
@@ -20,6 +20,8 @@ from tactile_graph_likelihood.single.element_terms import (
     OVER,
     SIGMA,
     SQRT_HALF,
+    UNDER,
+    UNFELT,
     UNKNOWN,
     VOIDS,
     on_level,
@@ -32,6 +34,7 @@ from tactile_graph_likelihood.single.load_shares import (
     passed_on,
     press,
     shares_of,
+    weighed,
 )
 from tactile_graph_likelihood.single.log_posterior import noise_at
 from tactile_graph_likelihood.single.problem import Problem
@@ -41,6 +44,8 @@ FOAM_STEP = 0.005
 PRESSURE_STEP = 0.01
 SLIVER = 0.1  # read less, an element's slope is no guide to how far the outline may go
 DENSITY = 1.0 / math.sqrt(2.0 * math.pi)
+MOST_EXPONENT = 300.0  # beyond which a chance is 0 or 1
+MOST_ODDS = 1e150  # of many elements, multiplied, at which their logarithm is taken
 
 
 class Information(NamedTuple):
@@ -95,8 +100,11 @@ def scatter_of(noise: Values) -> Scatter:
 
 
 @compiled_as_is
-def score_of(state: int, log: float, mu: float, scatter: Scatter) -> Score:
+def score_of(state: int, log: float, mu: float, scatter: Scatter) -> tuple[float, Score]:
     """Return what an element's reading says, given the logarithm mu of its expected load.
+
+    That is how many times likelier it is than on a bare pad, as in `element_terms.terms`, and its
+    score.
 
     ``log`` is that of its reading, of the least load that shows where it reads nothing, of the load
     at which readings end where it reads the most. Of arguments and results none is an array: that
@@ -106,10 +114,10 @@ def score_of(state: int, log: float, mu: float, scatter: Scatter) -> Score:
     some = voids * (1.0 - voids)
     if state == ON:
         u = (log - mu) / sigma
-        a = min(max(level - 0.5 * u * u, -700.0), 700.0)
-        chance = 1.0 / (1.0 + math.exp(-a))
+        by_load = math.exp(min(max(level - 0.5 * u * u, -MOST_EXPONENT), MOST_EXPONENT))
+        chance = by_load / (1.0 + by_load)
         weight = chance / (sigma * sigma)
-        return Score(
+        return 1.0 + by_load, Score(
             chance * u / sigma, weight, chance * (u * u - 1.0), 2.0 * chance, -voids * chance, some
         )
     z = (mu - log) / sigma
@@ -120,7 +128,7 @@ def score_of(state: int, log: float, mu: float, scatter: Scatter) -> Score:
     else:
         likely = 1.0 - (1.0 - voids) * tail
         score, by_voids = (voids - 1.0) * density / (sigma * likely), some * tail / likely
-    return Score(score, score * score, -score * sigma * z, 0.0, by_voids, some)
+    return likely, Score(score, score * score, -score * sigma * z, 0.0, by_voids, some)
 
 
 @compiled_as_is
@@ -184,20 +192,27 @@ def mirror(matrix: Values) -> None:
 
 
 @compiled_as_is
-def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values, Values]:
-    """Return coverage of a window, and its slope along each number of a point, (K, rows, cols)."""
+def _rises(
+    problem: Problem, p: Values, noise: Values, box: Box, moving: int
+) -> tuple[Values, Values]:
+    """Return shares of a window, and their slope along a point's first numbers, (N, rows, cols).
+
+    That many, ``moving``, bring another load to elements.
+    """
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
-    rise = np.zeros((p.shape[0], box[2], box[3]))
+    rise = np.zeros((moving, box[2], box[3]))
     if has_slopes(kind):
         share = covered_with_slopes(kind, p, grid, box, rise)
+        bare = share.copy()
         if not is_even(noise):
             _press_with_slopes(problem, p, noise, box, share, rise)
         if noise[FOAM] > 0.0:
             share = blurred(share, noise[FOAM], box, rows, columns)
             _blur(rise, first, noise[FOAM], box, rows, columns)
     else:
-        share = shares_of(kind, corners, p, grid, noise, box, rows, columns)
+        bare = covered(kind, corners, p, grid, box)
+        share = weighed(kind, corners, p, grid, noise, box, rows, columns, bare.copy())
         steps, at = steps_of(kind, corners, p, grid), p.copy()
         for k in range(first):
             at[k] += steps[k]
@@ -210,7 +225,7 @@ def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values
             continue
         other, step = noise.copy(), FOAM_STEP if place == FOAM else PRESSURE_STEP
         other[place] = noise[FOAM] * math.exp(step) if place == FOAM else noise[place] + step
-        moved = shares_of(kind, corners, p, grid, other, box, rows, columns)
+        moved = weighed(kind, corners, p, grid, other, box, rows, columns, bare.copy())
         _difference(share, moved, step, rise, first + 1 + k)
     return share, rise
 
@@ -267,7 +282,7 @@ def _difference(share: Values, moved: Values, step: float, rise: Values, k: int)
 
 
 @compiled_as_is
-def information(problem: Problem, p: Values, out: Information) -> None:
+def information(problem: Problem, p: Values, out: Information) -> float:
     """Write the slope of the log likelihood at a point, and an information matrix.
 
     Parameters
@@ -276,6 +291,11 @@ def information(problem: Problem, p: Values, out: Information) -> None:
         As in `log_posterior.log_likelihood`.
     out : Information
         Written.
+
+    Returns
+    -------
+    float
+        The log likelihood, up to rounding.
 
     Notes
     -----
@@ -294,8 +314,7 @@ def information(problem: Problem, p: Values, out: Information) -> None:
         for m in range(n):
             out.matrix[k, m] = 0.0
     if box[2] <= 0 or box[3] <= 0:
-        return
-    share, rise = _rises(problem, p, noise, box)
+        return 0.0
     row, column, load, own = box[0], box[1], p[first], noise[LEAST]
     power, by_power, moving = noise[CONTRAST], -1, first + 1
     for k in range(problem.estimated.shape[0]):
@@ -303,8 +322,9 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             moving = first + 2 + k
         if problem.estimated[k] == CONTRAST:
             by_power = first + 1 + k
+    share, rise = _rises(problem, p, noise, box, moving)
     scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(moving)
-    sliver = SLIVER ** (1.0 / power)
+    sliver, unfelt, odds, found = SLIVER ** (1.0 / power), UNFELT * scatter.sigma, 1.0, 0.0
     for i in range(box[2]):
         for j in range(box[3]):
             state, its, moves = states[row + i, column + j], share[i, j], False
@@ -312,7 +332,14 @@ def information(problem: Problem, p: Values, out: Information) -> None:
                 continue
             log_share = 0.0 if its == 1.0 else math.log(its)
             log = own if state == OFF else logs[row + i, column + j]
-            score = score_of(state, log, load + power * log_share, scatter)
+            mu = load + power * log_share
+            if state in (OFF, UNDER) and mu - log < unfelt:
+                continue
+            likelier, score = score_of(state, log, mu, scatter)
+            odds *= likelier
+            if not 1.0 / MOST_ODDS < odds < MOST_ODDS:
+                found += math.log(odds)
+                odds = 1.0
             steep, per_share = power / max(its, sliver), power / its
             for k in range(moving):
                 along[k] = (steep if k < first else per_share) * rise[k, i, j]
@@ -326,6 +353,7 @@ def information(problem: Problem, p: Values, out: Information) -> None:
             total = summed(total, score, 1.0)
     add_score(problem, total, out)
     mirror(out.matrix)
+    return found + math.log(odds)
 
 
 @compiled_as_is

@@ -257,6 +257,15 @@ def shares_of(
         Of the whole image.
     """
     shares = covered(kind, corners, p, grid, box)
+    return weighed(kind, corners, p, grid, noise, box, rows, columns, shares)
+
+
+@compiled_as_is
+def weighed(
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
+    columns: int, shares: Values,
+) -> Values:  # fmt: skip
+    """Return what `shares_of` does, from coverage, which it may change."""
     if not is_even(noise):
         press(kind, corners, p, grid, noise, box, shares)
     if noise[FOAM] > 0.0:

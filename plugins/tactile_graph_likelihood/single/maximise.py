@@ -67,17 +67,15 @@ def maximise(
     n = p.shape[0]
     step, trial = np.empty(n), np.empty(n)
     out = Information(np.empty(n), np.empty((n, n)))
+    ahead = Information(np.empty(n), np.empty((n, n)))
     kind, corners, prior = problem.kind, problem.corners, problem.prior
     pulled_in(kind, corners, p, prior)
     keep_current(problem, whole, p)
-    now, new = log_rest(problem, p) + log_likelihood_at(problem, whole, p), -math.inf
+    now, new = log_rest(problem, p) + information_at(problem, whole, p, out), -math.inf
+    add_prior(problem, p, out)
     tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
-        keep_current(problem, whole, p)
-        information_at(problem, whole, p, out)
-        add_prior(problem, p, out)
-        widths = steps_of(kind, corners, p, problem.grid)
         if not _rooted(out.matrix, widths, tied, damping, root):
             return now
         solved(root, out.slope, step)
@@ -89,7 +87,11 @@ def maximise(
                 trial[k] = p[k] + share * step[k]
             pulled_in(kind, corners, trial, prior)
             new = log_rest(problem, trial)
-            if new > -math.inf:
+            if new > -math.inf and share == first:
+                # mostly the next point: its slopes cost less now than by a second look
+                keep_current(problem, whole, trial)
+                new += information_at(problem, whole, trial, ahead)
+            elif new > -math.inf:
                 new += log_likelihood_at(problem, whole, trial)
             if new > now:
                 break
@@ -101,11 +103,16 @@ def maximise(
             continue
         gained, now = new - now, new
         p[:] = trial
+        if share < first:
+            keep_current(problem, whole, p)
+            information_at(problem, whole, p, ahead)
+        out, ahead = ahead, out
+        add_prior(problem, p, out)
+        widths = steps_of(kind, corners, p, problem.grid)
+        damping = 0.0 if share == first else 0.3
         if gained < 0.5 * enough:
             break
-        damping = 0.0 if share == first else 0.3
-    if damping > 0.0:
-        _rooted(out.matrix, widths, tied, 0.0, root)
+    _rooted(out.matrix, widths, tied, 0.0, root)
     return now
 
 

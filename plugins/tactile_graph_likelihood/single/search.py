@@ -225,6 +225,8 @@ def attempted(
         Where to begin; empty for the touched elements' moments.
     attempt : int
         0 begins at the start if there is one, and so does `NEAR`, which takes it for near the top.
+        So is a disc that has the moments of all that is touched: from there no search lets elements
+        feel beyond their edge first. An outline with an angle would be caught beside the top.
     least : float
         Log posterior below which nobody asks how well it fits.
     p, root : ndarray, shape (K,) and (K, K)
@@ -236,11 +238,13 @@ def attempted(
     (float, GoodnessOfFit)
         The mode's height, -inf where no outline is possible, and how well it fits.
     """
+    softly = attempt >= 0
     if attempt <= 0 and start.shape[0] == p.shape[0]:
         p[:] = start
     else:
         likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
-    height = maximise_softly_first(problem, p, root, attempt >= 0)
+        softly = attempt > 0 or (attempt == 0 and problem.kind != DISC)
+    height = maximise_softly_first(problem, p, root, softly)
     if height > least:
         return height, goodness_of_fit(problem, p)
     return height, NO_FIT
