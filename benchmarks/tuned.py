@@ -90,7 +90,7 @@ class Case:
     shares : tuple of Share
         How many of the frames to come are of which kind.
     kept : tuple of str
-        Guards against what no frame here shows.
+        Guards that stay: against what no frame here shows, and what spares clean frames most.
     by_eye : str
         The ladder, or the pipeline, whose guards were set by eye, where these are others.
     """
@@ -254,7 +254,7 @@ CASES = {
         "identify-ladder", "identify-likelihood", simulated("identify"), named, NAMES_OF
     ),
     "mixture": Case("adaptive-ladder", "adaptive", half_stream, half_empty, ADAPTIVE,
-                    "circle-by-eye", BEARABLE, ("legible",)),
+                    "circle-by-eye", BEARABLE, ("legible", "certain")),
     "locate": Case("", "locate", either_shape, either_or_none, COUNTED,
                    shares=stream_shares(1.0 / 3.0)),
     "stream": Case("circle-ladder", "adaptive", streamed, stream_parts, CIRCLES,
