@@ -82,7 +82,7 @@ class Interrupts:
         if error is None or error is not what.exc_value:
             (self._told_before or sys.__unraisablehook__)(what)
             return
-        again = threading.Timer(AGAIN_S, _thread.interrupt_main, (code_of(error) - 128,))
+        again = threading.Timer(AGAIN_S, _send, (code_of(error) - 128,))
         again.daemon = True
         again.start()
 
@@ -93,6 +93,14 @@ class Interrupts:
             self.held.waiting = error
         else:
             raise error
+
+
+def _send(number: int) -> None:
+    """Send the main thread a signal that wakes it, whatever it waits for."""
+    if hasattr(signal, "pthread_kill"):  # not on Windows
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+    else:
+        _thread.interrupt_main(number)
 
 
 class _Held:

@@ -179,7 +179,7 @@ class _Line:
             if self._pipe is None:
                 self._pipe = self._started()
             self._pipe.send_bytes(data)
-        except (OSError, EOFError) as error:
+        except Exception as error:  # whatever keeps a process from being started
             self._failed = self._died(error)
 
     def answer(self) -> bytes | BaseException:

@@ -51,6 +51,9 @@ def test_what_ends_programs_is_held_like_ctrl_c_and_told_apart(number: signal.Si
     assert (code_of(KeyboardInterrupt()), words_of(KeyboardInterrupt())) == (130, "interrupted")
 
 
+SLEEP_S = 30.0
+
+
 class Deaf:
     """Something whose end swallows what is raised in it."""
 
@@ -71,14 +74,15 @@ def swallowed_by_a_callback() -> None:
 def swallow(swallowed: Callable[[], None]) -> None:
     with Interrupts():
         swallowed()
-        time.sleep(30.0)
+        time.sleep(SLEEP_S)
 
 
 @pytest.mark.parametrize("swallowed", [swallowed_by_an_end, swallowed_by_a_callback])
 def test_what_nothing_lets_out_comes_again(swallowed: Callable[[], None]):
-    before = sys.unraisablehook
+    before, begun_s = sys.unraisablehook, time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         swallow(swallowed)
+    assert time.monotonic() - begun_s < SLEEP_S  # it wakes who sleeps
     assert sys.unraisablehook is before
 
 

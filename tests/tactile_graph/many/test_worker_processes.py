@@ -114,6 +114,7 @@ def test_one_that_dies_is_told_with_its_code(workers: WorkerProcesses) -> None:
         workers.submit(die).result(PATIENCE_S)
 
 
+@pytest.mark.slow
 def test_an_error_is_raised_here_and_says_where_it_was(workers: WorkerProcesses) -> None:
     with pytest.raises(ValueError, match="7 is none") as raised:
         workers.submit(failed, 7).result(PATIENCE_S)
@@ -121,6 +122,7 @@ def test_an_error_is_raised_here_and_says_where_it_was(workers: WorkerProcesses)
     assert "in failed" in str(raised.value.__cause__)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_sent_is_told_and_costs_no_worker(workers: WorkerProcesses) -> None:
     first = {workers.submit(slowly, 0.2) for _ in range(4)}
     processes = {future.result(PATIENCE_S) for future in first}
@@ -134,6 +136,17 @@ def test_what_cannot_be_sent_is_told_and_costs_no_worker(workers: WorkerProcesse
     assert {future.result(PATIENCE_S) for future in after} == processes
 
 
+def test_a_process_that_cannot_be_started_is_told() -> None:
+    def local(lifeline: Connection) -> None:
+        """No function of a module: it cannot be sent."""
+
+    with WorkerProcesses(1, get_context(METHOD), local) as workers:
+        for _ in range(2):
+            with pytest.raises(DeadWorkerError, match="local"):
+                workers.submit(own_process).result(PATIENCE_S)
+
+
+@pytest.mark.slow
 def test_the_end_waits_for_what_was_given() -> None:
     with WorkerProcesses(1, get_context(METHOD), nothing) as workers:
         at = [workers.submit(slowly, 0.05) for _ in range(3)]
@@ -142,6 +155,7 @@ def test_the_end_waits_for_what_was_given() -> None:
         workers.submit(own_process)
 
 
+@pytest.mark.slow
 def test_what_waits_can_be_cancelled() -> None:
     workers = WorkerProcesses(1, get_context(METHOD), nothing)
     at = [workers.submit(slowly, 0.5) for _ in range(5)]
@@ -173,6 +187,7 @@ import time; time.sleep(1.0)
 """
 
 
+@pytest.mark.slow
 def test_a_program_that_forgets_to_end_them_ends(tmp_path: Any) -> None:
     (tmp_path / "tests_of.py").write_text(
         "import time\ndef slowly(seconds):\n    time.sleep(seconds)\n"
