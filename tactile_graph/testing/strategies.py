@@ -57,7 +57,7 @@ def frames(
 ) -> Frame:
     """Draw frames, as `images` does; cells that are no number are invalid in them."""
     kind = quantity or draw(st.sampled_from(sorted(QUANTITIES)))
-    cells = st.floats(0.0, 2.0 * RANGES[kind]) | st.just(0.0)
+    cells = st.floats(0.0, 2.0 * RANGES.get(kind, 1.0)) | st.just(0.0)
     if invalid:
         cells |= st.just(math.nan)
     values = draw(arrays(np.float64, draw(shapes(max_side)), elements=cells))

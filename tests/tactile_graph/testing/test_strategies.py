@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 
 from tactile_graph import Frame, Image, Mask, Points
 from tactile_graph.errors import UsageError
 from tactile_graph.testing import strategies
+from tactile_graph.vocabulary import QUANTITIES
 
 
 @settings(max_examples=4)
@@ -51,3 +52,14 @@ def test_without_hypothesis_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(builtins, "__import__", missing)
     with pytest.raises(UsageError, match=r"pip install 'tactile-graph\[test\]'"):
         importlib.import_module("tactile_graph.testing.strategies")
+
+
+def test_a_quantity_that_a_plugin_offers_is_drawn_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(QUANTITIES._words, "newton", "N")
+
+    @settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
+    @given(strategies.images("newton"))
+    def check(image: Image) -> None:
+        assert image.quantity == "newton"
+
+    check()
