@@ -23,15 +23,15 @@ from __future__ import annotations
 import argparse
 import math
 import re
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 from tuned import CASES, Told, markdown, run, small_discs, streamed
 
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
+from tactile_graph_tune.rerun import rerun
+from tactile_graph_tune.table.record import Judged
 
 PRODUCTS = {"adaptive": "mixture", "locate": "locate"}
 ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.015
@@ -76,20 +76,12 @@ def lost(today: Pipeline, tuned: Pipeline, frames: list[Frame]) -> Iterator[str]
         yield f"of {len(frames)} small discs {n} that today's finds are missed"
 
 
-def slower(today: Pipeline, tuned: Pipeline, frames: list[Frame]) -> Iterator[str]:
+def slower(today: Pipeline, tuned: Pipeline, frames: list[Frame], judged: Judged) -> Iterator[str]:
     """Yield what speaks against shipping, of the time that clean frames take."""
-    taken = {name: np.empty((ROUNDS, len(frames))) for name in ("today", "tuned")}
-    runners = {"today": today.runner(), "tuned": tuned.runner()}
-    for k in range(ROUNDS):
-        for name, runner in runners.items():
-            for i, frame in enumerate(frames):
-                runner.forget()
-                start = time.process_time()
-                runner(frame)
-                taken[name][k, i] = time.process_time() - start
-    means = {name: float(np.median(rows, axis=0).mean()) for name, rows in taken.items()}
-    if means["tuned"] > (1.0 + TIME_MARGIN) * means["today"]:
-        yield f"clean frames take {means['tuned'] / means['today']:.2f} of the time"
+    ran = rerun({"today": today, "tuned": tuned}, frames, judged, ROUNDS, seed=0)
+    ratio = float(ran["tuned"][0].mean() / ran["today"][0].mean())
+    if ratio > 1.0 + TIME_MARGIN:
+        yield f"clean frames take {ratio:.2f} of the time"
 
 
 def clean_frames(n: int, seed: int) -> list[Frame]:
@@ -119,7 +111,9 @@ def main() -> None:
         against = [f"{on}: {why}" for on, its in told.items() for why in refuted_by(its)]
         small = small_discs(N_SMALL, asked.seed + 3)
         against += lost(load(name), tuned.pipeline, small)
-        against += slower(load(name), tuned.pipeline, clean_frames(N_SMALL, asked.seed + 4))
+        against += slower(
+            load(name), tuned.pipeline, clean_frames(N_SMALL, asked.seed + 4), tuned.judged
+        )
         text = shipped(name, tuned.text)
         print(f"\n{text}")
         for why in against:

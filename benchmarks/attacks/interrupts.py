@@ -5,7 +5,7 @@
 
 Each try runs an endless command with two workers and sends, at a moment drawn at random, Ctrl-C to
 the command alone, to all processes as a terminal does, or twice, or SIGTERM. The command must end
-soon, with the code of a signal and without a traceback, and leave no process behind.
+soon, say why, with the code of a signal and without a traceback, and leave no process behind.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from attempts import Attempt, parser_of, told
-from workers import GONE_S, processes
+from workers import left_of
 
 DISCS = ("--source", "simulate", "--with", "scene=discs")
 ENDLESS = (*DISCS, "--frames", "1000000")
@@ -40,6 +40,7 @@ LATEST_S, TWICE_S = 6.0, 0.5
 SOON_S, LONGEST_S = 8.0, 30.0
 CODES = (130, 143, -signal.SIGINT, -signal.SIGTERM)
 """What a command ends with: a second Ctrl-C kills it while Python shuts down."""
+WORDS = ("interrupted", "ended by SIGTERM")
 
 
 def begun(words: tuple[str, ...], folder: Path) -> subprocess.Popen[bytes]:
@@ -80,6 +81,8 @@ def wrong(name: str, way: str, after_s: float, pause_s: float, folder: Path) -> 
         return f"a traceback: {_said(folder)}"
     if code not in CODES:
         return f"code {code}: {_said(folder)}"
+    if code > 0 and not any(word in _said(folder) for word in WORDS):
+        return f"it does not say why it ended: {_said(folder)}"
     if took_s > SOON_S:
         return f"it took {took_s:.1f} s"
     return f"{len(left)} processes are left" if left else ""
@@ -91,9 +94,7 @@ def _said(folder: Path) -> str:
 
 def _left(session: int) -> list[int]:
     """Return what is left after a while of a session, and end it."""
-    until = time.monotonic() + GONE_S
-    while (left := [*processes(session)]) and time.monotonic() < until:
-        time.sleep(0.05)
+    left = left_of(session)
     for process in left:
         with suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -204,7 +204,10 @@ def _variants(
         declared(request.pipeline.with_settings(s) if s else request.pipeline, judged.answer)
         for s in settings
     ]
-    kept = _kept(request, given[0])
+    own = f"pipeline {request.pipeline.name!r}"
+    unchosen = f"no condition or guard of {own} that could be chosen otherwise"
+    _check_named("--keep", request.kept, given[0].places, unchosen)
+    kept = set(request.kept)
     rounds = Rounds(request.rounds, request.seed, told, request.place)
     while True:
         parted = [d.keeping(kept) for d in given]
@@ -224,20 +227,9 @@ def _variants(
         cascade = Cascade(pipeline, its, pipeline.outputs[judged.answer])
         choice = Choice(k, its.rungs, its.given)
         found.append(Variant(k, values, its, pipeline, cascade, table, choice))
-    _check_fields(request, found[0].table)
+    unread = f"no node of {own} has it, or it is no number"
+    _check_named("--field", request.fields, found[0].table.fields, unread)
     return found
-
-
-def _kept(request: Request, its: Declared) -> set[str]:
-    """Return the places that are asked to stay as they are."""
-    for name in request.kept:
-        if name not in its.places:
-            hint = did_you_mean(name, its.places)
-            raise UsageError(
-                f"--keep {name}: no condition or guard of pipeline {request.pipeline.name!r} that "
-                f"could be chosen otherwise{hint}"
-            )
-    return set(request.kept)
 
 
 def _with_offers(its: Declared, pipeline: Pipeline, table: Table, bound_: set[str]) -> Declared:
@@ -254,14 +246,11 @@ def _with_offers(its: Declared, pipeline: Pipeline, table: Table, bound_: set[st
     return its
 
 
-def _check_fields(request: Request, table: Table) -> None:
-    for name in request.fields:
-        if name not in table.fields:
-            hint = did_you_mean(name, table.fields)
-            raise UsageError(
-                f"--field {name}: no node of pipeline {request.pipeline.name!r} has it, or it is "
-                f"no number{hint}"
-            )
+def _check_named(option: str, names: Sequence[str], known: Collection[str], why: str) -> None:
+    """Refuse a name that is not known, with the one it is nearest to."""
+    for name in names:
+        if name not in known:
+            raise UsageError(f"{option} {name}: {why}{did_you_mean(name, known)}")
 
 
 def _check_answers(variants: Sequence[Variant], judged: Judged) -> None:

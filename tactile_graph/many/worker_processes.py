@@ -184,8 +184,9 @@ class _Line:
 
     def answer(self) -> bytes | BaseException:
         """Return what the call that was given came to, packed, or why there is no knowing."""
-        if self._failed is not None or self._pipe is None:
-            return self._failed or DeadWorkerError("a worker that never began")
+        if self._failed is not None:
+            return self._failed
+        assert self._pipe is not None  # of what was given
         try:
             return self._pipe.recv_bytes()
         except (OSError, EOFError) as error:
@@ -200,8 +201,9 @@ class _Line:
     def kill(self) -> None:
         """End the process at once."""
         self._killed = True
-        if self._process is not None:
-            self._process.kill()
+        process = self._process  # which another thread may let go right now
+        if process is not None:
+            process.kill()
 
     def _started(self) -> Connection:
         here, there = self._context.Pipe()

@@ -14,6 +14,7 @@ from tuned import CASES, Told, small_discs  # noqa: E402
 
 from tactile_graph import load, loads  # noqa: E402
 from tactile_graph_tune.split import Interval  # noqa: E402
+from tactile_graph_tune.table.record import Judged  # noqa: E402
 from tactile_graph_tune.tuned import Weight  # noqa: E402
 
 EVEN = Interval(0.0, -0.001, 0.001)
@@ -73,10 +74,10 @@ def test_what_is_written_has_the_shipped_name_words_and_parent():
 
 @pytest.mark.slow  # much is compiled
 def test_clean_frames_that_take_longer_speak_against_shipping():
-    clean = make_adaptive.clean_frames(8, 0)
+    clean, judged = make_adaptive.clean_frames(8, 0), Judged("circle", "centre", "cm", 2.0)
     assert len(clean) == 8
     today = load("adaptive")
     never = loads(today.text.replace("even.n_cells > 12", "even.n_cells > 300"))
-    (why,) = make_adaptive.slower(today, never, clean)
+    (why,) = make_adaptive.slower(today, never, clean, judged)
     assert why.startswith("clean frames take ")
-    assert list(make_adaptive.slower(never, today, clean)) == []
+    assert list(make_adaptive.slower(never, today, clean, judged)) == []

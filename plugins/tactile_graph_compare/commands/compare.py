@@ -231,7 +231,9 @@ class _Run:
         with held:
             if self.session.n:
                 self._finish(interrupted)
-            elif error is None and not interrupted:
+            elif interrupted is not None:
+                self.people.print(f"{words_of(interrupted)} before any frame", style="bold red")
+            elif error is None:
                 got = self.report.counts["frames"]
                 error = UsageError(f"there is nothing to compare: the source gave {got} frames")
         if error is not None:

@@ -87,16 +87,17 @@ def maximise(
                 trial[k] = p[k] + share * step[k]
             pulled_in(kind, corners, trial, prior)
             new = log_rest(problem, trial)
-            if new > -math.inf and share == first:
-                # mostly the next point: its slopes cost less now than by a second look
+            if new > -math.inf:
                 keep_current(problem, whole, trial)
-                new += information_at(problem, whole, trial, ahead)
-            elif new > -math.inf:
-                new += log_likelihood_at(problem, whole, trial)
+                if share == first:  # mostly the next point: a second look would cost more
+                    new += information_at(problem, whole, trial, ahead)
+                else:
+                    new += log_likelihood_at(problem, whole, trial)
             if new > now:
                 break
             share *= 0.4
         if not new > now:
+            keep_current(problem, whole, p)
             if damping > 50.0:
                 break
             damping = max(1.0, 10.0 * damping)
@@ -104,7 +105,6 @@ def maximise(
         gained, now = new - now, new
         p[:] = trial
         if share < first:
-            keep_current(problem, whole, p)
             information_at(problem, whole, p, ahead)
         out, ahead = ahead, out
         add_prior(problem, p, out)

@@ -74,7 +74,7 @@ def record(
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
     lost. A pad that is unplugged is waited for.
     """
-    from tactile_graph.cli.interrupt import Ended, Interrupts, code_of
+    from tactile_graph.cli.interrupt import Ended, Interrupts, code_of, words_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.commands.captured import captured
@@ -107,6 +107,7 @@ def record(
     if failure is not None:
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
+        say(words_of(ended), err=True)
         click.get_current_context().exit(code_of(ended))
 
 

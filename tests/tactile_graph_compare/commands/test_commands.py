@@ -224,6 +224,18 @@ def test_ctrl_c_shows_what_is_done_so_far(hand_made, monkeypatch):
     assert (data["complete"], data["frames"]["n"]) == (False, 12)
 
 
+def test_ctrl_c_before_any_frame_says_so(hand_made, monkeypatch):
+    from tactile_graph_compare.run.session import Session
+
+    def add(self, frame):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Session, "add", add)
+    got = call("compare", "discs", "next.yaml", "--frames", "30", "--json", "out.json")
+    assert (got.exit_code, got.output.strip()) == (130, "interrupted before any frame")
+    assert not (hand_made / "out.json").exists()
+
+
 def test_an_audit_tells_what_each_guard_is_worth(hand_made):
     got = call("audit", "next.yaml", "--frames", "10", "--with", "empty=[2, 5]", "--json", "a.json")
     assert got.exit_code == 0, got.output

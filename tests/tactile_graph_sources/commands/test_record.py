@@ -115,6 +115,18 @@ def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path, pad: FakeP
     assert "is there already" in result.output
 
 
+def test_ctrl_c_before_there_is_a_store_says_so(
+    tmp_path: Path, pad: FakePad, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def begin(self: StoreWriter, *_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(StoreWriter, "__init__", begin)
+    result = run(pad, tmp_path / "a.zarr")
+    assert (result.exit_code, result.output.strip()) == (130, "interrupted")
+    assert not (tmp_path / "a.zarr").exists()
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda s: s.name)
 def test_a_shutdown_or_closed_terminal_keeps_what_was_recorded(
     tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
@@ -133,6 +145,7 @@ def test_a_shutdown_or_closed_terminal_keeps_what_was_recorded(
     result = run(pad, tmp_path / "a.zarr")
     assert result.exit_code == 128 + number
     assert "a.zarr: 10 frames" in result.output
+    assert f"ended by {number.name}" in result.output
     assert len(list(read_store(tmp_path / "a.zarr"))) == 10
     assert signal.getsignal(number) is before
 
