@@ -1,6 +1,12 @@
 // What every part of the page uses to speak with the document. Whatever comes from a file or a
 // frame reaches it through textContent or an attribute: it stays text.
 
+/**
+ * How long what runs is left as it is written: nobody reads thirty numbers a second, and a screen
+ * reader that is told of so many leaves out what matters.
+ */
+export const WORDS_MS = 250;
+
 export const byId = (id) => document.getElementById(id);
 
 /** Return what a message has under a name; a name like `constructor` finds nothing inherited. */

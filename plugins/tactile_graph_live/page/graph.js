@@ -1,6 +1,6 @@
 // The graph as the page's table of contents: a row for each node, its wires as rails beside it.
 
-import { byId, make, mark, own, show, write } from "./dom.js";
+import { WORDS_MS, byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { drawPicture } from "./paint.js";
@@ -10,7 +10,6 @@ import { ordered, rails } from "./rails.js";
 const SVG = "http://www.w3.org/2000/svg";
 const ROW = 62;
 const LANE = 13;
-const WORDS_MS = 250;
 const TIMES = 31;
 
 export class NodeList {

@@ -1,7 +1,7 @@
 // A running pad in the browser: messages come in, the newest frame is drawn when the screen is ready.
 
 import { Connection } from "./connection.js";
-import { byId, mark, own, show, write } from "./dom.js";
+import { WORDS_MS, byId, mark, own, show, write } from "./dom.js";
 import { NodeList, changeInWords } from "./graph.js";
 import { startKeys } from "./keys.js";
 import { NodeCard } from "./node.js";
@@ -41,6 +41,7 @@ let asked = "";
 let pictures = 0;
 let drawn = [];
 let settling;
+let whenAt = 0;
 
 function open(name) {
   if (!graph) return;
@@ -121,7 +122,7 @@ function paint() {
   card.paint(frame);
   results.paint(frame);
   transport.paint(frame);
-  write(byId("when"), whenOf(frame));
+  tellWhen(frame, begun);
   drawn.push(performance.now() - begun);
   mark(document.documentElement, "data-drawn", frame.version);
   clearTimeout(settling);
@@ -134,6 +135,13 @@ function settle() {
   nodes.paint(shown);
   card.paint(shown);
   results.paint(shown);
+  tellWhen(shown, performance.now());
+}
+
+function tellWhen(frame, now) {
+  if (now - whenAt < WORDS_MS) return;
+  whenAt = now;
+  write(byId("when"), whenOf(frame));
 }
 
 function whenOf(frame) {

@@ -1,12 +1,11 @@
 // One node, large: its picture, how it fared and why, what it may be set to.
 
-import { byId, make, mark, own, show, write } from "./dom.js";
+import { WORDS_MS, byId, make, mark, own, show, write } from "./dom.js";
 import { duration } from "./numbers.js";
 import { badge, fateOf, setBadge } from "./outcomes.js";
 import { faresInWords, withinOf } from "./processes.js";
 import { drawPicture, extentOf } from "./paint.js";
 
-const WORDS_MS = 250;
 
 export class NodeCard {
   /** `settings` makes the controls of a node; `closed` is called when it is shut. */

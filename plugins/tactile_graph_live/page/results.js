@@ -2,12 +2,11 @@
 // over the last seconds; a line for each thing of an output that gives several.
 
 import { History, sparkline } from "./charts.js";
-import { byId, make, mark, show, write } from "./dom.js";
+import { WORDS_MS, byId, make, mark, show, write } from "./dom.js";
 import { named, told } from "./numbers.js";
 
 const LEAD = new Set(["output", "item", "outcome", "type"]);
 const KEPT_S = 10;
-const WORDS_MS = 125;
 const MOST_THINGS = 50;
 
 export class Results {

@@ -26,6 +26,9 @@ ROLES = {
     "combobox": "combo box", "link": "link", "region": "region", "DisclosureTriangle": "button",
 }  # fmt: skip
 """What it calls the roles; of those not here, the name must do."""
+LOADING = re.compile(r"Loading\.|Finished loading")
+LOADS = 4
+"""How often the page is opened at most."""
 
 
 @pytest.fixture(scope="module")
@@ -70,21 +73,32 @@ class Running:
 
 
 @contextmanager
-def opened(orca: Reader, double: Double) -> Iterator[tuple[Reader, Running]]:
-    """Open the page and have it read to its end, while frames come."""
-    orca.page.goto("about:blank")
-    time.sleep(1)
-    orca.said()
-    orca.page.goto(double.address)
-    with Running(double) as running:
-        orca.page.wait_for_selector("#result-rows tr")
-        orca.hears(lambda text: "Rate | heading" in text, "the page to its end", 60)
-        yield orca, running
+def opened(orca: Reader, double: Double) -> Iterator[tuple[Reader, Running, str]]:
+    """Open the page and have it read to its end, while frames come; with what was said.
+
+    On a busy machine Orca may take the event that loading has ended before the one that it began;
+    from then on it takes the page for one that loads, and tells of no dialog. Such a one is opened
+    again.
+    """
+    for _ in range(LOADS):
+        orca.page.goto("about:blank")
+        time.sleep(1)
+        orca.said()
+        orca.page.goto(double.address)
+        with Running(double) as running:
+            orca.page.wait_for_selector("#result-rows tr")
+            said = orca.hears(
+                lambda text: "Rate | heading" in text, "the page to its end", 60, quiet_s=0.5
+            )
+            if [one for one in said if LOADING.match(one)][-1].startswith("Finished"):
+                yield orca, running, " | ".join(said)
+                return
+    raise AssertionError(f"taken for one that loads, {LOADS} times: {said}")
 
 
 @pytest.fixture
 def reader(orca: Reader, double: Double) -> Iterator[Reader]:
-    with opened(orca, double) as (reader, _):
+    with opened(orca, double) as (reader, *_):
         yield reader
 
 
@@ -110,13 +124,7 @@ def focus(reader: Reader, selector: str, words: str) -> None:
 
 
 def test_all_of_it_is_read_and_headings_lead_through_it(orca: Reader, double: Double) -> None:
-    orca.page.goto("about:blank")
-    time.sleep(1)
-    orca.said()
-    orca.page.goto(double.address)
-    with Running(double):
-        said = orca.hears(lambda text: "Rate | heading" in text, "the page to its end", 60)
-        text = " | ".join(said)
+    with opened(orca, double) as (_, _, text):
         assert re.search("Page has .* 8 headings", text)
         for words in ("800 µs", "Tare | toggle button | not pressed",
                       "Time | horizontal slider", "footprint: {level_v: 0.02}",
@@ -152,7 +160,7 @@ def test_nodes_of_the_graph_are_told_with_what_became_of_them(orca: Reader, doub
     fates = {"footprint": ("ran", ""), "boundary": ("skipped", "touched is false"),
              "circle": ("failed", "fewer than 3 points")}  # fmt: skip
     nodes = {n: {"outcome": o, "reason": r, "us": 12.0} for n, (o, r) in fates.items()}
-    with opened(orca, double) as (reader, running):
+    with opened(orca, double) as (reader, running, _):
         running.more = {"nodes": nodes}
         focus(reader, "#nodes [data-name=frame]", "frame what the source gives")
         reader.press_and_hear("Down", "footprint footprint_step ran 12 µs")
@@ -189,7 +197,7 @@ def test_results_are_told_every_two_seconds_at_most_and_can_be_hushed(reader: Re
 
 
 def test_taring_and_holding_still_are_told_once_done(orca: Reader, double: Double) -> None:
-    with opened(orca, double) as (reader, running):
+    with opened(orca, double) as (reader, running, _):
         focus(reader, "#tare", "Tare toggle button not pressed")
         reader.press("space")
         double.heard("tare")
@@ -226,7 +234,7 @@ def test_a_wrong_file_and_its_mending_are_told(reader: Reader, double: Double) -
 
 
 def test_a_lost_connection_is_told_once(orca: Reader) -> None:
-    with served(Double()) as double, opened(orca, double) as (reader, _):
+    with served(Double()) as double, opened(orca, double) as (reader, *_):
         pass
     said = reader.hears(lambda text: "Connection lost" in text, "that it is lost", 30, quiet_s=6)
     assert sum("Connection lost" in one for one in said) == 1
