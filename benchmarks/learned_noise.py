@@ -69,7 +69,7 @@ def _averaged(model: Model, images: list[Image]) -> Noise:
             continue
         if found.equal_points < POOR * model.precision**-2:
             continue
-        guess = noise.guess(float(image.pitch_cm[0]))
+        guess = noise.as_taken(float(image.pitch_cm[0])).guess
         own = 1.0 / np.diag(found.covariance)[first:] - guess[:, 1] ** -2
         own = np.maximum(own, 1e-3 * guess[:, 1] ** -2)
         middle = (found.mean[first:] - guess[:, 0]) * (1.0 + guess[:, 1] ** -2 / own) + guess[:, 0]

@@ -34,8 +34,9 @@ def problem_and_point(shape, load_g, rng, noise=NOISE):
     point = np.append(p, np.log(load_g))
     size, prior = readings.size_cm, np.zeros(9)
     prior[:6] = *readings.grid[:2], *size, 0.5, 20.0
-    problem = problem_of(kind, corners, *readings[:3], noise.vector(1.3), prior)
-    return problem._replace(estimated=noise.places, guess=noise.guess(1.3)), point
+    vector, places, guess = noise.as_taken(1.3)
+    problem = problem_of(kind, corners, *readings[:3], vector, prior)
+    return problem._replace(estimated=places, guess=guess), point
 
 
 def made(step, **settings):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tactile_graph_likelihood.any_pad.shown import GAPS, SPACED
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.readings import Readings
@@ -21,10 +22,6 @@ probable as the told one."""
 
 SURE = 0.02
 """Probability below which one of the two is none."""
-
-SPACED, GAPS = 4, 2.0
-"""Least readings whose mean spacing is taken, and how many spacings a turn-on lies below them at
-most."""
 
 LEAST_STD = 0.1
 """Of ln load: no turn-on is known better."""

@@ -9,19 +9,20 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SIGMA, SPAN, STRAYS, VOIDS
+from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SPAN
 
 LOWEST, HIGHEST, STEP = -8.0, 16.0, 1.0 / 32.0
 """Of the table, in standard deviations; beyond, the rate is as at its ends."""
 
 
-def hazards(noise: Values) -> Values:
+@lru_cache(maxsize=32)
+def hazards(strays: float, voids: float, sigma: float) -> Values:
     """Return the rate at each place of the table, per standard deviation of ln load.
 
     Parameters
     ----------
-    noise : ndarray, shape (9,)
-        As in `element_terms`.
+    strays, voids, sigma : float
+        As in a noise vector, see `element_terms`.
 
     Notes
     -----
@@ -29,11 +30,6 @@ def hazards(noise: Values) -> Values:
     normal but for the chance of a stray, whose load may be any. Without strays one element that
     reads nonsense would rule an outline out.
     """
-    return _hazards(float(noise[STRAYS]), float(noise[VOIDS]), float(noise[SIGMA]))
-
-
-@lru_cache(maxsize=32)
-def _hazards(strays: float, voids: float, sigma: float) -> Values:
     from scipy.special import ndtr
 
     x = LOWEST + STEP * np.arange(round((HIGHEST - LOWEST) / STEP) + 2)

@@ -17,6 +17,7 @@ from tactile_graph_likelihood.by_order.likelihood import (
 )
 from tactile_graph_likelihood.geometry.outline_prior import TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes, unknowns
+from tactile_graph_likelihood.single.element_terms import SIGMA, STRAYS, VOIDS
 from tactile_graph_likelihood.single.importance import weigh, weighted_moments
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -69,7 +70,7 @@ def order_posterior(
         prior[TURN] = start.mean[2 + sizes.call(model.kind)]
     problem = OrderProblem(
         model.kind, model.corners, readings.grid, readings.states, noise, prior,
-        *order_of(readings.logs, readings.states), hazards(noise),
+        *order_of(readings.logs, readings.states), hazards(*noise[[STRAYS, VOIDS, SIGMA]].tolist()),
     )  # fmt: skip
 
     enough = model.precision**-2 if worth is None else worth

@@ -72,9 +72,7 @@ def covered(kind: int, corners: int, p: Values, grid: Values, box: Box) -> Value
     shares = covered_by(kind, corners, p, grid, grid[3], box)
     if grid[4] > 0.0:
         wide = covered_by(kind, corners, p, grid, grid[3] + 2.0 * grid[5], box)
-        for i in range(box[2]):
-            for j in range(box[3]):
-                shares[i, j] = (1.0 - grid[4]) * shares[i, j] + grid[4] * wide[i, j]
+        shares = (1.0 - grid[4]) * shares + grid[4] * wide
     return shares
 
 

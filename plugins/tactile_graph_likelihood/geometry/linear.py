@@ -46,6 +46,21 @@ def solved(lower: Values, right: Values, out: Values) -> None:
 
 
 @compiled_as_is
+def inverse_root(lower: Values) -> Values:
+    """Return the inverse of ``L``, lower triangular too."""
+    n = lower.shape[0]
+    out = np.zeros((n, n))
+    for j in range(n):
+        out[j, j] = 1.0 / lower[j, j]
+        for i in range(j + 1, n):
+            total = 0.0
+            for k in range(j, i):
+                total -= lower[i, k] * out[k, j]
+            out[i, j] = total / lower[i, i]
+    return out
+
+
+@compiled_as_is
 def inverted(lower: Values) -> Values:
     """Return the inverse of ``L L^T``."""
     n = lower.shape[0]

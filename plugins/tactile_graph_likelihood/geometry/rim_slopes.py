@@ -42,9 +42,7 @@ def covered_with_slopes(kind: int, p: Values, grid: Values, box: Box, slopes: Va
         element = grid[3] + 2.0 * grid[5]
         wide = covered_by(kind, 0, p, grid, element, box)
         _add_slopes(kind, p, grid, element, box, wide, soft, slopes)
-        for i in range(box[2]):
-            for j in range(box[3]):
-                share[i, j] = (1.0 - soft) * share[i, j] + soft * wide[i, j]
+        share = (1.0 - soft) * share + soft * wide
     return share
 
 

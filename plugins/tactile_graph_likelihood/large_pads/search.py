@@ -8,6 +8,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import window
+from tactile_graph_likelihood.geometry.linear import inverse_root
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
@@ -17,17 +18,12 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
-from tactile_graph_likelihood.single.evaluate import log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at, log_posterior_at
+from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem, turned_as
-from tactile_graph_likelihood.single.search import (
-    NO_FIT,
-    TRIES,
-    likeliest_start,
-    outline_of_moments,
-)
+from tactile_graph_likelihood.single.search import TRIES, likeliest_start, outline_of_moments
 
 STRIDE = 1.5  # pitches that an edge moves a round: rows it never felt lie beyond
 SETTLED = 0.005  # gain in log posterior still promised, at which a top is taken for the mean
@@ -184,21 +180,10 @@ def settled(problem: Problem, p: Values, root: Values) -> float:
     if whole.runs.shape[0] == 0:
         return -math.inf
     height = maximise(problem, whole, p, root, SETTLED, math.inf)
-    near, axes, trial = turned_as(problem, p), np.zeros((n, n)), np.empty(n)
-    for k in range(n):  # the columns of the inverse of the root's transpose
-        axes[k, k] = 1.0 / root[k, k]
-        for i in range(k - 1, -1, -1):
-            total = 0.0
-            for m in range(i + 1, k + 1):
-                total += root[m, i] * axes[m, k]
-            axes[i, k] = -total / root[i, i]
+    near, axes = turned_as(problem, p), inverse_root(root)
     for place in range(2 * n):
         way = 1.0 if place % 2 == 0 else -1.0
-        for m in range(n):
-            trial[m] = p[m] + way * axes[m, place // 2]
-        here = log_rest(near, trial)
-        if here > -math.inf:
-            here += log_likelihood_at(near, whole, trial)
+        here = log_posterior_at(near, whole, p + way * axes[place // 2])
         if not LEAST_DROP < height - here < MOST_DROP:
             return -math.inf
     return height

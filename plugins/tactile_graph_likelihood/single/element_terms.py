@@ -122,18 +122,3 @@ def terms(
             total += math.log(product)
             product = 1.0
     return total + math.log(product)
-
-
-@compiled_as_is
-def bare(states: States, noise: Values) -> float:
-    """Return the log likelihood of a whole image's readings where nothing lies on the pad."""
-    stray = math.log(noise[STRAYS] / SPAN)
-    none = math.log(1.0 - noise[STRAYS])
-    total = 0.0
-    for i in range(states.shape[0]):
-        for j in range(states.shape[1]):
-            if states[i, j] == ON:
-                total += stray
-            elif states[i, j] != UNKNOWN:
-                total += none
-    return total

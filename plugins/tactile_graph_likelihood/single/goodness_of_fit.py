@@ -57,6 +57,9 @@ class GoodnessOfFit(NamedTuple):
     fall: float
 
 
+NO_FIT = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
+
+
 @compiled_as_is
 def standardised(u: float, z: float, tail: float, density: float) -> float:
     """Return a residual of mean 0 and variance 1, given that it shows, which it does above -z.
@@ -199,11 +202,8 @@ def dome_over(problem: Problem, p: Values, noise: Values, box: Box, share: Value
     """
     if problem.kind != RECTANGLE:
         return dome(share)
-    ball, out = noise.copy(), np.zeros(share.shape)
+    ball, out = noise.copy(), np.where(share > 0.0, 1.0, 0.0)
     ball[FALL] = BALL
-    for i in range(share.shape[0]):
-        for j in range(share.shape[1]):
-            out[i, j] = 1.0 if share[i, j] > 0.0 else 0.0
     press(problem.kind, problem.corners, p, problem.grid, ball, box, out)
     for i in range(share.shape[0]):
         for j in range(share.shape[1]):

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.geometry.linear import inverse_root
 from tactile_graph_likelihood.geometry.outlines import Values
 
 FREEDOM = 8.0  # of Student's t
@@ -160,14 +161,7 @@ def normal_points(p: Values, root: Values, steps: Values) -> tuple[Values, Value
     covariance : ndarray, shape (n, n)
     """
     n, scale = steps.shape[1], math.sqrt(1.0 - 2.0 / FREEDOM)
-    spread, covariance = np.zeros((n, n)), np.zeros((n, n))
-    for j in range(n):
-        spread[j, j] = 1.0 / root[j, j]
-        for i in range(j + 1, n):
-            total = 0.0
-            for k in range(j, i):
-                total -= root[i, k] * spread[k, j]
-            spread[i, j] = total / root[i, i]
+    spread, covariance = inverse_root(root[:n, :n]), np.zeros((n, n))
     for i in range(n):
         for j in range(i + 1):
             for k in range(i, n):

@@ -209,7 +209,8 @@ def _rises(
             _press_with_slopes(problem, p, noise, box, share, rise)
         if noise[FOAM] > 0.0:
             share = blurred(share, noise[FOAM], box, rows, columns)
-            _blur(rise, first, noise[FOAM], box, rows, columns)
+            for k in range(first):
+                rise[k] = passed_on(rise[k], noise[FOAM], box, rows, columns)
     else:
         bare = covered(kind, corners, p, grid, box)
         share = weighed(kind, corners, p, grid, noise, box, rows, columns, bare.copy())
@@ -218,7 +219,7 @@ def _rises(
             at[k] += steps[k]
             moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
             at[k] = p[k]
-            _difference(share, moved, steps[k], rise, k)
+            rise[k] = (moved - share) / steps[k]
     for k in range(estimated.shape[0]):
         place = estimated[k]
         if place < FOAM or place == CONTRAST:
@@ -226,7 +227,7 @@ def _rises(
         other, step = noise.copy(), FOAM_STEP if place == FOAM else PRESSURE_STEP
         other[place] = noise[FOAM] * math.exp(step) if place == FOAM else noise[place] + step
         moved = weighed(kind, corners, p, grid, other, box, rows, columns, bare.copy())
-        _difference(share, moved, step, rise, first + 1 + k)
+        rise[first + 1 + k] = (moved - share) / step
     return share, rise
 
 
@@ -236,49 +237,16 @@ def _press_with_slopes(
 ) -> None:
     """Weigh coverage and its slopes, in place, by the pressure, whose own slope is differenced."""
     kind, corners, grid, at = problem.kind, problem.corners, problem.grid, p.copy()
-    steps, pressure = steps_of(kind, corners, p, grid), np.zeros(share.shape)
-    for turn in range(unknowns(kind, corners) + 1):
-        k = turn - 1
-        if k >= 0:
-            at[k] += steps[k]
-        moved = np.zeros(share.shape)
-        for i in range(share.shape[0]):
-            for j in range(share.shape[1]):
-                moved[i, j] = 1.0 if share[i, j] > 0.0 else 0.0
+    steps, touched = steps_of(kind, corners, p, grid), np.where(share > 0.0, 1.0, 0.0)
+    pressure = touched.copy()
+    press(kind, corners, p, grid, noise, box, pressure)
+    for k in range(unknowns(kind, corners)):
+        at[k] += steps[k]
+        moved = touched.copy()
         press(kind, corners, at, grid, noise, box, moved)
-        if k < 0:
-            pressure = moved
-            continue
         at[k] = p[k]
-        for i in range(share.shape[0]):
-            for j in range(share.shape[1]):
-                more = (moved[i, j] - pressure[i, j]) / steps[k]
-                rise[k, i, j] = rise[k, i, j] * pressure[i, j] + share[i, j] * more
-    for i in range(share.shape[0]):
-        for j in range(share.shape[1]):
-            share[i, j] *= pressure[i, j]
-
-
-@compiled_as_is
-def _blur(rise: Values, first: int, width: float, box: Box, rows: int, columns: int) -> None:
-    """Blur the slopes along an outline's numbers, in place, as foam does."""
-    plane = np.empty((box[2], box[3]))
-    for k in range(first):
-        for i in range(box[2]):
-            for j in range(box[3]):
-                plane[i, j] = rise[k, i, j]
-        spread = passed_on(plane, width, box, rows, columns)
-        for i in range(box[2]):
-            for j in range(box[3]):
-                rise[k, i, j] = spread[i, j]
-
-
-@compiled_as_is
-def _difference(share: Values, moved: Values, step: float, rise: Values, k: int) -> None:
-    """Write how much shares rise over a step."""
-    for i in range(share.shape[0]):
-        for j in range(share.shape[1]):
-            rise[k, i, j] = (moved[i, j] - share[i, j]) / step
+        rise[k] = rise[k] * pressure + share * ((moved - pressure) / steps[k])
+    share *= pressure
 
 
 @compiled_as_is
@@ -305,14 +273,11 @@ def information(problem: Problem, p: Values, out: Information) -> float:
     slope, that of others is differenced over 0.02 of a pitch, as is the pressure.
     """
     kind, grid, states, logs = problem.kind, problem.grid, problem.states, problem.logs
-    first, n = unknowns(kind, problem.corners), p.shape[0]
-    noise = noise_at(problem, p)
+    first, noise = unknowns(kind, problem.corners), noise_at(problem, p)
     margin = foam_margin(grid, noise) + grid[2] * STEP
     box = window(kind, problem.corners, p, grid, states.shape[0], states.shape[1], margin)
-    for k in range(n):
-        out.slope[k] = 0.0
-        for m in range(n):
-            out.matrix[k, m] = 0.0
+    out.slope[:] = 0.0
+    out.matrix[:] = 0.0
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
     row, column, load, own = box[0], box[1], p[first], noise[LEAST]

@@ -26,19 +26,18 @@ from tactile_graph_likelihood.large_pads.search import attempted_on_large_pad, s
 from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
 from tactile_graph_likelihood.single.element_terms import LEAST, States
 from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import LARGE_PAD, Places, Problem
+from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
 from tactile_graph_likelihood.single.readings import Readings, readings_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
 from tactile_graph_likelihood.single.search import (
     ATTEMPTS,
     NEAR,
-    NO_FIT,
     POOR,
     SAME,
     UNLIKELY,
@@ -310,8 +309,7 @@ class Model:
             top, mean, covariance = _as_ellipses(top, sample.points, sample.weights)
         return Posterior(
             self.kind, self.corners, mean, covariance, sample.points, sample.weights, top,
-            sample.log_evidence, sample.equal_points, sample.fit.surprise, sample.fit.neighbours,
-            sample.fit.lean, sample.fit.fall,
+            sample.log_evidence, sample.equal_points, *sample.fit,
         )  # fmt: skip
 
     def range_cm(self, readings: Readings) -> tuple[float, float]:
@@ -328,14 +326,14 @@ class Model:
         smallest, largest = self.range_cm(readings)
         return np.array([left, top, width, height, smallest, largest, self.whole, math.nan, 0.0])
 
-    def _noise_at(self, pitch_cm: float) -> tuple[Values, Places, Values]:
+    def _noise_at(self, pitch_cm: float) -> NoiseTaken:
         kept = self._kept.get(pitch_cm)
         if kept is None:
             kept = self._kept[pitch_cm] = self.noise.as_taken(pitch_cm)
         return kept
 
     @cached_property
-    def _kept(self) -> dict[float, tuple[Values, Places, Values]]:
+    def _kept(self) -> dict[float, NoiseTaken]:
         return {}
 
     def _table(self, problem: Problem) -> Values:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,6 +46,17 @@ GUESSED_FOAM = 0.5
 """Pitches; the middle of the guess where foam is estimated and none is given."""
 
 
+class NoiseTaken(NamedTuple):
+    """A noise vector, shape (9,), which of its places are estimated, (M,), and the guess of those.
+
+    The guess has the mean and standard deviation of each, shape (M, 2), in the numbers of a point.
+    """
+
+    vector: Values
+    places: Places
+    guess: Values
+
+
 @dataclass(frozen=True)
 class Noise:
     """What the model takes for granted of a pad's unevenness.
@@ -78,14 +90,15 @@ class Noise:
     contrast: float = 1.0
 
     def vector(self, pitch_cm: float) -> Values:
-        """Return the numbers as the kernels take them."""
-        return np.array(self._numbers(pitch_cm))
+        """Return the numbers as the kernels take them, shape (9,)."""
+        return self.as_taken(pitch_cm).vector
 
-    def _numbers(self, pitch_cm: float) -> list[float]:
+    def as_taken(self, pitch_cm: float) -> NoiseTaken:
+        """Return the numbers as the kernels take them, and which of them are estimated."""
         foam = self.foam_cm / pitch_cm
         if "foam" in self.estimated and foam <= 0.0:
             foam = GUESSED_FOAM
-        return [
+        numbers = [
             max(self.sigma, LEAST_SIGMA),
             min(max(self.voids, LEAST_VOIDS), MOST_VOIDS),
             self.strays,
@@ -96,30 +109,14 @@ class Noise:
             0.0,
             self.contrast,
         ]
-
-    @property
-    def places(self) -> Places:
-        """Which places of the vector are estimated."""
-        return np.array(self._estimated, dtype=np.int64)
-
-    @property
-    def _estimated(self) -> list[int]:
-        return [place for name in self.estimated for place in ESTIMATED[name]]
-
-    def guess(self, pitch_cm: float) -> Values:
-        """Return mean and standard deviation of each estimated coordinate, shape (M, 2)."""
-        return self.as_taken(pitch_cm)[2]
-
-    def as_taken(self, pitch_cm: float) -> tuple[Values, Places, Values]:
-        """Return `vector`, `places` and `guess` at once."""
-        numbers, places = self._numbers(pitch_cm), self._estimated
+        places = [place for name in self.estimated for place in ESTIMATED[name]]
         guess: list[float] = []
         for place in places:
             middle = numbers[place]
             if place < FALL:
                 middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
             guess += [middle, SPREADS[place]]
-        return (
+        return NoiseTaken(
             np.array(numbers),
             np.array(places, dtype=np.int64),
             np.array(guess, dtype=np.float64).reshape(len(places), 2),

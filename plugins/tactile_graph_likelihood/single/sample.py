@@ -25,8 +25,8 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI
-from tactile_graph_likelihood.single.evaluate import log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.evaluate import log_posterior_at
+from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import (
     FEWEST,
     KEPT,
@@ -37,7 +37,7 @@ from tactile_graph_likelihood.single.importance import (
     weigh,
     weighted_moments,
 )
-from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
 from tactile_graph_likelihood.single.problem import Problem, over_the_edge, turned_as
 
@@ -244,10 +244,7 @@ def _with_side_moved(
         to_oval(trial)
     for k in range(5):
         move[k] = trial[k] - p[k]
-    here = log_rest(problem, trial)
-    if here > -math.inf:
-        here += log_likelihood_at(problem, whole, trial)
-    return here
+    return log_posterior_at(problem, whole, trial)
 
 
 @compiled_as_is
@@ -336,14 +333,10 @@ def log_evidence_of(proposals: Proposals, mean_weight: float, n: int) -> float:
 @compiled_as_is
 def next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> Values:
     """Return the covariance of the next proposal, and write its centre."""
-    n = centre.shape[0]
-    tempered, found = np.empty(count), np.empty((n, n))
-    temper(draws.weights, count, FEWEST * n, tempered)
+    tempered, found = np.empty(count), np.empty(first.shape)
+    temper(draws.weights, count, FEWEST * centre.shape[0], tempered)
     weighted_moments(draws.points, tempered, count, centre, found)
-    for k in range(n):
-        for m in range(n):
-            found[k, m] = WIDER * found[k, m] + KEPT * first[k, m]
-    return found
+    return WIDER * found + KEPT * first
 
 
 @compiled_as_is
@@ -383,10 +376,8 @@ def importance_sample(
         before = count
         if made == 0 or (count >= 2 * renewed and made < PROPOSALS):
             if made == 1 and far:
-                for k in range(n):
-                    centre[k] = beyond.point[k]
-                    for m in range(n):
-                        wanted[k, m] += beyond.wider[k, m]
+                centre[:] = beyond.point
+                wanted += beyond.wider
             elif made > 0:
                 wanted = next_covariance(draws, count, covariance, centre)
             if not propose(proposals, made, centre, wanted):
@@ -395,12 +386,9 @@ def importance_sample(
             made += 1
         for i in range(count, count + block):
             draw(proposals, made - 1, plan.table[i], draws.points[i])
-            here = log_rest(problem, draws.points[i])
-            if here > -math.inf:
-                here += log_likelihood_at(problem, whole, draws.points[i])
-                if kind == OVAL:
-                    here += log_stretch(draws.points[i])
-            draws.logs_p[i] = here
+            draws.logs_p[i] = log_posterior_at(problem, whole, draws.points[i])
+            if kind == OVAL:
+                draws.logs_p[i] += log_stretch(draws.points[i])
         take_block(proposals, made, draws.points, before, count, block)
         count += block
         if count < least and count < 2 * renewed:
@@ -439,20 +427,18 @@ def sample_around(
     plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
     near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
-    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
+    mode = Mode(p, root, log_posterior_at(near, whole, p))
     draws = no_draws(count, n)
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):
         covariance[k, k] += loose
     beyond = widen_to_other_ends(near, whole, mode, covariance)
     used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, beyond, draws)
-    fit = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
+    fit = NO_FIT
     if equal <= 0.0:
         used = 0
     else:
-        for k in range(n):
-            for m in range(n):
-                draws.covariance[k, m] += beyond.slack[k, m]
+        draws.covariance[:, :] += beyond.slack
         fit = goodness_of_fit(problem, draws.mean)
     likeliest, top = mode.p.copy(), mode.height
     if kind == OVAL:

@@ -25,8 +25,8 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import to_oval
 from tactile_graph_likelihood.single.element_terms import ON, OVER, States
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.single.evaluate import log_posterior_at
+from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.maximise import maximise_softly_first
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
 
@@ -39,7 +39,6 @@ NEAR = -1
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR, UNLIKELY = -1.5, -3.0
 """Surprise from which on there is no further attempt, and none once two have found the same."""
-NO_FIT = GoodnessOfFit(0.0, 0.0, 0.0, 0.0)
 TRIES = 24  # outlines tried around the moments own, in attempts after the first
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
@@ -187,9 +186,7 @@ def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> N
         if t >= ways:
             _vary(problem, table[t], trial)
         pulled_in(kind, corners, trial, problem.prior)
-        here = log_rest(problem, trial)
-        if here > -math.inf:
-            here += log_likelihood(problem, trial)
+        here = log_posterior_at(problem, None, trial)
         if here > best or t == 0:
             best = here
             p[:] = trial

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("warm_kernels")
 
 SHARES = np.array([0.1, 0.4, 0.7, 1.0])
 SIGMA, T = 0.5, 2.5
-TABLE = hazards(np.array([SIGMA, 0.16, 1e-6, 0.0, 0.0, 0.0, 0.0, 0.0]))
+TABLE = hazards(1e-6, 0.16, SIGMA)
 
 
 def distinct(n):

@@ -51,7 +51,7 @@ def test_slopes_are_those_of_the_likelihood(shape, estimated):
         problem.states[untouched & (problem.states != UNKNOWN)] = UNDER
         high = (problem.states == ON) & (problem.logs > ceiling)
         problem.states[high], problem.logs[high] = OVER, ceiling
-    p = np.append(p, noise.guess(1.3)[:, 0])
+    p = np.append(p, noise.as_taken(1.3).guess[:, 0])
     n = len(p)
     slope, matrix = out = Information(np.empty(n), np.empty((n, n)))
     information.compiled(problem, p, out)
