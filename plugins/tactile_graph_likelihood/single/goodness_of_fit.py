@@ -327,7 +327,8 @@ def unexplained(
                 got += off
             mean += one
             variance += spread
-    surprise = (got - 0.5 * fitted - mean) / math.sqrt(variance)
+    # any of them may be a stray, though none is where all that is covered is sure to read nothing
+    surprise = (got - 0.5 * fitted - mean) / math.sqrt(max(variance, var_bare))
     return Unexplained(surprise, residuals, leaning)
 
 

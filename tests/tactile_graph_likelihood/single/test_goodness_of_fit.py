@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid as integral
 
-from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SPAN
+from helpers_likelihood import NOISE
+from helpers_modes import plainly
+from tactile_graph_likelihood.single.element_terms import OFF, ON, ROOT_TWO_PI, SPAN
 from tactile_graph_likelihood.single.goodness_of_fit import (
     DENSITY,
     moments_of_strays,
     moments_of_term,
+    unexplained,
 )
 
 
@@ -39,3 +42,13 @@ def test_a_bare_elements_moments_are_those_of_two_outcomes() -> None:
     mean, variance = moments_of_strays(strays)
     assert mean == pytest.approx(chances @ outcomes, rel=1e-12)
     assert variance == pytest.approx(chances @ outcomes**2 - mean**2, rel=1e-9)
+
+
+def test_readings_where_all_is_sure_to_read_nothing_are_a_surprise_and_still_a_number() -> None:
+    """As on one line of elements, whose two ends are touched, under an outline far too large."""
+    states = np.array([[ON], [OFF], [ON]], np.uint8)
+    logs = np.where(states == ON, math.log(40.0), 0.0)
+    covered, sure = np.ones((3, 1)), math.log(0.01)
+    noise = NOISE.vector(1.3)
+    found = plainly(unexplained)(covered, sure, 0, 0, logs, states, noise, 4)
+    assert -math.inf < found.surprise < -3.0
