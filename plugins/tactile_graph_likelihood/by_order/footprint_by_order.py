@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Annotated, Literal
 
@@ -19,6 +20,7 @@ from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
+from tactile_graph_likelihood.single.model import EVERY
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, readings_of
 
@@ -116,13 +118,10 @@ class FootprintByOrder:
         """Return the posterior by the touch and order of some readings."""
         touch = readings._replace(logs=np.zeros(readings.logs.shape))
         for model in self._touch:
-            try:
-                rough = model.normal_of(touch)
-            except Degenerate as why:
-                reason = why
-                continue
-            return order_posterior(self.model, readings, rough)
-        raise reason
+            top = model.likeliest(touch, attempts=EVERY)
+            if top.evidence > -math.inf:
+                return order_posterior(self.model, readings, model.normal_around(top))
+        raise self.model.impossible(readings)
 
     def _readings(self, image: Image, touched: Mask | None) -> Readings:
         found = self._touched_of(image, touched)

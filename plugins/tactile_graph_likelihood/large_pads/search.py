@@ -12,8 +12,8 @@ from tactile_graph_likelihood.geometry.linear import inverse_root
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.large_pads.coarse import Blocks, coarsened, in_one_piece
 from tactile_graph_likelihood.large_pads.covered_whole import (
+    covered_around,
     empty_for,
-    keep_current,
     nothing_covered,
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
@@ -128,16 +128,9 @@ def _start(
     at[first] = blocks.load
     moved = p.copy()
     moved[: first + 1] = at
-    if _height(problem, moved) > _height(problem, p):
+    here = log_likelihood_at(problem, covered_around(problem, p), p)
+    if log_likelihood_at(problem, covered_around(problem, moved), moved) > here:
         p[:] = moved
-
-
-@compiled_as_is
-def _height(problem: Problem, p: Values) -> float:
-    """Return the log likelihood of a wide outline."""
-    whole = empty_for(problem, p)
-    keep_current(problem, whole, p)
-    return log_likelihood_at(problem, whole, p)
 
 
 @compiled_as_is

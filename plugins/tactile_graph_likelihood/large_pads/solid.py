@@ -150,14 +150,3 @@ def _is_idle(body: States, row: int, column: int) -> bool:
             if body[i, j] == ON:
                 return False
     return True
-
-
-@compiled_as_is
-def silenced(logs: Values, states: States, least: float) -> States:
-    """Return states in which readings below a load's logarithm are nothing."""
-    out = states.copy()
-    for i in range(states.shape[0]):
-        for j in range(states.shape[1]):
-            if states[i, j] == ON and logs[i, j] < least:
-                out[i, j] = OFF
-    return out

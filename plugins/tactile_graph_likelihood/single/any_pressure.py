@@ -16,7 +16,7 @@ from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.importance import weighted_moments
-from tactile_graph_likelihood.single.model import Model, Start
+from tactile_graph_likelihood.single.model import Belief, Model, Start
 from tactile_graph_likelihood.single.noise import FALL_GUESSED, GUESSED_FOAM
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, readings_of
@@ -58,8 +58,6 @@ EVEN = "even"
 
 FIRST = {"lean": [0.0, 0.0], "fall": [FALL_GUESSED], "foam": [math.log(GUESSED_FOAM)]}
 """What a fit begins with, beside an even face's numbers."""
-
-Belief = tuple[Values, Values] | None
 
 
 @dataclass(frozen=True)

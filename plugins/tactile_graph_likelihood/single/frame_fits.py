@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values
-from tactile_graph_likelihood.geometry.oval import as_ellipse
+from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     AnyPressure,
@@ -90,7 +89,7 @@ class FrameFits:
         if key in self.found:
             return self.found[key].most_likely
         model, top = self._fits[key]
-        return as_ellipse.call(top.mode.p) if model.kind == ELLIPSE else top.mode.p
+        return model.point_of(top)
 
     def _look_around(self, before: Mapping[str, float]) -> None:
         """Find the posteriors of the likely fits, given the probabilities of pressures."""

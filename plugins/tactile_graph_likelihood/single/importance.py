@@ -67,6 +67,7 @@ def weigh(
     (float, float)
         Logarithm of the mean weight before that, and how many equal weights they are worth.
     """
+    top = -math.inf
     for i in range(count):
         if logs_p[i] == -math.inf:
             weights[i] = -math.inf
@@ -75,14 +76,6 @@ def weigh(
         for c in range(proposals):
             mixed += shares[c] * densities[c, i]
         weights[i] = logs_p[i] - math.log(mixed)
-    return normalise(weights, count)
-
-
-@compiled_as_is
-def normalise(weights: Values, count: int) -> tuple[float, float]:
-    """Turn logarithms of weights, in place, into weights that sum to 1; return as `weigh` does."""
-    top = -math.inf
-    for i in range(count):
         top = max(top, weights[i])
     if top == -math.inf:
         weights[:count] = 1.0 / count

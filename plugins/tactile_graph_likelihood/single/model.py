@@ -23,8 +23,8 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import covered_around
 from tactile_graph_likelihood.large_pads.search import attempted_on_large_pad, settled
-from tactile_graph_likelihood.large_pads.solid import least_shown, silenced
-from tactile_graph_likelihood.single.element_terms import LEAST, States
+from tactile_graph_likelihood.large_pads.solid import least_shown
+from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
@@ -54,6 +54,9 @@ WIDE_POINTS = 4 * BLOCK
 SMALLEST_PITCHES = 0.4
 
 Start = Shape | Values | None
+
+Belief = tuple[Values, Values] | None
+"""Mean and precision matrix of a normal belief about the outline's numbers."""
 
 NO_START = np.zeros(0)
 
@@ -110,12 +113,7 @@ class Model:
     most_points: int = 1024
     seed: int = 0
 
-    def posterior(
-        self,
-        image: Image,
-        start: Start = None,
-        belief: tuple[Values, Values] | None = None,
-    ) -> Posterior:
+    def posterior(self, image: Image, start: Start = None, belief: Belief = None) -> Posterior:
         """Return the posterior of the outline.
 
         Parameters
@@ -137,10 +135,7 @@ class Model:
         return self.posterior_of(readings_of(image, self.gap_cm, self.noise.least), start, belief)
 
     def posterior_of(
-        self,
-        readings: Readings,
-        start: Start = None,
-        belief: tuple[Values, Values] | None = None,
+        self, readings: Readings, start: Start = None, belief: Belief = None
     ) -> Posterior:
         """Return the same from readings.
 
@@ -154,7 +149,7 @@ class Model:
         found = self._sampled(readings, problem, top.mode)
         if found.equal_points > len(top.mode.p):
             return found
-        normal = self.normal_around(top, len(top.mode.p))
+        normal = self.normal_around(top)
         return replace(found, covariance=found.covariance + normal.covariance)
 
     def likeliest(
@@ -168,7 +163,7 @@ class Model:
 
         ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
-        problem = self._problem(readings, None)
+        problem = self._problem(readings)
         return self._find(problem, self._begin(start, problem), attempts, before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
@@ -176,22 +171,9 @@ class Model:
 
         Without a point, near what has the moments of the touched elements.
         """
-        problem = self._problem(readings, None)
+        problem = self._problem(readings)
         attempt = 0 if readings.states.size > LARGE_PAD else NEAR
         return self._find(problem, self._begin(point, problem), [attempt])
-
-    def normal_of(self, readings: Readings) -> Posterior:
-        """Return the posterior as if it were normal around its mode.
-
-        Raises
-        ------
-        Degenerate
-            If nothing is touched, or no outline of this kind is possible.
-        """
-        top = self._find(self._problem(readings, None), NO_START, EVERY)
-        if top.evidence == -math.inf:
-            raise self.impossible(readings)
-        return self.normal_around(top, len(top.mode.p))
 
     def _find(
         self,
@@ -224,12 +206,11 @@ class Model:
 
     def posterior_around(self, readings: Readings, mode: Mode, loose: float = 0.0) -> Posterior:
         """Return the posterior around a mode, with ``loose`` as in `sample_around`."""
-        problem = self._problem(readings, None)
-        return self._sampled(readings, problem, mode, loose)
+        return self._sampled(readings, self._problem(readings), mode, loose)
 
     def posterior_near(self, readings: Readings, point: Values, loose: float) -> Posterior:
         """Return the posterior around the top near a point, shape (K,)."""
-        problem = self._problem(readings, None)
+        problem = self._problem(readings)
         begin = self._begin(point, problem)
         mode = Mode(begin, np.zeros((len(begin), len(begin))), -math.inf)
         return self._sampled(readings, problem, mode, loose)
@@ -238,16 +219,16 @@ class Model:
         """Return a most likely point in the outline's own numbers, shape (K,)."""
         return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
 
-    def normal_around(self, top: Likeliest, count: int) -> Posterior:
+    def normal_around(self, top: Likeliest, count: int | None = None) -> Posterior:
         """Return the posterior of a top's first numbers as if it were normal, the others known.
 
         Parameters
         ----------
         top : Likeliest
-        count : int
-            How many: the outline's, its load, and what of the noise comes first.
+        count : int, optional
+            How many: the outline's, its load, and what of the noise comes first; all if not given.
         """
-        steps = self.table_of(count)[:BLOCK]
+        steps = self.table_of(len(top.mode.p) if count is None else count)[:BLOCK]
         points, covariance = normal_points.call(top.mode.p, top.mode.root, steps)
         weights, p = np.full(BLOCK, 1.0 / BLOCK), top.mode.p[:count]
         likeliest, mean = p, p
@@ -269,7 +250,7 @@ class Model:
                 evidence = height + _log_volume(problem.kind, top)
                 fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
-                return self.normal_around(likeliest, len(p))
+                return self.normal_around(likeliest)
             whole = covered_around.call(problem, mode.p)
             if len(whole.runs):
                 table = table[:WIDE_POINTS]
@@ -286,7 +267,7 @@ class Model:
             f"{readings.touched} touched elements: no such outline on the pad explains them"
         )
 
-    def _problem(self, readings: Readings, belief: tuple[Values, Values] | None) -> Problem:
+    def _problem(self, readings: Readings, belief: Belief = None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
         if readings.least_log is not None:
             noise = noise.copy()
@@ -375,7 +356,8 @@ def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:
         return noise, readings.states
     raised = noise.copy()
     raised[LEAST] = least
-    return raised, silenced.call(readings.logs, readings.states, least)
+    light = (readings.states == ON) & (readings.logs < least)
+    return raised, np.where(light, np.uint8(OFF), readings.states)
 
 
 def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, Values, Values]:
