@@ -20,7 +20,7 @@ from unknown_pads import BENCH_FRAMES
 from tactile_graph import Circle, Frame
 from tactile_graph.compiled import warm_up
 from tactile_graph.plugins.registry import installed
-from tactile_graph_likelihood.any_pad.locate import QUICK, LocateDisc
+from tactile_graph_likelihood.any_pad.locate import ANY_PAD, LocateDisc
 
 TOLD_G = 10.0
 TRUE_G = (2.5, 10.0, 40.0)
@@ -39,7 +39,7 @@ def errors(frames: list[Frame], told_g: float) -> tuple[float, float]:
     """Return the mean errors of centre and radius in cm, the pad being told with this turn-on."""
     pad = yaml.safe_load(installed().path("pads", "thesis").read_text("utf-8"))
     pad["law"]["turn_on_g"] = told_g
-    step = LocateDisc(replace(QUICK, pad=pad))
+    step = LocateDisc(replace(ANY_PAD, pad=pad))
     off = []
     for frame in frames:
         found, (true, *_) = step(frame.image), frame.truth or ()

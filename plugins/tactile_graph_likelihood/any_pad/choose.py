@@ -12,7 +12,7 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
-from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
+from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.any_pressure import shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
@@ -41,10 +41,7 @@ class Locate:
     ----------
     shapes : list
         The shapes to choose from, equally likely beforehand.
-    quick : bool
-        Whether the most likely outlines will do, with a normal distribution around the likeliest.
-        On pads of up to 1024 elements; see `locate_disc`.
-    settings : FootprintSettings
+    settings : LocateSettings
 
     Notes
     -----
@@ -58,13 +55,12 @@ class Locate:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
-        quick: bool = False,
-        settings: AnyPadSettings = QUICK,
+        settings: SoonSettings = ANY_PAD,
     ) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._placing = Placing(self._pad)
         self._every: dict[str, AnyPad] = {
-            name: AnyPad.of(settings, KINDS[name], quick) for name in dict.fromkeys(shapes)
+            name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)
         }
 
     def __call__(self, image: Image) -> Located:

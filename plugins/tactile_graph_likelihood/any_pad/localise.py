@@ -36,7 +36,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     unbent,
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
-from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import (
     CLEAR,
     EVEN,
@@ -135,13 +135,7 @@ class AnyPad:
     sampled_above_cm: float = math.inf
 
     @classmethod
-    def of(
-        cls,
-        settings: FootprintSettings,
-        kind: int,
-        quick: bool = False,
-        sampled_above_cm: float | None = None,
-    ) -> AnyPad:
+    def of(cls, settings: LocateSettings, kind: int) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
         sigma, voids = told.noise.sigma, told.noise.voids
@@ -151,8 +145,8 @@ class AnyPad:
             sigma = unevenness_left(settings.known_pad, sigma)
         evened = sigma < told.noise.sigma
         noise = changed(told.noise, sigma=sigma, voids=voids)
-        above_cm = math.inf if sampled_above_cm is None else sampled_above_cm
-        return cls(changed(told, noise=noise), 0.0 if evened else LAW, quick, above_cm)
+        above_cm = math.inf if settings.sampled_above_cm is None else settings.sampled_above_cm
+        return cls(changed(told, noise=noise), 0.0 if evened else LAW, settings.quick, above_cm)
 
     @cached_property
     def _thorough(self) -> AnyPad:

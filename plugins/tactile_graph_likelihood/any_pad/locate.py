@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from annotated_types import Ge
-
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
-from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.likely import (
     LikelyCircle,
     LikelyEllipse,
@@ -21,33 +19,28 @@ from tactile_graph_likelihood.single.likely import (
 )
 from tactile_graph_likelihood.single.posterior import Posterior
 
-QUICK = FootprintSettings(precision=0.3, most_points=768, on_pad="mostly")
-"""Points enough for a mean whose own error does not matter beside the posterior's deviation."""
+ANY_PAD = LocateSettings()
 
-AnyPadSettings = Annotated[
-    FootprintSettings,
-    Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision"),
-]
-"""What may be said of one outline on any pad."""
+_SAID = ("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm", "precision")
+AnyPadSettings = Annotated[LocateSettings, Spread(*_SAID)]
+SoonSettings = Annotated[LocateSettings, Spread(*_SAID, "quick")]
+"""What may be said of one outline on any pad, and how soon it is wanted."""
 
 
 class Located:
-    """What the three have in common; parameters as of `LocateDisc`."""
+    """What the three have in common.
+
+    Parameters
+    ----------
+    settings : LocateSettings
+    """
 
     stateless = True
     _kind = DISC
 
-    def __init__(
-        self,
-        settings: AnyPadSettings = QUICK,
-        *,
-        quick: bool = False,
-    ) -> None:
-        self._set(settings, AnyPad.of(settings, self._kind, quick))
-
-    def _set(self, settings: FootprintSettings, any_pad: AnyPad) -> None:
+    def __init__(self, settings: SoonSettings = ANY_PAD) -> None:
         self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
-        self._any_pad = any_pad
+        self._any_pad = AnyPad.of(settings, self._kind)
         self._placing = Placing(self._pad)
 
     def posterior(self, image: Image) -> Posterior:
@@ -64,15 +57,7 @@ class LocateDisc(Located):
 
     Parameters
     ----------
-    quick : bool
-        Whether the most likely disc will do, with a normal distribution around it: less than half
-        of the time on pads of up to 1024 elements. Pressures other than an even one are looked at
-        where its pattern is clear; a fainter one widens the distribution.
-    sampled_above_cm : float, optional
-        With ``quick``: the centre's deviation from which on points around the most likely disc are
-        weighed after all, 0 for always. Their mean errs some 5 % less and takes a quarter more
-        time.
-    settings : FootprintSettings
+    settings : LocateSettings
 
     Notes
     -----
@@ -86,12 +71,9 @@ class LocateDisc(Located):
 
     def __init__(
         self,
-        settings: AnyPadSettings = QUICK,
-        *,
-        quick: bool = False,
-        sampled_above_cm: Annotated[float, Ge(0)] | None = None,
+        settings: Annotated[LocateSettings, Spread(*_SAID, "quick", "sampled_above_cm")] = ANY_PAD,
     ) -> None:
-        self._set(settings, AnyPad.of(settings, self._kind, quick, sampled_above_cm))
+        super().__init__(settings)
 
     def __call__(self, image: Image) -> LikelyCircle:
         """Return the disc.
@@ -114,15 +96,7 @@ class LocateDisc(Located):
 
 
 class LocateRectangle(Located):
-    """Return the posterior mean of a rectangle on any pad.
-
-    Parameters
-    ----------
-    quick : bool
-        Whether the most likely rectangle will do, with a normal distribution around it; see
-        `locate_disc`.
-    settings : FootprintSettings
-    """
+    """Return the posterior mean of a rectangle on any pad; see `locate_disc`."""
 
     _kind = RECTANGLE
 
@@ -134,15 +108,7 @@ class LocateRectangle(Located):
 
 
 class LocateEllipse(Located):
-    """Return the posterior mean of an ellipse on any pad.
-
-    Parameters
-    ----------
-    quick : bool
-        Whether the most likely ellipse will do, with a normal distribution around it; see
-        `locate_disc`.
-    settings : FootprintSettings
-    """
+    """Return the posterior mean of an ellipse on any pad; see `locate_disc`."""
 
     _kind = ELLIPSE
 

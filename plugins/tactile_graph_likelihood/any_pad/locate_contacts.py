@@ -12,7 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
-from tactile_graph_likelihood.any_pad.locate import QUICK, AnyPadSettings
+from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
@@ -33,7 +33,7 @@ class LocateContacts:
     ----------
     shapes : list
         The shapes to choose from for each, equally likely beforehand.
-    settings : FootprintSettings
+    settings : LocateSettings
 
     Notes
     -----
@@ -47,7 +47,7 @@ class LocateContacts:
         self,
         *,
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
-        settings: AnyPadSettings = QUICK,
+        settings: AnyPadSettings = ANY_PAD,
     ) -> None:
         self._locate = Locate(shapes=shapes, settings=settings)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_likelihood import made
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
 from tactile_graph_likelihood.single.any_pressure import EVEN
@@ -89,7 +90,7 @@ def test_a_quick_search_ends_where_its_first_attempt_finds_no_more(monkeypatch):
     n_ended = {}
     for quick in (False, True):
         asked.clear()
-        step = Locate(quick=quick)
+        step = made(Locate, quick=quick)
         for frame in [*frames_of("gains 0.9"), *frames_of("gains 0.9", "rectangle")]:
             step(frame.image)
         anew = [attempts for attempts, is_anew, _ in asked if is_anew]

@@ -13,7 +13,7 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.learned_pad import Placing, at, taught, unevenness_left
-from tactile_graph_likelihood.any_pad.locate import QUICK, LocateDisc
+from tactile_graph_likelihood.any_pad.locate import ANY_PAD, LocateDisc
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_pads.learned import Elements, write_elements
@@ -99,7 +99,7 @@ def test_stuck_elements_are_unknown_and_show_no_touch(pad, bench):
 def test_a_learned_pad_takes_away_what_offsets_and_stuck_elements_spoil(pad, bench, step):
     frames = list(bench.frames(9))
     named = {"shapes": ["disc"]} if step is Locate else {}
-    told = step(settings=replace(QUICK, pad=pad), **named)
+    told = step(settings=replace(ANY_PAD, pad=pad), **named)
     assert centre_off(told, frames) < 0.13
     assert centre_off(told, frames) < 0.6 * centre_off(step(**named), frames)
 
@@ -120,9 +120,9 @@ def placed(folder, bench):
 @pytest.mark.usefixtures("warm_kernels")
 def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path, bench):
     placed(tmp_path, bench)
-    plain = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, reading="raw")))
+    plain = LocateDisc(settings=replace(ANY_PAD, pad=written(tmp_path, bench, reading="raw")))
     more = {"reading": "raw", "place": "place.npz"}
-    moved = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, **more)))
+    moved = LocateDisc(settings=replace(ANY_PAD, pad=written(tmp_path, bench, **more)))
     volts = next(bench.frames(1)).image
     image = Image(volts.values, volts.pitch_cm, volts.origin_cm, "raw")
     before, after = plain(image), moved(image)
@@ -137,8 +137,10 @@ def test_a_correction_of_place_moves_the_answer_and_says_how_sure_it_is(tmp_path
 @pytest.mark.usefixtures("warm_kernels")
 def test_where_readings_have_a_law_it_places_better_than_a_correction_does(tmp_path, bench):
     placed(tmp_path, bench)
-    plain = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench)))
-    corrected = LocateDisc(settings=replace(QUICK, pad=written(tmp_path, bench, place="place.npz")))
+    plain = LocateDisc(settings=replace(ANY_PAD, pad=written(tmp_path, bench)))
+    corrected = LocateDisc(
+        settings=replace(ANY_PAD, pad=written(tmp_path, bench, place="place.npz"))
+    )
     image = next(bench.frames(1)).image
     assert corrected(image).x_cm == plain(image).x_cm
 

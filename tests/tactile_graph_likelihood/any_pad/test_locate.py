@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_likelihood import made
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad.choose import Locate
@@ -16,7 +17,7 @@ from tactile_graph_likelihood.any_pad.localise import is_scattered
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC
-from tactile_graph_likelihood.settings import FootprintSettings
+from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_pads.pad import load_pad
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
@@ -96,7 +97,7 @@ def test_a_disc_is_found_on_more_pads_that_nobody_described(kind, centre_cm, rad
     ],
 )
 def test_a_quick_disc_is_as_good_and_no_surer_than_it_may_be(kind, centre_cm):
-    off, _, held, _ = looked_at(KINDS[kind], step=LocateDisc(quick=True))
+    off, _, held, _ = looked_at(KINDS[kind], step=made(LocateDisc, quick=True))
     assert off < centre_cm
     assert held >= 0.8
 
@@ -105,12 +106,12 @@ def test_a_quick_disc_is_as_good_and_no_surer_than_it_may_be(kind, centre_cm):
 @many
 def test_a_quick_disc_is_sampled_where_it_is_vaguer_than_allowed():
     frames = [*Bench(KINDS["gains 0.9"], np.random.default_rng(7)).frames(12, "disc")]
-    quick = [LocateDisc(quick=True)(f.image) for f in frames]
+    quick = [made(LocateDisc, quick=True)(f.image) for f in frames]
     stds = sorted(found.centre_std_cm for found in quick)
-    always = [LocateDisc(quick=True, sampled_above_cm=0.0)(f.image) for f in frames]
+    always = [made(LocateDisc, quick=True, sampled_above_cm=0.0)(f.image) for f in frames]
     # The distribution around the likeliest disc is narrower than what is told of any pad.
     middle_cm = 0.8 * stds[len(stds) // 2]
-    some = [LocateDisc(quick=True, sampled_above_cm=middle_cm)(f.image) for f in frames]
+    some = [made(LocateDisc, quick=True, sampled_above_cm=middle_cm)(f.image) for f in frames]
     which = [[*map(found.__eq__, pair)] for found, *pair in zip(some, quick, always, strict=True)]
     assert all(any(pair) for pair in which)
     assert [False, True] in which
@@ -125,9 +126,11 @@ def test_on_a_large_pad_a_quick_disc_is_the_disc():
     values = np.where(np.hypot(x - 20.3, y - 19.6) < 8.0, 100.0, 0.0)
     values *= np.exp(0.3 * rng.standard_normal(values.shape))
     image = Image(values, (1.3, 1.3), (-0.15, -0.15), "gram")
-    one, other = (LocateDisc(quick=quick)(image) for quick in (False, True))
+    one, other = (made(LocateDisc, quick=quick)(image) for quick in (False, True))
     assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
-    one, other = (Locate(shapes=["disc"], quick=quick)(image).shape for quick in (False, True))
+    one, other = (
+        made(Locate, shapes=["disc"], quick=quick)(image).shape for quick in (False, True)
+    )
     assert (one.x_cm, one.radius_cm, one.fits) == (other.x_cm, other.radius_cm, other.fits)
 
 
@@ -162,7 +165,7 @@ def test_a_rectangle_is_found_on_a_pad_that_nobody_described():
 @many
 @pytest.mark.slow
 def test_a_quick_rectangle_is_as_good_and_no_surer_than_it_may_be():
-    quick = LocateRectangle(quick=True)
+    quick = made(LocateRectangle, quick=True)
     for kind, centre_cm in (("noise 3 mV", 0.3), ("law 1/F", 0.3)):
         off, _, held, _ = looked_at(KINDS[kind], step=quick, shape="rectangle")
         assert off < centre_cm
@@ -173,7 +176,7 @@ def test_a_quick_rectangle_is_as_good_and_no_surer_than_it_may_be():
 @pytest.mark.slow
 def test_a_quick_rectangle_over_the_edge_says_how_little_is_known():
     _, _, held, fits = looked_at(
-        KINDS["over the edge"], step=LocateRectangle(quick=True), shape="rectangle"
+        KINDS["over the edge"], step=made(LocateRectangle, quick=True), shape="rectangle"
     )
     assert held >= 0.6
     assert fits <= 0.6
@@ -183,7 +186,7 @@ def test_a_quick_rectangle_over_the_edge_says_how_little_is_known():
 def test_a_quick_choice_has_no_sample():
     (frame,) = Bench(KINDS["noise 1 mV"], np.random.default_rng(3)).frames(1)
     (true,) = frame.truth
-    full, quick = (Locate(quick=quick)(frame.image) for quick in (False, True))
+    full, quick = (made(Locate, quick=quick)(frame.image) for quick in (False, True))
     assert quick.name == full.name == "disc"
     assert math.hypot(quick.shape.x_cm - full.shape.x_cm, quick.shape.y_cm - full.shape.y_cm) < 0.1
     assert math.hypot(quick.shape.x_cm - true.shape.x_cm, quick.shape.y_cm - true.shape.y_cm) < 0.3
@@ -206,7 +209,10 @@ def test_scattered_noise_is_not_looked_at_for_long():
 def test_a_quick_choice_names_as_many_shapes():
     right = dict.fromkeys((False, True), 0)
     for quick in right:
-        step, bench = Locate(quick=quick), Bench(KINDS["noise 3 mV"], np.random.default_rng(1))
+        step, bench = (
+            made(Locate, quick=quick),
+            Bench(KINDS["noise 3 mV"], np.random.default_rng(1)),
+        )
         for shape in ("disc", "rectangle"):
             right[quick] += sum(step(f.image).name == shape for f in bench.frames(6, shape))
     assert right[True] >= right[False] - 1
@@ -324,7 +330,7 @@ def test_an_outline_lies_on_the_pad_mostly():
     """One whose rim is as likely beyond the pad's edge as before it comes out before it."""
     frame = next(iter(Bench(BASE, np.random.default_rng(7)).frames(1)))
     logs = {
-        on_pad: LocateDisc(FootprintSettings(precision=0.3, on_pad=on_pad)).posterior(frame.image)
+        on_pad: LocateDisc(LocateSettings(on_pad=on_pad)).posterior(frame.image)
         for on_pad in ("whole", "mostly", "partly")
     }
     assert logs["mostly"].mean[:3] == pytest.approx(logs["whole"].mean[:3], abs=0.05)
