@@ -395,7 +395,7 @@ class AnyPad:
         hidden = self._reaches_beyond(readings, top)
         if self.quick and not hidden:
             normal = self._normal(part, top)
-            if not self._is_too_vague(normal):
+            if self.told.kind != DISC or normal.centre_std_cm <= self.sampled_above_cm:
                 return normal
         if part != EVEN and self.told.kind != DISC:
             return self._normal(part, top)
@@ -406,9 +406,6 @@ class AnyPad:
         if found.equal_points > self._count:
             return found
         return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
-
-    def _is_too_vague(self, normal: Posterior) -> bool:
-        return self.told.kind == DISC and normal.centre_std_cm > self.sampled_above_cm
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""

@@ -35,7 +35,6 @@ from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.noise import level_of
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.readings import readings_of
 
 HOPELESS = 20.0
 """How far, in logarithms, an object's best possible evidence may lie below the best one's."""
@@ -140,8 +139,7 @@ class IdentifyFootprint:
         Degenerate
             If nothing is touched, or nothing explains what is.
         """
-        even = self._even
-        fits = FrameFits(readings_of(image, even.gap_cm, even.noise.least), self._free)
+        fits = FrameFits(self._even.readings(image), self._free)
         before = {EVEN: 1.0}
         if not fits.found:
             raise Degenerate("no outline explains what is touched")

@@ -54,7 +54,7 @@ def touched_beside(problem: Problem, p: Values) -> bool:
 
 @compiled_as_is
 def maximise_on_large_pad(problem: Problem, stride: float, p: Values, root: Values) -> float:
-    """Maximise as `maximise_softly_first` does; ``stride`` as in `maximise`."""
+    """Maximise, with elements that feel a little beyond their edge first; as `maximise`."""
     maximise(softened(problem), nothing_covered(0), p, root, ROUGH, stride)
     return maximise(problem, empty_for(problem, p), p, root, ENOUGH, stride)
 

@@ -18,7 +18,7 @@ from tactile_graph_likelihood.single.any_pressure import AnyPressure, asked_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.readings import Readings, readings_of
+from tactile_graph_likelihood.single.readings import Readings
 
 LEAST_SCATTER = 0.02
 """Of the logarithm of a load between frames: no pad repeats better."""
@@ -122,7 +122,7 @@ class FollowFootprint:
             If nothing is touched, or no such outline explains what is; the object is then gone.
         """
         try:
-            readings = readings_of(image, self._model.gap_cm, self._model.noise.least)
+            readings = self._model.readings(image)
             if self._rests(readings, SOON_S if gap_s is None else gap_s):
                 return self._again(readings)
             return self._put_down(readings)
@@ -156,7 +156,7 @@ class FollowFootprint:
         fits = [self._fit(readings, None, 1)]
         if before is not None and self._same > 0.0:
             with contextlib.suppress(Degenerate):
-                fits.append(self._fit(readings, self._carried(before, fits[0].even), 1))
+                fits.append(self._fit(readings, self._carried(before, fits[0]), 1))
         asked = self._asked(fits)
         alone = chosen = self._completed(fits[0], asked)
         known = fits[-1].known
@@ -172,19 +172,17 @@ class FollowFootprint:
         self._resting = AtRest(readings, self._frame_sigma, self._least)
         return Followed(likely(chosen), 1, self._placements, moved=True)
 
-    def _carried(self, before: Posterior, now: Posterior) -> KnownSizes:
+    def _carried(self, before: Posterior, now: _Fit) -> KnownSizes:
         """Return what an earlier placement tells of the sizes at this one."""
         found = sizes_of(before.kind, before.mean, before.covariance)
-        pitch = self._pitch
-        off = math.hypot(before.mean[0] - now.mean[0], before.mean[1] - now.mean[1])
-        r = self._fixed * max(0.0, 1.0 - off / pitch)
+        x, y = before.mean[:2] - now.even.mean[:2]
+        r = self._fixed * max(0.0, 1.0 - math.hypot(x, y) / float(now.readings.grid[2]))
         return found._replace(covariance=found.covariance * ((1.0 + r) / (1.0 - r)))
 
     def _fit(
         self, readings: Readings, known: KnownSizes | None, frames: int, start: Any = None
     ) -> _Fit:
         """Return the posterior of an even face by a mean of frames."""
-        self._pitch = float(readings.grid[2])
         sigma = math.hypot(self._sigma, self._frame_sigma / math.sqrt(frames))
         model = replace(self._model, noise=replace(self._model.noise, sigma=sigma))
         belief = None if known is None else known.belief(model)

@@ -19,7 +19,7 @@ from tactile_graph_likelihood.single.importance import weighted_moments
 from tactile_graph_likelihood.single.model import Belief, Model, Start
 from tactile_graph_likelihood.single.noise import FALL_GUESSED, GUESSED_FOAM
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.readings import Readings, readings_of
+from tactile_graph_likelihood.single.readings import Readings
 
 LEAN, ROUND = 0.15, 0.15
 """Probability, before a frame is read, that a face leans; that its load falls to the rim, be it
@@ -84,7 +84,7 @@ class AnyPressure:
 
     def posterior(self, image: Image, start: Start = None) -> Posterior:
         """Return the posterior of the outline; parameters and errors as of `Model.posterior`."""
-        readings = readings_of(image, self.even.gap_cm, self.even.noise.least)
+        readings = self.even.readings(image)
         even = self.even.posterior_of(readings, start)
         return self.completed(readings, even, asked_by([even], self.others))
 

@@ -20,7 +20,6 @@ from tactile_graph_likelihood.single.any_pressure import (
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
-from tactile_graph_likelihood.single.readings import readings_of
 
 Name = Literal["disc", "ellipse", "rectangle", "polygon"]
 
@@ -89,8 +88,7 @@ class ChooseShape:
             If nothing is touched, or none of the shapes explains what is.
         """
         outlines = [outline for _, outline in self._outlines]
-        first = outlines[0].even
-        fits = FrameFits(readings_of(image, first.gap_cm, first.noise.least), outlines)
+        fits = FrameFits(outlines[0].even.readings(image), outlines)
         before = {EVEN: 1.0}
         if asked := asked_by(fits.found.values(), self._others):
             before = fits.look_under(asked)

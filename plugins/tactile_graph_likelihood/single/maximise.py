@@ -154,14 +154,6 @@ def _share_of_step(step: Values, widths: Values, stride: float) -> float:
 
 
 @compiled_as_is
-def maximise_softly_first(problem: Problem, p: Values, root: Values, softly: bool) -> float:
-    """Maximise, if softly with elements that feel a little beyond their edge first."""
-    if softly:
-        maximise(softened(problem), None, p, root, ROUGH, math.inf)
-    return maximise(problem, None, p, root, ENOUGH, math.inf)
-
-
-@compiled_as_is
 def softened(problem: Problem) -> Problem:
     """Return the problem with elements that feel a little beyond their edge, and no strays."""
     soft, strict = soft_and_strict(problem.grid, problem.noise)

@@ -132,7 +132,11 @@ class Model:
         Degenerate
             If nothing is touched, or no outline of this kind is possible.
         """
-        return self.posterior_of(readings_of(image, self.gap_cm, self.noise.least), start, belief)
+        return self.posterior_of(self.readings(image), start, belief)
+
+    def readings(self, image: Image) -> Readings:
+        """Return an image's readings; errors as of `readings.readings_of`."""
+        return readings_of(image, self.gap_cm, self.noise.least)
 
     def posterior_of(
         self, readings: Readings, start: Start = None, belief: Belief = None

@@ -27,7 +27,7 @@ from tactile_graph_likelihood.geometry.oval import to_oval
 from tactile_graph_likelihood.single.element_terms import ON, OVER, States
 from tactile_graph_likelihood.single.evaluate import log_posterior_at
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.maximise import maximise_softly_first
+from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
 
 STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
@@ -241,7 +241,9 @@ def attempted(
     else:
         likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
         softly = attempt > 0 or (attempt == 0 and problem.kind != DISC)
-    height = maximise_softly_first(problem, p, root, softly)
+    if softly:
+        maximise(softened(problem), None, p, root, ROUGH, math.inf)
+    height = maximise(problem, None, p, root, ENOUGH, math.inf)
     if height > least:
         return height, goodness_of_fit(problem, p)
     return height, NO_FIT
