@@ -27,7 +27,7 @@ SoonSettings = Annotated[LocateSettings, Spread(*_SAID, "quick")]
 """What may be said of one outline on any pad, and how soon it is wanted."""
 
 
-class Located:
+class LocateOne:
     """What the three have in common.
 
     Parameters
@@ -52,7 +52,7 @@ class Located:
         return self._placing(image, [found])[0]
 
 
-class LocateDisc(Located):
+class LocateDisc(LocateOne):
     """Return the posterior mean of a disc on a pad that need not be as it is told.
 
     Parameters
@@ -95,7 +95,7 @@ class LocateDisc(Located):
         return found
 
 
-class LocateRectangle(Located):
+class LocateRectangle(LocateOne):
     """Return the posterior mean of a rectangle on any pad; see `locate_disc`."""
 
     _kind = RECTANGLE
@@ -107,7 +107,7 @@ class LocateRectangle(Located):
         return found
 
 
-class LocateEllipse(Located):
+class LocateEllipse(LocateOne):
     """Return the posterior mean of an ellipse on any pad; see `locate_disc`."""
 
     _kind = ELLIPSE
