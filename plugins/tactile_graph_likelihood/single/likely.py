@@ -7,19 +7,12 @@ The shape is the posterior mean. ``fits`` says whether the frame looks like the 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
-from tactile_graph_likelihood.geometry.outlines import (
-    DISC,
-    ELLIPSE,
-    FREE,
-    RECTANGLE,
-    REGULAR,
-    corners_of,
-    ordered,
-)
+from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
+from tactile_graph_likelihood.geometry.outlines import unpacked
 from tactile_graph_likelihood.single.posterior import Posterior
 
 SHOWN = ("centre_std_cm", "log_evidence", "surprise", "fits")
@@ -128,16 +121,15 @@ class LikelyPolygon(_Likely, Polygon):
 Likely = LikelyCircle | LikelyEllipse | LikelyRectangle | LikelyPolygon
 
 
+_BY_SHAPE: dict[type[Shape], Callable[..., Likely]] = {
+    Circle: LikelyCircle,
+    Ellipse: LikelyEllipse,
+    Rectangle: LikelyRectangle,
+    Polygon: LikelyPolygon,
+}
+
+
 def likely(posterior: Posterior) -> Likely:
     """Return the shape of a posterior's mean."""
-    kind, p = posterior.kind, posterior.mean
-    if kind == DISC:
-        return LikelyCircle(float(p[0]), float(p[1]), float(p[2]), posterior)
-    if kind in (REGULAR, FREE):
-        return LikelyPolygon(corners_of.call(kind, posterior.corners, p), posterior)
-    first, second, angle = ordered(p)
-    place = float(p[0]), float(p[1])
-    if kind == RECTANGLE:
-        return LikelyRectangle(*place, 2.0 * first, 2.0 * second, angle, posterior)
-    assert kind == ELLIPSE
-    return LikelyEllipse(*place, first, second, angle, posterior)
+    shape = unpacked(posterior.kind, posterior.corners, posterior.mean)
+    return _BY_SHAPE[type(shape)](**vars(shape), posterior=posterior)
