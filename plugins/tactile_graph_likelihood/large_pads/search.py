@@ -18,9 +18,9 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
-from tactile_graph_likelihood.single.evaluate import log_likelihood_at, log_posterior_at
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.log_posterior import log_likelihood
+from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem, turned_as
 from tactile_graph_likelihood.single.search import TRIES, likeliest_start, outline_of_moments
@@ -176,7 +176,10 @@ def settled(problem: Problem, p: Values, root: Values) -> float:
     near, axes = turned_as(problem, p), inverse_root(root)
     for place in range(2 * n):
         way = 1.0 if place % 2 == 0 else -1.0
-        here = log_posterior_at(near, whole, p + way * axes[place // 2])
+        trial = p + way * axes[place // 2]
+        here = log_rest(near, trial)
+        if here > -math.inf:
+            here += log_likelihood_at(near, whole, trial)
         if not LEAST_DROP < height - here < MOST_DROP:
             return -math.inf
     return height

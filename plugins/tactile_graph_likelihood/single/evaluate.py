@@ -7,8 +7,6 @@ costs no more.
 
 from __future__ import annotations
 
-import math
-
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.by_rim import (
@@ -17,7 +15,7 @@ from tactile_graph_likelihood.large_pads.by_rim import (
 )
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.information import Information, information
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.problem import Problem
 
 
@@ -29,13 +27,6 @@ def log_likelihood_at(problem: Problem, whole: CoveredWhole | None, p: Values) -
     if whole.runs.shape[0] == 0:
         return log_likelihood(problem, p)
     return log_likelihood_by_rim(problem, whole, p)
-
-
-@compiled_as_is
-def log_posterior_at(problem: Problem, whole: CoveredWhole | None, p: Values) -> float:
-    """Return the log posterior at a point, up to a constant, -inf where no outline can be."""
-    total = log_rest(problem, p)
-    return total + log_likelihood_at(problem, whole, p) if total > -math.inf else total
 
 
 @compiled_as_is

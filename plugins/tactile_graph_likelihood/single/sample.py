@@ -25,7 +25,7 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI
-from tactile_graph_likelihood.single.evaluate import log_posterior_at
+from tactile_graph_likelihood.single.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import (
     FEWEST,
@@ -37,7 +37,7 @@ from tactile_graph_likelihood.single.importance import (
     weigh,
     weighted_moments,
 )
-from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, Mode, maximise
 from tactile_graph_likelihood.single.problem import Problem, over_the_edge, turned_as
 
@@ -244,7 +244,10 @@ def _with_side_moved(
         to_oval(trial)
     for k in range(5):
         move[k] = trial[k] - p[k]
-    return log_posterior_at(problem, whole, trial)
+    here = log_rest(problem, trial)
+    if here > -math.inf:
+        here += log_likelihood_at(problem, whole, trial)
+    return here
 
 
 @compiled_as_is
@@ -386,9 +389,12 @@ def importance_sample(
             made += 1
         for i in range(count, count + block):
             draw(proposals, made - 1, plan.table[i], draws.points[i])
-            draws.logs_p[i] = log_posterior_at(problem, whole, draws.points[i])
-            if kind == OVAL:
-                draws.logs_p[i] += log_stretch(draws.points[i])
+            here = log_rest(problem, draws.points[i])
+            if here > -math.inf:
+                here += log_likelihood_at(problem, whole, draws.points[i])
+                if kind == OVAL:
+                    here += log_stretch(draws.points[i])
+            draws.logs_p[i] = here
         take_block(proposals, made, draws.points, before, count, block)
         count += block
         if count < least and count < 2 * renewed:
@@ -427,7 +433,7 @@ def sample_around(
     plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
     near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
-    mode = Mode(p, root, log_posterior_at(near, whole, p))
+    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
     draws = no_draws(count, n)
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):

@@ -25,8 +25,8 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import to_oval
 from tactile_graph_likelihood.single.element_terms import ON, OVER, States
-from tactile_graph_likelihood.single.evaluate import log_posterior_at
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
 
@@ -186,7 +186,9 @@ def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> N
         if t >= ways:
             _vary(problem, table[t], trial)
         pulled_in(kind, corners, trial, problem.prior)
-        here = log_posterior_at(problem, None, trial)
+        here = log_rest(problem, trial)
+        if here > -math.inf:
+            here += log_likelihood(problem, trial)
         if here > best or t == 0:
             best = here
             p[:] = trial
