@@ -239,7 +239,7 @@ class Model:
         """Return a most likely point in the outline's own numbers, shape (K,)."""
         return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
 
-    def normal_around(self, top: Likeliest, count: int) -> Posterior:
+    def normal_around(self, top: Likeliest, count: int, pull: Values | None = None) -> Posterior:
         """Return the posterior of a top's first numbers as if it were normal, the others known.
 
         Parameters
@@ -247,10 +247,12 @@ class Model:
         top : Likeliest
         count : int
             How many: the outline's, its load, and what of the noise comes first.
+        pull : ndarray, shape (count,), optional
+            As in `normal_points`.
         """
-        steps = self.table_of(count)[:BLOCK]
-        points, covariance = normal_points.call(top.mode.p, top.mode.root, steps)
-        weights, p = np.full(BLOCK, 1.0 / BLOCK), top.mode.p[:count]
+        steps, pull = self.table_of(count)[:BLOCK], np.zeros(count) if pull is None else pull
+        p, points, covariance = normal_points.call(top.mode.p, top.mode.root, steps, pull)
+        weights = np.full(BLOCK, 1.0 / BLOCK)
         likeliest, mean = p, p
         if self.kind == ELLIPSE:
             likeliest, mean, covariance = _as_ellipses(p, points, weights)
