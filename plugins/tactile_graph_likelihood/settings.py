@@ -19,7 +19,7 @@ from tactile_graph_pads.pad import Pad, load_pad
 Positive = Annotated[float, Gt(0)]
 Share = Annotated[float, Gt(0), Lt(1)]
 Part = Literal["sigma", "voids", "foam", "fall", "lean"]
-ON_PAD = {"whole": 1.0, "mostly": 0.9, "partly": 0.0}
+ON_PAD = {"whole": 1.0, "mostly": 0.99, "partly": 0.0}
 """Probability, before a frame is read, that the whole outline lies on the pad."""
 Load = Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
 
@@ -51,7 +51,7 @@ class FootprintSettings:
         Whether the object may press unevenly: leaning, less towards its rim, or through foam.
         Looked at where an even face leaves that pattern over, and weighed by the evidence.
     on_pad : "whole", "mostly" or "partly"
-        Whether the whole outline lies on the pad, or its centre only; in nine of ten cases the
+        Whether the whole outline lies on the pad, or its centre only; in 99 of a hundred cases the
         whole. Free polygons are whole.
     smallest_cm, largest_cm : float, optional
         Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.

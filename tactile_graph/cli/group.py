@@ -107,6 +107,13 @@ class Group(click.Group):
 
     # -- running -----------------------------------------------------------------------------
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Take the command line apart; where it is empty the help says what there is."""
+        if not args and not ctx.resilient_parsing:
+            click.echo(ctx.get_help(), err=True)
+            ctx.exit(endings.NOT_DONE)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> None:
         """Run the command asked for; what it returns is no exit code."""
         try:

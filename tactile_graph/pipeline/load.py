@@ -81,9 +81,14 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
         raise UsageError(f"no pipeline file {text!r}{hint}")
     if not registry.has("pipelines", text):
         if _is_file(Path(text)):
-            raise UsageError(f"{text!r} is a file, but a pipeline file ends in .yaml")
+            raise UsageError(
+                f"{text!r} is a file, but a pipeline file ends in .yaml; recordings come after the"
+                " pipeline's name"
+            )
         if text and _is_folder(Path(text)):
             raise UsageError(f"{text!r} is a folder; name a file in it")
+        if Path(text).suffix and not file:
+            raise UsageError(f"no file {text!r}, and {registry.unknown('pipelines', text)}")
     return registry.path("pipelines", text, file)
 
 

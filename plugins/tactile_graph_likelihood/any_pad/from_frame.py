@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tactile_graph_likelihood.any_pad.turn_on import Edge, contrast_by
+from tactile_graph_likelihood.any_pad.turn_on import contrast_by, edge_of
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import ON, OVER
@@ -42,12 +42,7 @@ LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
 
 
 def learned(
-    told: Noise,
-    scatter: Values,
-    touched: int,
-    strays: float,
-    law: float = LAW,
-    edge: Edge | None = None,
+    told: Noise, scatter: Values, touched: int, strays: float, contrast: float = 1.0
 ) -> Noise:
     """Return the noise that a fit has found.
 
@@ -58,24 +53,41 @@ def learned(
         Ln sigma and the voids' log odds.
     touched : int
         Readings that show.
-    strays : float
+    strays, contrast : float
+    """
+    sigma = _freed(float(scatter[0]), touched)
+    voids = 1.0 / (1.0 + math.exp(-scatter[1]))
+    return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+
+
+def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = LAW) -> float:
+    """Return the law's exponent over the told one.
+
+    Parameters
+    ----------
+    told : Noise
+    log_sigma : float
+        Ln of a fit's sigma.
+    readings : Readings
     law : float
-        Of ln sigma that is not as told, the share that is the law's exponent, not the gains'.
-    edge : Edge, optional
-        Where readings begin, which tells more of that.
+        Of ln sigma that is not as told, the share that is the law's exponent, not the gains'; 0
+        where it is none.
 
     Notes
     -----
     Readings that scatter more or less than told may do so since gains do, or since the law's
-    exponent is another: that share of it is the contrast's, or what `contrast_by` finds.
+    exponent is another. Where readings begin tells which (`contrast_by`), if that is seen.
     """
-    sigma = math.exp(scatter[0]) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
-    voids = 1.0 / (1.0 + math.exp(-scatter[1]))
-    other = math.log(sigma / told.sigma)
-    contrast = 1.0 + law * other
-    if law > 0.0 and edge is not None:
-        contrast = contrast_by(other, edge, touched)
-    return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+    if law <= 0.0:
+        return 1.0
+    other = math.log(_freed(log_sigma, readings.touched) / told.sigma)
+    edge = edge_of(readings)
+    return 1.0 + law * other if edge is None else contrast_by(other, edge, readings.touched)
+
+
+def _freed(log_sigma: float, touched: int) -> float:
+    """Return sigma as if no number were fitted to its readings."""
+    return math.exp(log_sigma) * math.sqrt(1.0 + FITTED / max(touched, FEWEST))
 
 
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:

@@ -13,6 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.clump import clump_of
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
+    contrast_of,
     is_partly_hidden,
     learned,
     strays_beyond,
@@ -31,7 +32,6 @@ from tactile_graph_likelihood.any_pad.posterior import (
 from tactile_graph_likelihood.any_pad.turn_on import (
     SURE,
     chance_of_a_bend,
-    edge_of,
     straightened,
     unbent,
 )
@@ -49,9 +49,10 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.changed import changed
+from tactile_graph_likelihood.single.element_terms import CONTRAST
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
-from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, SPREADS, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
@@ -326,7 +327,7 @@ class AnyPad:
         found = {best: self._looked_at(best, readings, tops[best])}
         for part, share in shares.items():
             if part != best and share > NEGLIGIBLE:
-                found[part] = self._normal(part, tops[part])
+                found[part] = self._normal(part, readings, tops[part])
         its = found[best]
         if len(found) > 1:
             weighed = {p: changed(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
@@ -381,9 +382,18 @@ class AnyPad:
         inflation = pressed * variance_inflation(its.neighbours, readings.touched)
         return stretched(on_any_pad(its, evidence, inflation, unevenness, hidden), readings)
 
-    def _normal(self, part: str, top: Likeliest) -> Posterior:
-        own = int(self.quick) if part == EVEN else len(PRESSURES[part])
+    def _normal(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
+        if part == EVEN and self.quick:
+            return self.told.normal_around(top, self._count + 1, self._pull(readings, top))
+        own = 0 if part == EVEN else len(PRESSURES[part])
         return self.told.normal_around(top, self._count + own)
+
+    def _pull(self, readings: Readings, top: Likeliest) -> Values:
+        """Return the slope of what the fit's own scatter says of the law's exponent."""
+        pull = np.zeros(self._count + 1)
+        contrast = contrast_of(self.told.noise, float(top.mode.p[-2]), readings, self.law)
+        pull[-1] = (contrast - self.told.noise.contrast) / SPREADS[CONTRAST] ** 2
+        return pull
 
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
@@ -394,27 +404,26 @@ class AnyPad:
         """
         hidden = self._reaches_beyond(readings, top)
         if self.quick and not hidden:
-            normal = self._normal(part, top)
+            normal = self._normal(part, readings, top)
             if self.told.kind != DISC or normal.centre_std_cm <= self.sampled_above_cm:
                 return normal
         if part != EVEN and self.told.kind != DISC:
-            return self._normal(part, top)
+            return self._normal(part, readings, top)
         try:
             found = self._sampled(part, readings, top)
         except Degenerate:
-            return self._normal(part, top)
+            return self._normal(part, readings, top)
         if found.equal_points > self._count:
             return found
-        return max(found, self._normal(part, top), key=lambda its: its.centre_std_cm)
+        return max(found, self._normal(part, readings, top), key=lambda its: its.centre_std_cm)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the posterior under a pressure, with the noise that its fit has found."""
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        noise = learned(
-            self.told.noise, point[-2:], readings.touched, strays, self.law, edge_of(readings)
-        )
+        contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
+        noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast)
         loose = looseness(readings)
         if part == EVEN and self.quick and self.told.kind == DISC:
             return self._with(noise, "contrast").posterior_around(

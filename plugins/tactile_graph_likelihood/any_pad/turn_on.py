@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.shown import GAPS, SPACED
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.element_terms import ON, States
 from tactile_graph_likelihood.single.readings import Readings
 
 FEW = 2
@@ -100,20 +101,38 @@ def chance_of_a_bend(gain: float) -> float:
 def edge_of(readings: Readings) -> Edge | None:
     """Return where readings begin, None where noise or the law's own turn-on hides it."""
     turn_on = readings.turn_on
-    logs: Values = readings.logs[readings.states == ON]
-    m = min(SPACED, len(logs) - 1)
-    if turn_on is None or m < 1:
+    if turn_on is None:
         return None
-    logs.partition(m)
-    lowest = np.sort(logs[: m + 1]) - turn_on.log_load
+    least = least_of.call(readings.logs, readings.states, SPACED + 1)
+    m = len(least) - 1
+    if m < 1:
+        return None
+    lowest = [log - turn_on.log_load for log in least.tolist()]
     if turn_on.bend > 0.0 and lowest[FEW - 1] < 0.0:
         return None
-    bottom, spacing = float(lowest[0]), float(lowest[-1] - lowest[0]) / m
+    bottom, spacing = lowest[0], (lowest[-1] - lowest[0]) / m
     if bottom - max(GAPS * spacing, LEAST_STD) <= turn_on.hidden - turn_on.log_load:
         return None
     if bottom <= GAPS * spacing:
         return Edge(min(bottom, 0.0), LEAST_STD, turn_on.arm)
     return Edge(bottom - spacing, max(spacing, LEAST_STD), turn_on.arm)
+
+
+@compiled_later
+def least_of(logs: Values, states: States, most: int) -> Values:
+    """Return the least of the logarithms that show, ascending, so many at most."""
+    least, n = np.full(most, np.inf), 0
+    for i in range(logs.shape[0]):
+        for j in range(logs.shape[1]):
+            if states[i, j] != ON or logs[i, j] >= least[most - 1]:
+                continue
+            k = min(n, most - 1)
+            while k > 0 and least[k - 1] > logs[i, j]:
+                least[k] = least[k - 1]
+                k -= 1
+            least[k] = logs[i, j]
+            n = min(n + 1, most)
+    return least[:n]
 
 
 def contrast_by(scatter: float, edge: Edge, touched: int) -> float:
@@ -136,10 +155,19 @@ def contrast_by(scatter: float, edge: Edge, touched: int) -> float:
     """
     reach = max(edge.arm - edge.off, LEAST_REACH * edge.arm)
     longer, its_variance = math.log(reach / edge.arm), (edge.std / reach) ** 2
+    return math.exp(mean_over.call(WORLDS, scatter, longer, touched, its_variance, edge.arm))
+
+
+@compiled_later
+def mean_over(
+    worlds: Values, scatter: float, longer: float, touched: int, variance: float, arm: float
+) -> float:
+    """Return the mean of x over all worlds, each a row of `WORLDS`; see `contrast_by`."""
     total = mean = 0.0
-    for weight, exponent, gains, begin in WORLDS:
+    for k in range(worlds.shape[0]):
+        weight, exponent, gains, begin = worlds[k, 0], worlds[k, 1], worlds[k, 2], worlds[k, 3]
         first = exponent + gains + 0.5 / touched
-        second = exponent + begin / edge.arm**2 + its_variance
+        second = exponent + begin / (arm * arm) + variance
         determinant = first * second - exponent * exponent
         by_first = (second * scatter - exponent * longer) / determinant
         by_second = (first * longer - exponent * scatter) / determinant
@@ -147,17 +175,17 @@ def contrast_by(scatter: float, edge: Edge, touched: int) -> float:
         chance /= math.sqrt(determinant)
         total += chance
         mean += chance * exponent * (by_first + by_second)
-    return math.exp(mean / total) if total > 0.0 else 1.0
+    return mean / total if total > 0.0 else 0.0
 
 
-def _worlds() -> tuple[tuple[float, float, float, float], ...]:
-    """Return probability and variances of what is as told and what is not, in all ways."""
+def _worlds() -> Values:
+    """Return probability and variances of what is as told and what is not, in all ways, (8, 4)."""
     found = []
     for other in product((False, True), repeat=3):
         weight = math.prod(OTHER if its else 1.0 - OTHER for its in other)
         stds = [AS_ELSE[k] if its else AS_IS[k] for k, its in enumerate(other)]
         found.append((weight, stds[0] ** 2, stds[1] ** 2, stds[2] ** 2))
-    return tuple(found)
+    return np.array(found)
 
 
 WORLDS = _worlds()

@@ -152,7 +152,7 @@ def said_by(problem: JointProblem, found: OnPad, told: Noise) -> tuple[Noise, fl
     count = np.count_nonzero(bare & on) + TOLD_STRAYS * told.strays
     strays = min(float(count / (np.count_nonzero(bare) + TOLD_STRAYS)), MOST_STRAYS)
     # A law's power would bend the loads of whole outlines, too, which are what parts them.
-    noise = learned(told, scatter_of(its, told), MANY, strays, law=0.0)
+    noise = learned(told, scatter_of(its, told), MANY, strays)
     vector, n = noise.vector(float(problem.grid[2])), found.outlines.count
     _, alike = goodness_of_load.call(its._replace(noise=vector), NUMBERS * n)
     touched = int(np.count_nonzero(on))

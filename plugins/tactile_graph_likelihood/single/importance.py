@@ -136,7 +136,9 @@ def weighted_moments(
 
 
 @compiled_as_is
-def normal_points(p: Values, root: Values, steps: Values) -> tuple[Values, Values]:
+def normal_points(
+    p: Values, root: Values, steps: Values, pull: Values
+) -> tuple[Values, Values, Values]:
     """Return points of a normal distribution of a mode's first numbers, the others known.
 
     Parameters
@@ -146,9 +148,13 @@ def normal_points(p: Values, root: Values, steps: Values) -> tuple[Values, Value
         Of the information there, a lower triangle; of the first n numbers its first n rows are.
     steps : ndarray, shape (N, n)
         Points of Student's t, of `FREEDOM` and unit scale.
+    pull : ndarray, shape (n,)
+        Slope of what is known besides, and was not where the mode was looked for: the mean is
+        that much farther on.
 
     Returns
     -------
+    mean : ndarray, shape (n,)
     points : ndarray, shape (N, n)
         With the distribution's own variance.
     covariance : ndarray, shape (n, n)
@@ -160,11 +166,14 @@ def normal_points(p: Values, root: Values, steps: Values) -> tuple[Values, Value
             for k in range(i, n):
                 covariance[i, j] += spread[k, i] * spread[k, j]
             covariance[j, i] = covariance[i, j]
-    points = np.empty(steps.shape)
+    mean, points = p[:n].copy(), np.empty(steps.shape)
+    for i in range(n):
+        for j in range(n):
+            mean[i] += covariance[i, j] * pull[j]
     for i in range(steps.shape[0]):
         for j in range(n):
             along = 0.0
             for k in range(j, n):
                 along += steps[i, k] * spread[k, j]
-            points[i, j] = p[j] + scale * along
-    return points, covariance
+            points[i, j] = mean[j] + scale * along
+    return mean, points, covariance

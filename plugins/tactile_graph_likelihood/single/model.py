@@ -223,7 +223,9 @@ class Model:
         """Return a most likely point in the outline's own numbers, shape (K,)."""
         return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
 
-    def normal_around(self, top: Likeliest, count: int | None = None) -> Posterior:
+    def normal_around(
+        self, top: Likeliest, count: int | None = None, pull: Values | None = None
+    ) -> Posterior:
         """Return the posterior of a top's first numbers as if it were normal, the others known.
 
         Parameters
@@ -231,10 +233,13 @@ class Model:
         top : Likeliest
         count : int, optional
             How many: the outline's, its load, and what of the noise comes first; all if not given.
+        pull : ndarray, shape (count,), optional
+            As in `normal_points`.
         """
-        steps = self.table_of(len(top.mode.p) if count is None else count)[:BLOCK]
-        points, covariance = normal_points.call(top.mode.p, top.mode.root, steps)
-        weights, p = np.full(BLOCK, 1.0 / BLOCK), top.mode.p[:count]
+        n = len(top.mode.p) if count is None else count
+        steps, pull = self.table_of(n)[:BLOCK], np.zeros(n) if pull is None else pull
+        p, points, covariance = normal_points.call(top.mode.p, top.mode.root, steps, pull)
+        weights = np.full(BLOCK, 1.0 / BLOCK)
         likeliest, mean = p, p
         if self.kind == ELLIPSE:
             likeliest, mean, covariance = _as_ellipses(p, points, weights)

@@ -92,6 +92,15 @@ def test_every_mistake_is_a_line_on_stderr_and_exit_code_2(args, message):
     assert "Traceback" not in got.output
 
 
+def test_without_a_command_the_help_says_what_there_is():
+    result = call()
+    assert result.exit_code == 2
+    assert result.stderr.startswith("Usage: ")
+    assert "inspect" in result.stderr
+    assert not result.stdout
+    assert "error" not in result.stderr.partition("Options:")[0]
+
+
 def test_version():
     assert call("--version").stdout == f"tactile-graph, version {version('tactile-graph')}\n"
 

@@ -571,8 +571,10 @@ def test_a_file_that_is_no_pipeline_file_is_told(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("data").write_text("x")
-    with pytest.raises(UsageError, match=r"'data' is a file, but a pipeline file ends in .yaml"):
+    with pytest.raises(UsageError, match=r"'data' is a file, but a pipeline file ends in .*; rec"):
         load("data", reg)
+    with pytest.raises(UsageError, match=r"no file 'data.csv', and no pipeline named 'data.csv'"):
+        load("data.csv", reg)
     Path("latin.yaml").write_bytes(b"about: \xe9")
     with pytest.raises(UsageError, match=r"pipeline file 'latin.yaml' cannot be read"):
         load("latin.yaml", reg)

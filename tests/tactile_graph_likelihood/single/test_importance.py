@@ -62,9 +62,15 @@ def test_normal_points_spread_as_the_inverse_of_what_is_known(n):
     rng = np.random.default_rng(n)
     root = np.tril(rng.standard_normal((7, 7))) + 3.0 * np.eye(7)
     p, steps = rng.standard_normal(7), rng.standard_normal((32, n))
-    points, covariance = plainly(normal_points)(p, root, steps)
+    mean, points, covariance = plainly(normal_points)(p, root, steps, np.zeros(n))
+    np.testing.assert_array_equal(mean, p[:n])
     known = root[:n, :n] @ root[:n, :n].T
     np.testing.assert_allclose(covariance, np.linalg.inv(known), rtol=1e-9, atol=1e-14)
     # each step of Student's t becomes one of the same length in standard deviations
     lengths = ((points - p[:n]) @ known * (points - p[:n])).sum(axis=1)
     np.testing.assert_allclose(lengths, (1.0 - 2.0 / FREEDOM) * (steps**2).sum(axis=1), rtol=1e-9)
+    pull = rng.standard_normal(n)
+    moved, others, same = plainly(normal_points)(p, root, steps, pull)
+    np.testing.assert_allclose(known @ (moved - mean), pull, atol=1e-9)
+    np.testing.assert_allclose(others - points, np.tile(moved - mean, (32, 1)), atol=1e-12)
+    np.testing.assert_array_equal(same, covariance)
