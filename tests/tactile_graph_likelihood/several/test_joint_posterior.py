@@ -8,7 +8,7 @@ import pytest
 from helpers_likelihood import GRID, NOISE
 from helpers_modes import compiled, plainly
 from tactile_graph_likelihood.geometry.covered import covered
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, REGULAR
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
 from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     Outlines,
@@ -17,6 +17,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     log_rest_of,
     overlap,
     slopes,
+    with_slopes,
 )
 from tactile_graph_likelihood.several.maximise_jointly import maximise_jointly
 from tactile_graph_likelihood.several.posteriors import goodness_of_load
@@ -122,6 +123,22 @@ def test_slopes_are_those_of_the_gain():
     assert matrix[4, 4] == matrix[5, 5] == 1.0
 
 
+@pytest.mark.parametrize("kind", [DISC, ELLIPSE, RECTANGLE, REGULAR])
+def test_slopes_of_shares_are_those_of_a_small_step(kind):
+    corners, box = 3 if kind == REGULAR else 0, (0, 0, 16, 16)
+    p = {DISC: [6.2, 6.1, 2.6], REGULAR: [6.2, 6.1, 3.4, 0.3]}.get(kind, [6.2, 6.1, 3.1, 2.2, 0.4])
+    rise = np.zeros((len(p), 16, 16))
+    with_slopes.call(problem_of_joint(), kind, corners, np.array(p), box, rise)
+    for m in range(len(p)):
+        less, more = (covered.call(kind, corners, at, GRID, box) for at in around(p, m, 1e-5))
+        exact = (more - less) / 2e-5
+        assert rise[m] == pytest.approx(exact, abs=0.1 if kind == REGULAR else 0.01)
+
+
+def around(p, m, step):
+    return [np.array(p) + way * step * (np.arange(len(p)) == m) for way in (-1.0, 1.0)]
+
+
 @pytest.mark.parametrize("by", BOTH)
 def test_maximising_gains_and_comes_near_the_truth(by):
     off = []
@@ -130,7 +147,11 @@ def test_maximising_gains_and_comes_near_the_truth(by):
         points = POINTS + np.array([0.4, -0.3, 0.0, 0.0, 0.0, 0.0])
         problem, outlines = problem_of_joint(logs, states), table(points)
         before = both(points, logs, states) + log_rest_of.call(problem, outlines)
-        top = by(maximise_jointly)(problem, outlines, 25, 0.1)
+        out = Information(np.empty(12), np.empty((12, 12)))
+        top = by(maximise_jointly)(problem, outlines, 25, 0.1, out)
+        slopes.call(problem, outlines, again := Information(np.empty(12), np.empty((12, 12))))
+        assert out.slope == pytest.approx(again.slope)
+        assert out.matrix == pytest.approx(again.matrix)
         points = outlines.points
         assert top > before
         assert top == pytest.approx(
