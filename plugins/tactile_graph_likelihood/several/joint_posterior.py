@@ -259,15 +259,11 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        its, scale, r, c = (
-            np.zeros((first, box[2], box[3])),
-            math.exp(points[k, first]),
-            box[0],
-            box[1],
-        )
+        its, (r, c, height, width) = np.zeros((first, box[2], box[3])), box
+        scale = math.exp(points[k, first])
         here = with_slopes(problem, kind, n, points[k], box, its)
-        for i in range(box[2]):
-            for j in range(box[3]):
+        for i in range(height):
+            for j in range(width):
                 own[k, r + i, c + j] = here[i, j]
                 expected[r + i, c + j] += scale * here[i, j]
                 total[r + i, c + j] += here[i, j]

@@ -23,7 +23,7 @@ from tactile_graph_likelihood.several.maximise_jointly import maximise_jointly
 from tactile_graph_likelihood.several.posteriors import goodness_of_load
 from tactile_graph_likelihood.single.element_terms import OFF, ON
 from tactile_graph_likelihood.single.goodness_of_fit import goodness_of_fit
-from tactile_graph_likelihood.single.information import Information
+from tactile_graph_likelihood.single.information import Information, steps_of
 from tactile_graph_likelihood.single.log_posterior import log_likelihood
 from tactile_graph_likelihood.single.problem import problem_of
 
@@ -129,14 +129,14 @@ def test_slopes_of_shares_are_those_of_a_small_step(kind):
     p = {DISC: [6.2, 6.1, 2.6], REGULAR: [6.2, 6.1, 3.4, 0.3]}.get(kind, [6.2, 6.1, 3.1, 2.2, 0.4])
     rise = np.zeros((len(p), 16, 16))
     with_slopes.call(problem_of_joint(), kind, corners, np.array(p), box, rise)
-    for m in range(len(p)):
-        less, more = (covered.call(kind, corners, at, GRID, box) for at in around(p, m, 1e-5))
-        exact = (more - less) / 2e-5
-        assert rise[m] == pytest.approx(exact, abs=0.1 if kind == REGULAR else 0.01)
-
-
-def around(p, m, step):
-    return [np.array(p) + way * step * (np.arange(len(p)) == m) for way in (-1.0, 1.0)]
+    for m, step in enumerate(steps_of.call(kind, corners, np.array(p), GRID)):
+        ends = (0.0, step) if kind == REGULAR else (-1e-5, 1e-5)
+        less, more = (
+            covered.call(kind, corners, np.array(p) + end * (np.arange(len(p)) == m), GRID, box)
+            for end in ends
+        )
+        near = 1e-6 if kind == REGULAR else 0.01
+        assert rise[m] == pytest.approx((more - less) / (ends[1] - ends[0]), abs=near)
 
 
 @pytest.mark.parametrize("by", BOTH)
