@@ -54,7 +54,8 @@ def log_alike(values: Values) -> float:
     top = logs.max()
     for log in logs:
         total += math.exp(log - top) / len(SPREADS)
-    return top + math.log(total) - 0.5 * math.log(n)
+    log_density: float = top + math.log(total) - 0.5 * math.log(n)
+    return log_density
 
 
 @compiled_as_is
@@ -95,11 +96,12 @@ def alikeness_of(kinds: Places, corners: Places, points: Values, prior: Values) 
 @compiled_as_is
 def area_of(kind: int, corners: int, p: Values) -> float:
     """Return the area of an outline, in cm2."""
+    area: float = math.pi * p[2] * (p[2] if kind == DISC else p[3])
     if kind == REGULAR:
-        return p[2] * p[2] * filled(corners)
-    if kind == RECTANGLE:
-        return 4.0 * p[2] * p[3]
-    return math.pi * p[2] * (p[2] if kind == DISC else p[3])
+        area = p[2] * p[2] * filled(corners)
+    elif kind == RECTANGLE:
+        area = 4.0 * p[2] * p[3]
+    return area
 
 
 @compiled_as_is
