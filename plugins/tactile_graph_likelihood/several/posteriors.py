@@ -11,9 +11,10 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
+from tactile_graph_likelihood.several.alike import area_of
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
-from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of
+from tactile_graph_likelihood.several.scene import Configuration, Sampled
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.goodness_of_fit import neighbours_of, unexplained
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -151,12 +152,7 @@ class Kinds:
 
 def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
     """Return one outline as each kind beside the others."""
-    beside, own, fits = scene.beside(found, k), found.only(k), []
-    for kind in scene.kinds:
-        if kind == (found.kinds[k], found.corners[k]):
-            fits.append(scene.settled(own, beside, 4)[0])
-        else:
-            fits.append(scene.as_kind(kind, own, beside))
+    fits = scene.as_kinds(found.only(k), scene.beside(found, k), 4)
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
     if not fits:
         raise Degenerate("an outline is possible as none of the kinds: none can be told")
@@ -192,7 +188,8 @@ def _off(found: Configuration, one: Configuration, n: int) -> Values:
     """Return how far an outline lies off another, in the other's numbers, all sizes alike."""
     off, own = np.zeros(n), sizes.call(int(one.kinds[0]))
     off[:2] = found.points[0, :2] - one.points[0, :2]
-    ratio = math.sqrt(area_of(found) / area_of(one))
+    areas = [area_of.call(*(column[0] for column in some.outlines)) for some in (found, one)]
+    ratio = math.sqrt(areas[0] / areas[1])
     off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
     return off
 

@@ -15,8 +15,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
     Outlines,
-    gain,
-    log_rest_of,
+    log_posterior_of,
 )
 from tactile_graph_likelihood.single.importance import weigh
 from tactile_graph_likelihood.single.sample import (
@@ -79,12 +78,8 @@ def sample_beside(
             draw(proposals, made - 1, table[i], points[i])
             for k in range(n):
                 trial[0, k] = points[i, k]
-            here = -math.inf
-            if turn < 0 or abs(points[i, turn] - angle) <= half:
-                here = log_rest_of(problem, tried)
-            if here > -math.inf:
-                here += gain(problem, tried)
-            draws.logs_p[i] = here
+            inside = turn < 0 or abs(points[i, turn] - angle) <= half
+            draws.logs_p[i] = log_posterior_of(problem, tried) if inside else -math.inf
         take_block(proposals, made, points, before, count, block)
         count += block
         shares = proposals.drawn / count
