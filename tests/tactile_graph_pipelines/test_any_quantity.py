@@ -33,7 +33,7 @@ KNOWN_IN_GRAMS = {
 SLOW = {
     *("locate", "locate-circle", "locate-contacts", "locate-objects", "locate-rectangle"),
     *("bayes-circle", "bayes-objects", "bayes-lines", "bayes-rectangle", "bayes-smooth"),
-    *("circle-by-order", *tactile_graph_thesis.tactile_graph_pipelines()),
+    *("circle-by-order", "objects", *tactile_graph_thesis.tactile_graph_pipelines()),
 }
 """Those of which much is computed or compiled, and steps between others, which are like those."""
 

@@ -60,7 +60,7 @@ def exactly_as_the_naive_evaluator(
         assert Counter(CALLS) == naive.ran
 
 
-@pytest.mark.parametrize("n_cases", [60, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("n_cases", [30, pytest.param(400, marks=pytest.mark.slow)])
 def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
     n_cases: int, folder: Path
 ) -> None:
@@ -155,6 +155,7 @@ def test_lists_of_which_items_fail_or_are_skipped_equal_a_naive_evaluator(folder
     exactly_as_the_naive_evaluator((document, {}), folder)
 
 
+@pytest.mark.slow
 def test_the_generator_covers_what_it_should(folder: Path) -> None:
     """Every kind of node, guard and outcome comes up in the graphs the property is tested on."""
     kinds: Counter[str] = Counter()

@@ -97,6 +97,7 @@ def test_a_low_reading_between_two_blocks_is_a_gap():
     assert SPLIT(image, whole).count == 2
 
 
+@pytest.mark.slow
 def test_voids_and_hold_decide_how_willingly_it_splits():
     counts = [
         SplitContacts(hold=hold, recut=False)(even(NARROW), NARROW).count
