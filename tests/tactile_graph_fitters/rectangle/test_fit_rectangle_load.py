@@ -73,6 +73,7 @@ def errors(rng, n, use_load):
     return np.mean(rows, axis=0)
 
 
+@pytest.mark.slow
 def test_bumps_and_voids_cost_little_and_the_load_helps():
     with_load = errors(np.random.default_rng(1), 40, True)
     without = errors(np.random.default_rng(1), 40, False)

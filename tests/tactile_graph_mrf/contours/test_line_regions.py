@@ -136,6 +136,7 @@ def test_loops_part_as_the_reference_does(
     np.testing.assert_array_equal(by(label_regions)(across, down), wanted)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 999))
 def test_raised_regions_have_the_outline_of_most_contrast(seed: int) -> None:
     """No other choice of regions has a larger sum of (inside - outside) over its outline."""
