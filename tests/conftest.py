@@ -8,13 +8,17 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import shutil
 import signal
 import sys
 import tempfile
 from collections.abc import Generator, Iterator
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
+
+# Each process has a core: BLAS's threads would wait for each other, busily, at every small matrix.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
 from hypothesis import settings
@@ -56,6 +60,20 @@ def _share_bytecode(config: pytest.Config) -> None:
     os.environ["PYTHONPYCACHEPREFIX"] = folder
 
 
+ALL_SLOW = re.compile(r"^pytestmark = (\[\s*)?pytest\.mark\.slow\b", re.MULTILINE)
+"""How a module says first that all of its tests are slow."""
+
+
+def _is_short(config: pytest.Config) -> bool:
+    return bool(config.getoption("markexpr") == "not slow")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave modules of slow tests alone unread in a short run, where none would be chosen."""
+    is_module = collection_path.suffix == ".py" and _is_short(config)
+    return (is_module and bool(ALL_SLOW.search(collection_path.read_text("utf-8")))) or None
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
     """Look for no garbage in what is imported and collected, now or later: it stays.
@@ -79,6 +97,8 @@ def _import_from_the_end(session: pytest.Session) -> None:
     at the front, so that each finds half of them done; trouble is told when they are collected.
     """
     for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+        if pytest_ignore_collect(path, session.config):
+            continue
         with suppress(pytest.Collector.CollectError, pytest.skip.Exception):
             pytest.Module.from_parent(session, path=path)._getobj()
 
@@ -105,18 +125,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("slow")
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(autouse=True, scope="module")
 def quick_by_loops(request: pytest.FixtureRequest) -> Iterator[None]:
     """Have nobody wait for the compiler in a run that leaves the slow tests out.
 
     What compares machine code with loops compiles all the same. A run of all tests has kernels
     answer as users' do.
     """
-    short = request.config.getoption("markexpr") == "not slow"
-    if short and any(room in (request.path, *request.path.parents) for room in BY_LOOPS):
-        with answered_by("plain"):
-            yield
-    else:
+    rooms = {request.path, *request.path.parents}
+    quick = _is_short(request.config) and not rooms.isdisjoint(BY_LOOPS)
+    with answered_by("plain") if quick else nullcontext():
         yield
 
 

@@ -109,6 +109,7 @@ def test_a_larger_pad_shows_the_same_scene_finer() -> None:
     assert ratio == pytest.approx(9, rel=0.15)
 
 
+@pytest.mark.slow
 def test_a_small_run_measures_pipelines_and_peers_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(frames, "PIPELINES", ("circle-3",))
     monkeypatch.setattr(frames, "SCENES", ("empty", "clean"))
@@ -120,6 +121,7 @@ def test_a_small_run_measures_pipelines_and_peers_alike(monkeypatch: pytest.Monk
     assert all(len(m.rounds_us) == 3 for m in found)
 
 
+@pytest.mark.slow
 def test_a_stream_is_mostly_empty_and_mixed() -> None:
     made = stream.stream(100, seed=0)
     counts = {c: made.classes.count(c) for c in made.classes}

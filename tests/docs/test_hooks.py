@@ -294,6 +294,7 @@ def test_steps_are_stressed_with_a_plugins_cases_too(plugin: Plugin) -> None:
     assert judge.of(mine).outcome in (Outcome.EXACT, Outcome.GOOD)
 
 
+@pytest.mark.slow
 def test_a_quantity_may_be_told_to_a_recording_and_is_offered_where_settings_are_shown(
     plugin: Plugin, tmp_path: Path
 ) -> None:

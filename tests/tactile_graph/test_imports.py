@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -42,11 +43,19 @@ SHARED = ("tactile_graph.plugins.registry", "tactile_graph.pipeline.document")
 mistakes are told with their places."""
 
 
+def statements(within: ast.AST) -> Iterator[ast.AST]:
+    """Yield what is no expression: most of a file is, and no import stands in one."""
+    for node in ast.iter_child_nodes(within):
+        if not isinstance(node, ast.expr):
+            yield node
+            yield from statements(node)
+
+
 @cache
 def imports(path: Path) -> list[tuple[str, str]]:
     """Return (module, name) for each import of a file; the name is empty for plain imports."""
     found = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in statements(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             found += [(a.name, "") for a in node.names]
         elif isinstance(node, ast.ImportFrom):

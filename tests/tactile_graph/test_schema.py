@@ -39,8 +39,9 @@ def errors(schema: dict[str, Any], text: str) -> list[str]:
     return [e.message for e in validator.iter_errors(yaml.safe_load(text))]
 
 
-def test_it_is_a_schema_of_its_draft(shipped_schema):
-    jsonschema.Draft202012Validator.check_schema(shipped_schema)
+@pytest.mark.parametrize("which", ["hand", pytest.param("shipped", marks=pytest.mark.slow)])
+def test_it_is_a_schema_of_its_draft(which, request):
+    jsonschema.Draft202012Validator.check_schema(request.getfixturevalue(f"{which}_schema"))
 
 
 @pytest.mark.parametrize("name", installed().names("pipelines"))

@@ -48,9 +48,17 @@ def label_code(labels, n_levels):
     "settings",
     [
         {"lines": "none"},
-        {"lines": "none", "noise": "student_t", "smoothness": "truncated_quadratic", "order": 2},
+        pytest.param(
+            {
+                "lines": "none",
+                "noise": "student_t",
+                "smoothness": "truncated_quadratic",
+                "order": 2,
+            },
+            marks=pytest.mark.slow,
+        ),
         {"lines": "none", "noise": "poisson", "smoothness": "huber", "order": 3},
-        {"lines": "none", "order": 3},
+        pytest.param({"lines": "none", "order": 3}, marks=pytest.mark.slow),
     ],
     ids=["gaussian", "student", "poisson", "order-3"],
 )
@@ -112,7 +120,7 @@ def test_labels_and_all_lines_are_drawn_from_the_joint_distribution():
     assert np.abs(on / 2500 - exact).max() < 4.5 * np.sqrt(0.25 / 2500)
 
 
-@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("order", [*(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2)), 3])
 def test_every_joint_state_comes_up_as_often_as_it_should(order):
     problem = tiny(2, 3, 2, order=order, lambda_d=2.0)
     states = label_states(6, 2).reshape(-1, 2, 3)

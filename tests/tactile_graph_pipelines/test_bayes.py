@@ -107,12 +107,8 @@ def test_an_empty_pad_is_not_swept(name: str) -> None:
         assert not result.failures
 
 
-SLOW = ("bayes-circle", "bayes-lines", "bayes-objects", "bayes-rectangle")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in EVERY]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EVERY)
 def test_odd_images_come_to_an_answer_or_a_reason(name: str) -> None:
     pipeline = load(name)
     one, full, line = np.zeros((16, 16)), np.ones((16, 16)), np.zeros((16, 16))

@@ -36,6 +36,7 @@ def test_circle_3_finds_centres_of_discs_on_an_even_pad_within_0_12_cm_on_averag
     assert found[:, 0].mean() < 0.12
 
 
+@pytest.mark.slow
 def test_circle_3_halves_the_radius_error_of_circle_1_on_an_uneven_pad() -> None:
     first, third = (
         errors(name, 200, seed=0, sigma=0.5, voids=0.1)[:, 1].mean()

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from helpers_cli import call
 from helpers_panel import panel_frames
@@ -26,6 +27,7 @@ def test_fingertips_on_a_panel_are_counted(tmp_path: Path) -> None:
     assert share_right(panel_frames(tmp_path)) >= 0.95
 
 
+@pytest.mark.slow
 def test_fingertips_of_people_that_no_level_was_chosen_on_are_counted() -> None:
     shared("capcontact_others")
     paths = sorted((SHARED / "capcontact_others").glob("*.npz"))

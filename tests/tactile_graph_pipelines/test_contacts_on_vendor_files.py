@@ -24,7 +24,9 @@ from helpers_recordings import (
 )
 from tactile_graph.cli import cli
 
-REAL = pytest.mark.parametrize("real", [True, False], ids=["real", "look-alike"])
+REAL = pytest.mark.parametrize(
+    "real", [pytest.param(True, marks=pytest.mark.slow), False], ids=["real", "look-alike"]
+)
 
 
 def loads_of(recording: Path, folder: Path) -> list[dict[str, Any]]:

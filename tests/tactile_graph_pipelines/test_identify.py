@@ -73,6 +73,7 @@ def test_other_features_are_a_line_in_yaml():
     assert all(r["identity"].name == true_name(r.frame) for r in pipeline.stream(seed=1))
 
 
+@pytest.mark.slow
 def test_identify_any_names_the_objects_of_the_thesis_by_all_features():
     results = list(
         load("identify-any").with_source("simulate", scene="identify", frames=25).stream()

@@ -20,6 +20,7 @@ LONGEST_LINE = 2048
 
 SLOW = {name for name in NAMES if "likelihood" in name or "locate" in name} | {
     *("adaptive", "bayes-circle", "bayes-lines", "bayes-objects", "bayes-rectangle"),
+    "bayes-smooth",
     *("circle-by-order", "circle-followed", "circle-full", "identify-reliefs", "objects"),
     *tactile_graph_thesis.tactile_graph_pipelines(),
 }

@@ -253,7 +253,10 @@ def test_the_files_name_decides_the_graphs_format(hand_made, name, start):
     assert f"wrote {name}" in got.stderr
 
 
-@pytest.mark.parametrize(("name", "start"), [("g.png", b"\x89PNG"), ("g.pdf", b"%PDF")])
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [("g.png", b"\x89PNG"), pytest.param("g.pdf", b"%PDF", marks=pytest.mark.slow)],
+)
 def test_a_graph_is_a_picture_too(hand_made, name, start):
     got = call("graph", "discs", "-o", name)
     assert got.exit_code == 0

@@ -36,7 +36,7 @@ def test_help_imports_neither_numpy_nor_anything_else_that_is_slow(args):
     assert imported(*args, also=("tactile_graph.compiled", "starlette", "uvicorn")) == ["0"]
 
 
-@pytest.mark.parametrize("command", ["steps", "plugins"])
+@pytest.mark.parametrize("command", ["steps", pytest.param("plugins", marks=pytest.mark.slow)])
 def test_lists_import_no_step(command):
     assert imported(command) == ["0", "rich"]
 
@@ -45,6 +45,8 @@ def test_listing_pipelines_imports_no_step():
     assert imported("pipelines") == ["0", "rich", "yaml"]
 
 
-@pytest.mark.parametrize("args", [["run", "circle-3"], ["explain", "circle-3"]])
+@pytest.mark.parametrize(
+    "args", [["run", "circle-3"], pytest.param(["explain", "circle-3"], marks=pytest.mark.slow)]
+)
 def test_a_circle_run_imports_no_library_that_it_does_not_use(args):
     assert imported(*args) == ["0", *CORE]

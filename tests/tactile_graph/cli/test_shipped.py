@@ -25,7 +25,7 @@ def test_everything_that_ships_is_right():
     assert got.stdout.count(": right") == sum(len(installed().names(k)) for k in kinds)
 
 
-@pytest.mark.parametrize("name", ["circle-3", "contacts"])
+@pytest.mark.parametrize("name", ["circle-3", pytest.param("contacts", marks=pytest.mark.slow)])
 def test_a_shipped_pipeline_runs_on_the_bundled_frames(name):
     got = command("run", name, "-o", "-")
     assert got.returncode == 0, got.stderr

@@ -23,7 +23,7 @@ def process(*args: str, **streams: object) -> subprocess.Popen[bytes]:
 
 
 @posix
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", ["SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)])
 def test_a_run_that_a_signal_ends_leaves_whole_lines_and_says_so(tmp_path: Path, name: str) -> None:
     out = tmp_path / "out.jsonl"
     running = process("run", *ENDLESS, "-o", str(out))

@@ -163,6 +163,7 @@ def grown(values: Any, out: Any) -> float:
     return float(out[0])
 
 
+@pytest.mark.slow
 def test_what_python_refuses_as_no_number_machine_code_answers() -> None:
     kernel = compiled_later(grown)
     out = np.ones(2)

@@ -66,6 +66,7 @@ def test_only_what_python_calls_is_kept_on_disk(fresh: Any, tmp_path: Path) -> N
     assert kept(tmp_path) == {"helpers_kernels.spread"}
 
 
+@pytest.mark.slow
 def test_a_kernel_serves_python_and_other_kernels_alike(fresh: Any, tmp_path: Path) -> None:
     kernels = fresh()
     assert kernels.spread.compiled(VALUES) == 3.0
@@ -106,6 +107,7 @@ print("numba.np.arraymath" in sys.modules)
     assert said == [["True", "6.0", "True"], ["True", "6.0", "False"]]
 
 
+@pytest.mark.slow
 def test_a_change_beneath_outdates_what_was_kept(
     fresh: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -150,12 +152,14 @@ def test_what_another_process_makes_is_waited_for_and_loaded(
     assert made == [3.0]
 
 
+@pytest.mark.slow
 def test_who_finds_it_made_meanwhile_does_not_make_it_again(fresh: Any) -> None:
     first, second = (whole.entry_of(fresh().spread.loops) for _ in range(2))
     assert first(VALUES) == second(VALUES) == 3.0
     assert [sum(d.stats.cache_hits.values()) for d in (first, second)] == [0, 1]
 
 
+@pytest.mark.slow
 def test_what_another_process_makes_is_not_made_ahead(fresh: Any, tmp_path: Path) -> None:
     loops, types = fresh().spread.loops, (numba.typeof(VALUES),)
     other = whole.entry_of(loops)
@@ -167,6 +171,7 @@ def test_what_another_process_makes_is_not_made_ahead(fresh: Any, tmp_path: Path
     assert kept(tmp_path) == {"helpers_kernels.spread"}
 
 
+@pytest.mark.slow
 def test_loops_that_cannot_be_compiled_leave_no_claim(fresh: Any) -> None:
     entry = whole.entry_of(fresh().spread.loops)
     for _ in range(2):
@@ -175,6 +180,7 @@ def test_loops_that_cannot_be_compiled_leave_no_claim(fresh: Any) -> None:
     assert not entry._cache._claim.held
 
 
+@pytest.mark.slow
 def test_a_folder_without_locks_serves(fresh: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def no_locks(file: object) -> None:
         raise OSError(errno.ENOLCK, "no locks available")

@@ -51,14 +51,15 @@ def near(picture: np.ndarray, rgb: tuple[int, int, int]) -> int:
 
 
 def test_a_film_runs_at_the_pace_of_the_frames_and_does_not_drift(tmp_path: Path) -> None:
-    times = [k / 15.0 for k in range(10)]
+    times = [k / 15.0 for k in range(6)]  # rounded one by one they would end 0.017 s early
     filmed(timed(times), tmp_path / "a.gif")
     _, seconds = pictures(tmp_path / "a.gif")
-    assert len(seconds) == 10
+    assert len(seconds) == 6
     starts = np.concatenate([[0.0], np.cumsum(seconds)[:-1]])
     assert np.abs(starts - times).max() < 0.011
 
 
+@pytest.mark.slow
 def test_frames_that_come_faster_than_pictures_can_are_left_out_at_equal_pace(
     tmp_path: Path,
 ) -> None:
@@ -68,6 +69,7 @@ def test_frames_that_come_faster_than_pictures_can_are_left_out_at_equal_pace(
     assert sum(seconds[:-1]) == pytest.approx(0.2)
 
 
+@pytest.mark.slow
 def test_pauses_are_cut_and_untimed_frames_shown_alike_and_both_said(tmp_path: Path) -> None:
     film = filmed(timed([0.0, 0.5, 60.0]), tmp_path / "a.gif")
     assert (film.shortened, film.timed) == (True, True)

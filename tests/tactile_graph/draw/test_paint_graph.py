@@ -49,6 +49,7 @@ def test_every_line_of_text_lies_within_its_box_in_matplotlibs_own_font() -> Non
         ), text.get_text()
 
 
+@pytest.mark.slow
 def test_is_two_pixels_for_one_and_the_same_bytes_each_time() -> None:
     drawing = graph_drawing(circle_demo())
     png = graph_picture(circle_demo(), "png")

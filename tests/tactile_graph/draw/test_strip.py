@@ -346,6 +346,7 @@ def n_figures() -> int:
     return sum(issubclass(type(o), Figure) for o in gc.get_objects())
 
 
+@pytest.mark.slow
 def test_knows_no_window_and_leaves_no_figure_behind(results) -> None:
     data = figure_png(strip_figure(results[:1], ["circle"]))
     assert data.startswith(b"\x89PNG")

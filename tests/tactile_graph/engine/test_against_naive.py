@@ -155,6 +155,7 @@ def test_lists_of_which_items_fail_or_are_skipped_equal_a_naive_evaluator(folder
     exactly_as_the_naive_evaluator((document, {}), folder)
 
 
+@pytest.mark.slow
 def test_the_generator_covers_what_it_should(folder: Path) -> None:
     """Every kind of node, guard and outcome comes up in the graphs the property is tested on."""
     kinds: Counter[str] = Counter()

@@ -51,6 +51,7 @@ def test_work_is_shared(workers: WorkerProcesses) -> None:
     assert os.getpid() not in found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
 def test_one_that_dies_over_half_an_answer_is_told_and_another_is_started(
     workers: WorkerProcesses,

@@ -136,6 +136,7 @@ def test_a_condition_cannot_ask_for_all_memory(condition: str, words: str) -> No
     assert words in str(told.value)
 
 
+@pytest.mark.slow
 def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
     nodes = "".join(f"  n{i}: {{step: reed{i}, in: frame}}\n" for i in range(1900))
     with pytest.raises(PipelineError) as told:

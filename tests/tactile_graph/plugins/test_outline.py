@@ -146,6 +146,7 @@ def test_first_sentence(doc, sentence):
     assert first_sentence(doc) == sentence
 
 
+@pytest.mark.slow
 def test_every_installed_step_has_an_outline_that_agrees_with_its_signature():
     from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.signature import Kind

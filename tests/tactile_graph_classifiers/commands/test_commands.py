@@ -269,6 +269,7 @@ def test_a_database_of_the_thesis_features_serves_the_default_pipeline(recording
     assert text.splitlines()[-1] == "right: 3 of 3"
 
 
+@pytest.mark.slow
 def test_reliefs_are_learned_of_presses_that_were_kept(recordings):
     learned(recordings)
     code, text = call("learn-reliefs")

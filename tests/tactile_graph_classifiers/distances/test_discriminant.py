@@ -95,6 +95,7 @@ def test_with_two_objects_a_stranger_is_known_by_what_lies_beside_what_tells_the
     assert (found.name, found.runner_up, found.runner_up_distance) == ("unknown", "", None)
 
 
+@pytest.mark.slow
 def test_what_was_left_out_foretells_what_new_readings_get():
     learned, tested = split(many(12, seed=3, n=85, apart=2.5), 25)
     choice = choose(examples(learned))
@@ -180,6 +181,7 @@ def test_of_more_presses_than_were_learned_from_the_limit_is_that_of_fewer():
     assert many_more.name == "object 2"
 
 
+@pytest.mark.slow
 def test_the_order_of_objects_changes_no_answer():
     objects = many(6, seed=9)
     other = dict(reversed(objects.items()))

@@ -93,6 +93,7 @@ def test_steps_agree_with_scipy(element, border):
             )
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(masks(), elements(), st.booleans())
 def test_opening_shrinks_closing_grows_and_both_are_done_once(mask, element, border):

@@ -97,6 +97,7 @@ def test_a_low_reading_between_two_blocks_is_a_gap():
     assert SPLIT(image, whole).count == 2
 
 
+@pytest.mark.slow
 def test_voids_and_hold_decide_how_willingly_it_splits():
     counts = [
         SplitContacts(hold=hold, recut=False)(even(NARROW), NARROW).count
@@ -173,6 +174,7 @@ def test_what_is_no_number_is_refused_in_the_mask_and_ignored_outside(bad):
     assert SPLIT(image_of(values), mask_of(on)).count == 1
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(masks(10), st.integers(0, 9))
 def test_every_cell_is_in_exactly_one_contact_and_sums_are_those_of_its_cells(mask, seed):

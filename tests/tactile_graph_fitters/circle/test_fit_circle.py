@@ -51,6 +51,7 @@ def test_agrees_with_a_general_least_squares_optimiser(degrees, rng):
         assert three(fit) == pytest.approx(peer.x, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_median_radius_of_60_degree_arcs_is_right_where_kasas_is_not(rng):
     arcs = [arc(HUNDRED, 60, 50, 2.0, rng) for _ in range(300)]
     assert 99.0 < np.median([fit_circle(a).radius_cm for a in arcs]) < 101.5

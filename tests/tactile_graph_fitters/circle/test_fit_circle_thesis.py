@@ -5,6 +5,7 @@ import pytest
 
 import references_fitters as references
 from helpers_circles import arc, arc_xy, three
+from helpers_modes import compiled, plainly
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle
 from tactile_graph_fitters.circle.fit_circle import fit_circle
@@ -45,9 +46,9 @@ def test_point_at_the_centre_counts_for_the_radius_alone():
     assert iterated(uv, 50, 1e-9) == (True, 0.0, 0.0, pytest.approx(0.8), 1)
 
 
-def test_it_iterates_as_the_reference_does():
+@pytest.mark.parametrize("by", [plainly, compiled])
+def test_it_iterates_as_the_reference_does(by):
     uv = np.ascontiguousarray(arc_xy(DISC, 200, 21, 0.1, np.random.default_rng(1)).T)
     uv -= uv.mean(axis=1, keepdims=True)
     expected = pytest.approx(references.iterated(uv, 500, 1e-9), abs=1e-9)
-    assert iterated.loops(uv, 500, 1e-9) == expected
-    assert iterated.compiled(uv, 500, 1e-9) == expected
+    assert by(iterated)(uv, 500, 1e-9) == expected

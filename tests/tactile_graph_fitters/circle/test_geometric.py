@@ -5,6 +5,7 @@ import pytest
 
 import references_fitters as references
 from helpers_circles import arc_xy
+from helpers_modes import compiled, plainly
 from tactile_graph.wires import Circle
 from tactile_graph_fitters.circle.geometric import refined, slopes, step_of
 from tactile_graph_fitters.circle.principal_axes import ONE_LINE
@@ -34,12 +35,12 @@ def test_gradient_and_second_derivatives_are_those_of_the_cost(uv, centre):
     assert d_b[3] == pytest.approx(now[6] + now[9], rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.parametrize("by", [plainly, compiled])
 @pytest.mark.parametrize("centre", [(0.1, -0.2), (0.0, 0.0), (30.0, 400.0)])
-def test_slopes_are_those_of_the_reference(uv, centre):
+def test_slopes_are_those_of_the_reference(uv, centre, by):
     uv[:, 3] = 0.0  # with (0, 0) as the centre: a point without a direction
     expected = pytest.approx(references.slopes(uv, *centre), rel=1e-9, abs=1e-13)
-    assert slopes.loops(uv, *centre) == expected
-    assert slopes.compiled(uv, *centre) == expected
+    assert by(slopes)(uv, *centre) == expected
 
 
 def test_step_goes_downhill_where_the_second_derivative_has_no_minimum():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import references_fitters as references
+from helpers_modes import compiled, plainly
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.principal_axes import (
     ALL_EQUAL,
@@ -42,16 +43,16 @@ def test_status_says_what_is_wrong(status):
     assert into_frame(SETS[status])[0] == status
 
 
+@pytest.mark.parametrize("by", [plainly, compiled])
 @pytest.mark.parametrize("status", SETS)
-def test_bounds_are_those_of_the_reference(status):
+def test_bounds_are_those_of_the_reference(status, by):
     expected = pytest.approx(references.bounds(SETS[status]))
-    assert bounds.loops(SETS[status]) == expected
-    assert bounds.compiled(SETS[status]) == expected
+    assert by(bounds)(SETS[status]) == expected
 
 
-def test_points_are_turned_as_by_the_reference():
+@pytest.mark.parametrize("by", [plainly, compiled])
+def test_points_are_turned_as_by_the_reference(by):
     expected = references.turned(SETS[OK], 99.0, -7.0, 5.0)
-    for which in (turned.loops, turned.compiled):
-        got = which(SETS[OK], 99.0, -7.0, 5.0)
-        assert got[0] == pytest.approx(expected[0], abs=1e-13)
-        assert got[1:] == pytest.approx(expected[1:], abs=1e-13)
+    got = by(turned)(SETS[OK], 99.0, -7.0, 5.0)
+    assert got[0] == pytest.approx(expected[0], abs=1e-13)
+    assert got[1:] == pytest.approx(expected[1:], abs=1e-13)

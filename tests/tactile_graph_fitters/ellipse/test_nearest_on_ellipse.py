@@ -41,6 +41,7 @@ def test_the_twin_finds_places_as_near():
         assert near[1] == pytest.approx(near[0], abs=1e-12 * (a + b))
 
 
+@pytest.mark.slow
 def test_the_twin_looks_again_where_it_went_wrong():
     """Within the evolute the first guess is on the far side of a ridge for many points."""
     x, y = np.meshgrid(np.linspace(-1.2, 1.2, 61), np.linspace(-0.3, 0.3, 31))

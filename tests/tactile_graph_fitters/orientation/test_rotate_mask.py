@@ -17,6 +17,7 @@ from tactile_graph_fitters.orientation.orientation import Orientation, orientati
 from tactile_graph_fitters.orientation.rotate_mask import rotate_mask, rotated
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(degrees=st.floats(-89.0, 90.0))
 def test_a_turned_mask_lies_along_x_about_the_same_centre(degrees):

@@ -85,6 +85,7 @@ def test_kernel_is_its_reference():
     assert (np.diff(levels[0]) >= 0.0).all()
 
 
+@pytest.mark.slow
 def test_what_is_surprising_is_measured_against_what_is_to_be_expected():
     rng, off = np.random.default_rng(2), []
     shares = np.concatenate([rng.uniform(0.05, 1.0, 25), np.ones(25)])

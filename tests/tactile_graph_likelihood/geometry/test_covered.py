@@ -44,13 +44,13 @@ def test_an_outline_off_the_pad_has_no_window():
     assert min(window.compiled(kind, corners, p, GRID, 16, 16, 0.0)[2:]) == 0
 
 
+@pytest.mark.parametrize("by", BOTH)
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda s: type(s).__name__)
-def test_bounds_are_those_of_the_drawn_outline(shape):
+def test_bounds_are_those_of_the_drawn_outline(shape, by):
     kind, corners, p = packed(shape)
     xy = shape.outline_cm(4000) if not isinstance(shape, Polygon) else shape.xy_cm
     expected = (*xy.min(axis=0), *xy.max(axis=0))
-    for by in BOTH:
-        np.testing.assert_allclose(by(bounds)(kind, corners, p), expected, atol=1e-4)
+    np.testing.assert_allclose(by(bounds)(kind, corners, p), expected, atol=1e-4)
 
 
 @pytest.mark.slow

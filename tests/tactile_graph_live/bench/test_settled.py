@@ -28,6 +28,7 @@ def test_what_is_there_is_frozen_once() -> None:
     assert len(kept) == 500
 
 
+@pytest.mark.slow
 def test_what_was_loaded_since_is_frozen_too() -> None:
     settled = Settled()
     settled()

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from helpers_modes import held, plainly
+from helpers_modes import compiled, held, plainly
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.contours.line_regions import line_regions, with_voids
@@ -121,16 +124,19 @@ def regions_by_waves(
     return (np.searchsorted(np.unique(first), first) + 1).astype(np.int32)
 
 
-@given(st.integers(1, 7), st.integers(1, 7), st.floats(0, 1), st.integers(0, 999))
-def test_loops_part_as_the_reference_does(r: int, c: int, share: float, seed: int) -> None:
+@pytest.mark.parametrize("by", [plainly, compiled])
+@given(r=st.integers(1, 7), c=st.integers(1, 7), share=st.floats(0, 1), seed=st.integers(0, 999))
+def test_loops_part_as_the_reference_does(
+    by: Callable[..., Any], r: int, c: int, share: float, seed: int
+) -> None:
     pytest.importorskip("numba")
     rng = np.random.default_rng(seed)
     across, down = held(rng.random((r - 1, c)) < share), held(rng.random((r, c - 1)) < share)
     wanted = regions_by_waves(across, down)
-    np.testing.assert_array_equal(plainly(label_regions)(across, down), wanted)
-    np.testing.assert_array_equal(label_regions.compiled(across, down), wanted)
+    np.testing.assert_array_equal(by(label_regions)(across, down), wanted)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 999))
 def test_raised_regions_have_the_outline_of_most_contrast(seed: int) -> None:
     """No other choice of regions has a larger sum of (inside - outside) over its outline."""

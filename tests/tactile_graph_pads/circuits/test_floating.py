@@ -98,6 +98,7 @@ def test_data_no_network_gives_end_within_the_cap_with_the_misfit_stated():
     assert found.residual > 0.0
 
 
+@pytest.mark.slow
 def test_the_compiled_twin_agrees_with_the_reference():
     siemens = spread_siemens(11, (16, 12))
     siemens[4] = 0.0

@@ -95,6 +95,7 @@ def test_arrays_other_than_the_values_are_written_anew_from_the_journal(
     assert [p[:4] for p in plain(store)] == [p[:4] for p in whole]  # type: ignore[index]
 
 
+@pytest.mark.slow
 def test_a_damaged_journal_is_written_anew_and_its_frames_stay_doubtful(store: Path) -> None:
     whole = plain(store)
     (store / "frames.journal").write_bytes(

@@ -130,7 +130,7 @@ def test_stdout_can_take_the_csv_alone() -> None:
     ("name", "file", "start"),
     [
         ("bump", "p.png", b"\x89PNG"),
-        ("bias-loaded", "p.pdf", b"%PDF"),
+        pytest.param("bias-loaded", "p.pdf", b"%PDF", marks=pytest.mark.slow),
         ("figure-4.19", "p.svg", b"<svg"),
     ],
 )
@@ -142,6 +142,7 @@ def test_the_figure_of_one_item_is_drawn(
     assert [p.name for p in tmp_path.iterdir()] == [file]
 
 
+@pytest.mark.slow
 def test_a_folder_that_is_named_is_filled_too(tmp_path: Path) -> None:
     result = run("bump", "--csv", tmp_path / "b.csv", "-o", tmp_path / "all")
     assert f"wrote {tmp_path / 'b.csv'}, {tmp_path / 'all'}" in result.output

@@ -198,6 +198,7 @@ def test_the_seed_decides_everything() -> None:
     assert rows(1) == rows(1) != rows(2)
 
 
+@pytest.mark.slow
 def test_what_an_item_gives_does_not_depend_on_what_was_made_before(work: Work) -> None:
     (alone,) = outcomes(chosen(("figure-4.3",)), Work(seed=0, readings=20, quick=True))
     (after,) = outcomes(chosen(("figure-4.3",)), work)

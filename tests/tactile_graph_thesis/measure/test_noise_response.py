@@ -47,6 +47,7 @@ def test_noise_of_no_size_changes_nothing() -> None:
         assert found.missing == 0.0
 
 
+@pytest.mark.slow
 def test_erosion_takes_lone_contacts_away_and_makes_voids_worse() -> None:
     frames = list(load("circle-3").with_source("simulate", frames=30).frames(3))
     places = {"fine": (CONTACTS, VOIDS), "eroded": (CONTACTS, VOIDS)}

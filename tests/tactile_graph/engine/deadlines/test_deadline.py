@@ -294,6 +294,7 @@ def test_each_choice_further_up_leaves_more_room(beneath: int, share: float) -> 
     assert 1.0 / (1.0 + waits_longer(beneath)) == pytest.approx(share)
 
 
+@pytest.mark.slow
 def test_a_stream_too_fast_for_the_best_choice_is_on_time_all_the_same() -> None:
     """A frame each 1 ms; 1.3 ms for the best choice, one time in a hundred three times that."""
     rng = np.random.default_rng(5)

@@ -799,6 +799,7 @@ def test_every_node_that_ran_has_a_time() -> None:
 # -- long graphs -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_chain_of_2000_nodes_runs() -> None:
     nodes = "\n".join(f"n{i}: {{step: add1, in: n{i - 1}}}" for i in range(1, 2000))
     assert run(make(f"n0: {V[3:]}\n{nodes}", "n1999"))["n1999"] == 3 + 1999
@@ -813,6 +814,7 @@ def test_a_long_chain_of_choices_is_planned_in_no_time() -> None:
     assert time.process_time() - begun < 1.0
 
 
+@pytest.mark.slow
 def test_400_guarded_nodes_in_a_chain_run_and_skip() -> None:
     nodes = "\n".join(
         f"n{i}: {{step: add1, in: n{i - 1}, when: v > 3, with: {{tag: n}}}}" for i in range(1, 401)

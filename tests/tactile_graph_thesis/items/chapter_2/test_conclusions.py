@@ -73,6 +73,7 @@ def test_tables_and_pictures_are_whole(name: str) -> None:
     assert any("/" in axes.get_ylabel() or axes.get_ylabel() == "row" for axes in shown)
 
 
+@pytest.mark.slow
 def test_a_study_is_the_same_for_the_same_seed_and_another_for_another_pad() -> None:
     def rows(seed: int, pad: str) -> object:
         made: Made = study("error-bars").make(Work(seed, pad_name=pad))
