@@ -13,6 +13,7 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import (
     Held,
+    bare,
     chosen,
     frames_of,
     numbered,
@@ -100,6 +101,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
             attributes = {**file.attrs, **numbers[name].attrs}
+            attributes |= {bare(n): d[()].item() for n, d in numbers.items() if d.size == 1}
             lines = [f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0]
     except DataError:
         raise

@@ -46,9 +46,10 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
     if base.trouble:
         return base
     width, (groups, run) = len(base.cells), table.groups
-    index = table.named.names[base.roles["frame"]] if "frame" in base.roles else "?"
     # What pandas writes before each line numbers frames or the rows of one matrix alike.
-    lead = bool(base.roles) and not (table.named.names and not index and len(base.roles) == 1)
+    index, header = base.roles.get("frame"), table.named.names
+    is_index = index is not None and bool(header) and not header[index]
+    lead = bool(base.roles) and not (is_index and len(base.roles) == 1)
     kind, rows, why = _decide(table, base, told, lead)
     if kind == "stacked":
         if len(groups) < 2 and told.rows is None and told.columns is None:

@@ -16,7 +16,7 @@ A table seldom says what it is. The rules, in order:
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -80,18 +80,18 @@ def layout_of(
         return replace(base, trouble=trouble)
     if table.named.is_long:
         return _long(base, table)
-    base = replace(base, roles=roles)
+    date = table.dates[0] if table.dates and _CLOCK in roles else None
+    base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format)
     n_told = (told.rows or 0) * (told.columns or 0)
     empty = () if table.width in (n_told, told.columns) else table.empty
-    cells = table.named.cells or tuple(
-        k
-        for k in range(table.width)
-        if k not in roles.values() and k not in table.labels and k not in empty
-    )
-    base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, roles, cells)))
+    apart = {*roles.values(), *table.labels, *table.dates, *empty}
+    cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
+    read = {*cells, *roles.values(), *(() if date is None else (date,))}
+    read |= {base.part[0]} if base.part else set()
+    base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, read)))
     if not cells:
         return None
     if table.named.places:
@@ -106,6 +106,8 @@ def layout_of(
 def _roles(table: Table, told: ColumnsTold) -> dict[str, int]:
     """Return the columns of frame and time that the header or their form makes known."""
     roles = {k: v for k, v in table.named.roles.items() if k in ("frame", "time")}
+    if roles.get("time") in table.dates:
+        del roles["time"]  # its time of day stands elsewhere
     if "frame" in roles:
         numbers = table.rows[:, roles["frame"]]
         steps = np.diff(numbers)
@@ -138,7 +140,7 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
 
 
 def _strange_column(table: Table, roles: dict[str, int]) -> str:
-    known = {*table.clocks, *table.labels, *roles.values()}
+    known = {*table.clocks, *table.dates, *table.labels, *roles.values()}
     words = [k for k in table.words if k not in known and k not in table.named.others]
     if not words:
         return ""
@@ -187,9 +189,8 @@ def _frames_by_column(table: Table) -> str:
     )
 
 
-def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tuple[str, ...]:
-    """Return the note on columns that are neither cells nor known."""
-    taken = {*cells, *roles.values()}
+def _left_out(table: Table, taken: Collection[int]) -> tuple[str, ...]:
+    """Return the note on columns that nothing is taken from."""
     names = [
         table.named.names[k] if table.named.names else f"column {k + 1}"
         for k in range(table.width)
@@ -203,9 +204,10 @@ def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tupl
 
 def _long(base: Layout, table: Table) -> Layout:
     roles = dict(table.named.roles)
-    if table.clocks and roles.get("time", table.clocks[0]) in table.clocks:
+    if table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
         roles.pop("time", None)
         roles[_CLOCK] = table.clocks[0]
+    base = replace(base, date=table.dates[0] if table.dates and _CLOCK in roles else None)
     names = {role: table.named.names[k] for role, k in table.named.roles.items()}
     said = table.said
     if table.named.quantity != "raw":

@@ -20,9 +20,11 @@ from tactile_graph_sources.readers.tables.breaks import (
 )
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
 from tactile_graph_sources.readers.words.dialect import (
+    ERRORS,
     MISSING,
     Dialect,
     clock_s,
+    is_date,
     is_row,
     without_rules,
 )
@@ -51,8 +53,9 @@ def is_blank(line: str) -> bool:
 
 
 def is_comment(line: str) -> bool:
-    """Return whether a line is a comment."""
-    return line.lstrip().startswith(_COMMENT)
+    """Return whether a line is a comment, not a row that begins with a spreadsheet's error."""
+    text = line.lstrip()
+    return text.startswith(_COMMENT) and not text.lower().startswith(ERRORS)
 
 
 @dataclass(frozen=True)
@@ -127,6 +130,11 @@ class Table:
         return tuple(k for k in self.words if clock_s(self.texts[0][k]) is not None)
 
     @cached_property
+    def dates(self) -> tuple[int, ...]:
+        """Columns that hold dates without a time of day."""
+        return tuple(k for k in self.words if is_date(self.texts[0][k]))
+
+    @cached_property
     def labels(self) -> tuple[int, ...]:
         """Columns that hold words without a digit."""
         column = {k: [row[k] for row in self.texts] for k in self.words}
@@ -145,9 +153,11 @@ class Table:
     @cached_property
     def words(self) -> tuple[int, ...]:
         """Columns of which most fields are no numbers and not empty."""
+        # Between blanks a line of one value may begin with a dash, as lists are written.
+        missing = MISSING - {"-"} if self.dialect.separator is None else MISSING
         wrong = [
             sum(
-                math.isnan(value) and row[k].strip().lower() not in MISSING
+                math.isnan(value) and row[k].strip().lower() not in missing
                 for value, row in zip(self.rows[:, k], self.texts, strict=True)
             )
             for k in range(self.width)
