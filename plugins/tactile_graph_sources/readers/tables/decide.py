@@ -21,15 +21,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from tactile_graph.errors import one_of
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
-from tactile_graph_sources.readers.words.names import ColumnsTold, named
+from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_of
 from tactile_graph_sources.readers.words.told import Told
-from tactile_graph_sources.readers.words.units import length_unit
+from tactile_graph_sources.readers.words.units import NO_UNITS, OHMS, length_unit, value_unit
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"
@@ -73,6 +74,7 @@ def layout_of(
         doubt_about(lines, table.dialect)
         or _unnamed_value(table, roles)
         or _strange_column(table, roles)
+        or _several_units(table)
         or _cells_by_line(table, roles)
         or _frames_by_column(table)
     )
@@ -80,6 +82,7 @@ def layout_of(
         return replace(base, trouble=trouble)
     if table.named.is_long:
         return _long(base, table)
+    base = replace(base, assumed=(*base.assumed, *_strange_unit(table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
     base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
@@ -157,6 +160,27 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
         f"{line}column {k + 1}: {text!r} is no number; write numbers with a decimal point and "
         "without marks between thousands, or say which columns are cells, such as cells=2-65"
     )
+
+
+def _several_units(table: Table) -> str:
+    """Return what to ask where cells are of several units, by their names."""
+    units = sorted(units_of([table.named.names[k] for k in table.named.cells]) - {""})
+    if len({value_unit(u) for u in units}) < 2:
+        return ""
+    return (
+        f"its cells are in several units ({one_of(map(repr, units))}); write them in one, or say "
+        "which columns are cells, such as cells=2-65"
+    )
+
+
+def _strange_unit(table: Table) -> tuple[str, ...]:
+    """Return the note on a unit of all cells that stands for no known quantity."""
+    units = units_of([table.named.names[k] for k in table.named.cells])
+    unit = units.pop() if len(units) == 1 else ""
+    if not unit or value_unit(unit)[0] != "raw" or unit.lower() in NO_UNITS:
+        return ()
+    falls = ", which falls under load" if OHMS.fullmatch(unit.lower()) else ""
+    return (f"values in {unit!r}{falls} taken as they are",)
 
 
 def _cells_by_line(table: Table, roles: dict[str, int]) -> str:

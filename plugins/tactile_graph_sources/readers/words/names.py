@@ -50,12 +50,13 @@ _PARTS = {
 }
 _WHOLE = {"sec", "secs"}
 """How the two columns are called that ROS and others write a time in, and seconds of the second."""
+_ANY_TWO = re.compile(r"\D*(\d+)\D+(\d+)\D*")
 _PAIRS = (
     (re.compile(r"\D*?\b[a-z_]*?r(?:ow)?\W?_?(\d+)\W*_?c(?:ol|olumn)?\W?_?(\d+)\W*"), False),
     (re.compile(r"\D*?\b[a-z_]*?c(?:ol|olumn)?\W?_?(\d+)\W*_?r(?:ow)?\W?_?(\d+)\W*"), True),
     (re.compile(r"\W*x\W?_?(\d+)\W*_?y\W?_?(\d+)\W*"), True),
     (re.compile(r"\W*s(?:palte)?\W?_?(\d+)\W*_?z(?:eile)?\W?_?(\d+)\W*"), True),
-    (re.compile(r"\D*(\d+)\D+(\d+)\D*"), False),
+    (_ANY_TWO, False),
 )
 """Names of cells with two numbers, and whether the column comes first."""
 _LETTER = re.compile(r"([a-z])(\d+)")
@@ -253,8 +254,13 @@ def _in_parts(names: Sequence[str]) -> tuple[int, int, float] | None:
 
 def _unit_of_cells(names: Sequence[str]) -> tuple[str, float]:
     """Return the quantity and factor of the unit that stands in brackets behind every name."""
-    units = {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
+    units = units_of(names)
     return value_unit(units.pop()) if len(units) == 1 else ("raw", 1.0)
+
+
+def units_of(names: Sequence[str]) -> set[str]:
+    """Return what stands in brackets behind names; an empty text for those without."""
+    return {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
 
 
 def _is_value(name: str) -> bool:
@@ -279,6 +285,8 @@ def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tu
         found = [(k, m) for k, n in enumerate(lower) if (m := pattern.fullmatch(n))]
         if len(found) >= FEWEST_CELLS and 2 * len(found) > len(names):
             pairs = [(int(m[1][:6]), int(m[2][:6])) for _, m in found]
+            if pattern is _ANY_TWO and _is_of_one_device(found):
+                return tuple(k for k, _ in found), (), tuple(b for _, b in pairs)
             if len(set(pairs)) == len(pairs):
                 pairs = [(b, a) for a, b in pairs] if column_first else pairs
                 return tuple(k for k, _ in found), tuple(_from_zero(pairs)), ()
@@ -292,6 +300,13 @@ def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tu
             pairs = [(b, a) for a, b in pairs] if turned else pairs
             return tuple(k for k, _ in lettered), tuple(_from_zero(pairs)), ()
     return _numbered(lower)
+
+
+def _is_of_one_device(found: Sequence[tuple[int, re.Match[str]]]) -> bool:
+    """Return whether the first of two numbers is a device's: ``Dev1/ai0``, ``Dev1/ai1``, …."""
+    between = {m.string[m.end(1) : m.start(2)].strip("\\/_-. [](){},;:") for _, m in found}
+    words = {m[1] for _, m in found}
+    return len(words) == len(between) == 1 and between.pop() not in {"", *ROLES}
 
 
 def _numbered(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tuple[int, ...]]:

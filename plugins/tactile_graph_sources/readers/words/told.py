@@ -94,5 +94,6 @@ class Told:
         )
         return (
             f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
-            "give rows and columns whose product is that number"
+            "give rows and columns whose product is that number, or say which columns are cells, "
+            "such as cells=2-65"
         )
