@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
@@ -219,6 +220,8 @@ def _check_file(path: Path) -> None:
         return
     if path.exists():
         raise DataError(str(path), "is no plain file; save what it gives as a file first")
+    if path.is_symlink():
+        raise DataError(str(path), f"is a link to {os.readlink(path)}, which is not there")
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 

@@ -18,9 +18,15 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.words.filled import filling
 from tactile_graph_sources.readers.words.told import Told
 
+FEWEST_RUN_OVER = 99
 FEWEST_COUNTED, BEGUN = 32, 0.1
 """Frames by whose numbers it is known that they count, and the share of these that one which begins
 anew may have left out."""
+
+
+def runs_over(last: float, number: float) -> bool:
+    """Return whether a counter began anew at 0 or 1, as one of two digits or of a byte does."""
+    return last >= FEWEST_RUN_OVER and 0 <= number <= 1
 
 
 class Reading:
@@ -127,7 +133,8 @@ class Reading:
         last = self._last.get(sensor, number)
         self._last[sensor] = number
         fell = len(seen) >= FEWEST_COUNTED and last - number >= len(seen) / 2
-        if fell and number in seen and number <= min(seen) + BEGUN * len(seen):
+        again = fell and number in seen and number <= min(seen) + BEGUN * len(seen)
+        if again or runs_over(last, number):
             self.report.count("frame numbers that begin anew")
             seen.clear()
         if number in seen:

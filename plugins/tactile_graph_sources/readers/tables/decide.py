@@ -22,6 +22,7 @@ from dataclasses import replace
 import numpy as np
 
 from tactile_graph.errors import one_of
+from tactile_graph_sources.readers.reading import runs_over
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
@@ -34,6 +35,7 @@ from tactile_graph_sources.readers.words.units import NO_UNITS, OHMS, length_uni
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"
+_MARKED_UP = ("<?xml", "<!doctype", "<html")
 _TIME_NAME = re.compile(
     r"(?:t|time|zeit|temps|tiempo|tempo)\s*[=_ ]\s*(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)?"
     r"|(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)"
@@ -55,6 +57,8 @@ def layout_of(
     names : sequence of str
         Of the columns, where each line says them.
     """
+    if lines and lines[0].lstrip().lower().startswith(_MARKED_UP):
+        return None
     try:
         table = table_of(lines, told.of_columns, whole, names)
     except ValueError as error:
@@ -113,9 +117,10 @@ def _roles(table: Table, told: ColumnsTold) -> dict[str, int]:
         del roles["time"]  # its time of day stands elsewhere
     if "frame" in roles:
         numbers = table.rows[:, roles["frame"]]
-        steps = np.diff(numbers)
-        # A finger is called index too: what numbers frames never goes down.
-        if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or (steps < 0).any():
+        falls = np.flatnonzero(np.diff(numbers) < 0)
+        # A finger is called index too: what numbers frames goes down only where it runs over.
+        down = not all(runs_over(numbers[k], numbers[k + 1]) for k in falls)
+        if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or down:
             del roles["frame"]
     if "time" not in roles and not table.clocks:
         days = [k for k in table.named.others if are_days(table.rows[:, k])]
@@ -158,7 +163,8 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
         )
     return (
         f"{line}column {k + 1}: {text!r} is no number; write numbers with a decimal point and "
-        "without marks between thousands, or say which columns are cells, such as cells=2-65"
+        "without marks between thousands (a cell without a value is left empty, or NaN), or say "
+        "which columns are cells, such as cells=2-65"
     )
 
 
@@ -244,7 +250,7 @@ def _long(base: Layout, table: Table) -> Layout:
         role = "row" if apart[0] is None else "column"
         what = (
             f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
-            f"stands under {names[role]!r} are no places on a grid"
+            f"stands under {names[role]!r} are no places on a grid; write whole numbers there"
         )
         return replace(base, kind="unclear", trouble=what)
     base = _spaced(base, table, (apart[0], apart[1]))

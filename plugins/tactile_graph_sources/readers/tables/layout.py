@@ -39,6 +39,8 @@ class Layout:
         Where each cell lies in a frame, row by row; empty where that is the order of the columns.
     rows : int
         Of a stacked matrix.
+    rows_of_sums : int
+        Of these, the last ones, which are no cells.
     blank_run : int
         Blank lines that end a matrix.
     breaks : frozenset of str
@@ -77,6 +79,7 @@ class Layout:
     shape: tuple[int, int] | None = None
     places: tuple[int, ...] = ()
     rows: int = 0
+    rows_of_sums: int = 0
     blank_run: int = 1
     breaks: frozenset[str] = frozenset()
     header_line: str = ""

@@ -58,8 +58,8 @@ def recognises(head: Head) -> bool:
     if not head.whole:
         return first.startswith(("[[", "[{")) or not first.endswith("]")
     one = first if first.startswith(("[[[", "[{")) and len(head.first(2)) == 1 else ""
-    text = "\n".join(head.lines)
-    return _parsed(text) is not None or _is_nested(first) or (", " in one and is_cut_off(one))
+    whole = _parsed("\n".join(head.lines))
+    return whole is not None or _is_nested(first) or (", " in one and is_cut_off(one))
 
 
 def is_cut_off(text: str) -> bool:

@@ -22,7 +22,8 @@ _WORDY = re.compile(r"[naNIifB]\d|(?<![\d.])[eE][-+]?\d")
 _BRACKETS = str.maketrans("", "", "[](){}")
 _WORD = re.compile(r"[^\s,;|]+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_ARROW = "->"
+_ARROW = re.compile(r"\s*->|\s>\s")
+"""What serial monitors put behind the time of a line."""
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
     r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?(?:\s?([AP])\.?M\.?)?",
@@ -135,10 +136,10 @@ class Dialect(NamedTuple):
     def of(cls, lines: Sequence[str]) -> Dialect:
         """Return the dialect of some numeric lines."""
         half = len(lines) / 2
-        arrow = sum(_ARROW in line for line in lines) > half
+        arrow = sum(_ARROW.search(line) is not None for line in lines) > half
         brackets = sum("[" in line or "(" in line for line in lines) > half
         if arrow or brackets:
-            plain = [line.rpartition(_ARROW)[2].translate(_BRACKETS) for line in lines]
+            plain = [_ARROW.split(line)[-1].translate(_BRACKETS) for line in lines]
             return cls.of(plain)._replace(brackets=brackets, arrow=arrow)
         for separator in (";", "\t", "|"):
             if 2 * sum(separator in line for line in lines) > len(lines):
@@ -158,8 +159,8 @@ class Dialect(NamedTuple):
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
-        if self.arrow and _ARROW in line:
-            stamp, _, rest = line.partition(_ARROW)
+        if self.arrow and (found := _ARROW.search(line)):
+            stamp, rest = line[: found.start()], line[found.end() :]
             return [stamp.strip(), *self._replace(arrow=False).fields(rest)]
         if self.brackets:
             line = line.translate(_BRACKETS)

@@ -24,7 +24,6 @@ _VALUES = {
     "g": ("gram", 1.0), "gram": ("gram", 1.0), "grams": ("gram", 1.0), "kg": ("gram", 1e3),
     "count": ("counts", 1.0), "counts": ("counts", 1.0), "adc": ("counts", 1.0),
     "lsb": ("counts", 1.0), "siemens": ("siemens", 1.0),
-    "n": ("gram", 101.971621), "newton": ("gram", 101.971621), "newtons": ("gram", 101.971621),
     "vdc": ("volt", 1.0), "mvdc": ("volt", 1e-3),
 }  # fmt: skip
 NO_UNITS = frozenset({"raw", "a.u.", "au", "-", "1", "arb. units"})
