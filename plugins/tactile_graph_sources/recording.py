@@ -26,7 +26,7 @@ from tactile_graph_sources.readers.sequence.in_ranges import ranges_of_recording
 from tactile_graph_sources.readers.sequence.labels import labels_of
 from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.words.names import ColumnsTold
-from tactile_graph_sources.readers.words.told import Told
+from tactile_graph_sources.readers.words.told import Told, as_typed
 
 Length = Annotated[float, Gt(0)]
 
@@ -244,6 +244,9 @@ def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
         for frame in of.read(reading):
             n_frames += 1
             yield frame
+    except DataError as error:
+        error.what += as_typed(error.what, getattr(error, "sensors", ()))
+        raise
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     if n_frames:

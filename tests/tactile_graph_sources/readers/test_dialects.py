@@ -23,6 +23,7 @@ from helpers_dialects import (
 from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
+from helpers_stranger_dialects import stranger_dialects
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph_sources.readers.arrays.matlab import frames_first
@@ -32,7 +33,7 @@ from tactile_graph_sources.readers.words.told import Told
 
 FILES = dialects()
 HDF5 = find_spec("h5py") is not None
-MORE = [*more_dialects(HDF5), *export_dialects(HDF5)]
+MORE = [*more_dialects(HDF5), *export_dialects(HDF5), *stranger_dialects()]
 
 
 @pytest.mark.parametrize("dialect", [*FILES, *MORE], ids=lambda d: d.name)

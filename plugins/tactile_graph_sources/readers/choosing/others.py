@@ -95,7 +95,8 @@ def _melted(lines: list[str]) -> str:
     if len(fields) < 3 or len(fields[0]) not in (2, 3) or len({*map(len, fields)}) > 1:
         return ""
     for k, column in enumerate(zip(*fields[1:], strict=True)):
-        if named(tuple(dict.fromkeys(column))).places:
+        lettered = all(any(c.isalpha() for c in text) for text in column)
+        if lettered and named(tuple(dict.fromkeys(column))).places:
             header = fields[0]
             time = next((n for j, n in enumerate(header[:-1]) if j != k), "")
             index = f"index={time!r}, " if time else ""
