@@ -170,7 +170,7 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
 
 def _several_units(table: Table) -> str:
     """Return what to ask where cells are of several units, by their names."""
-    units = sorted(units_of([table.named.names[k] for k in table.named.cells]) - {""})
+    units = sorted(_units(table) - {""})
     if len({value_unit(u) for u in units}) < 2:
         return ""
     return (
@@ -179,9 +179,15 @@ def _several_units(table: Table) -> str:
     )
 
 
+def _units(table: Table) -> set[str]:
+    """Return the units that the names of cells say, an empty text for none."""
+    names = table.named.names
+    return units_of([names[k] for k in table.named.cells]) if names else set()
+
+
 def _strange_unit(table: Table) -> tuple[str, ...]:
     """Return the note on a unit of all cells that stands for no known quantity."""
-    units = units_of([table.named.names[k] for k in table.named.cells])
+    units = _units(table)
     unit = units.pop() if len(units) == 1 else ""
     if not unit or value_unit(unit)[0] != "raw" or unit.lower() in NO_UNITS:
         return ()

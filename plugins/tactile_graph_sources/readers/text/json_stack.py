@@ -162,7 +162,9 @@ def _by_lines(reading: Reading, text: str) -> list[Any]:
     if not lines or n_damaged > MOST_DAMAGED + len(lines):
         told = "it begins as JSON does, and is none, as a whole or by lines"
         if is_cut_off(text):
-            told = "its JSON is cut off: brackets are not closed; save it again, or close them"
+            told += (
+                "; brackets are not closed, as where it is cut off: save it again, or close them"
+            )
         raise DataError(str(reading.path), told)
     return lines
 
