@@ -148,7 +148,7 @@ def _by_row_numbers(base: Layout, table: Table, told: Told) -> Layout | None:
 def _without_sums(base: Layout, table: Table, rows: int) -> Layout:
     """Return the layout of matrices without a last column, and a last row, of sums."""
     n = len(table.rows) // rows
-    cells = table.rows[: n * rows, base.cells].reshape(n, rows, -1)
+    cells = table.rows[: n * rows, base.cells].reshape(n, rows, len(base.cells))
     if (
         not n
         or min(cells.shape[1:]) <= FEWEST_SUMMED
