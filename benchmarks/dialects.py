@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from helpers_dialects import Dialect, became, dialects, mutated
 from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
+from helpers_stranger_dialects import stranger_dialects
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph_sources.recording import recording
@@ -90,7 +91,7 @@ def main() -> None:
     parser.add_argument("--mutations", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    files = [*dialects(), *more_dialects(), *export_dialects()]
+    files = [*dialects(), *more_dialects(), *export_dialects(), *stranger_dialects()]
     with tempfile.TemporaryDirectory() as name:
         wrong = table(files, Path(name))
         wrong += mutations(files, Path(name), asked.mutations, asked.seed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
@@ -25,7 +26,7 @@ from tactile_graph_sources.readers.sequence.in_ranges import ranges_of_recording
 from tactile_graph_sources.readers.sequence.labels import labels_of
 from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.words.names import ColumnsTold
-from tactile_graph_sources.readers.words.told import Told
+from tactile_graph_sources.readers.words.told import Told, as_typed
 
 Length = Annotated[float, Gt(0)]
 
@@ -219,6 +220,8 @@ def _check_file(path: Path) -> None:
         return
     if path.exists():
         raise DataError(str(path), "is no plain file; save what it gives as a file first")
+    if path.is_symlink():
+        raise DataError(str(path), f"is a link to {os.readlink(path)}, which is not there")
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
 
@@ -241,6 +244,9 @@ def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
         for frame in of.read(reading):
             n_frames += 1
             yield frame
+    except DataError as error:
+        error.what += as_typed(error.what, getattr(error, "sensors", ()))
+        raise
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     if n_frames:

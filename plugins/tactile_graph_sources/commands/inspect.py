@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
+import yaml
 
 from tactile_graph.cli.say import say
 
@@ -180,7 +181,8 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
         return ""
     path = str(looked.path)
     source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
-    value = f"{{{source}}}" if settings else path
+    plain = not settings and yaml.safe_load(path) == path  # 2024-03-01 would be read as a date
+    value = path if plain else f"{{{source}}}"
     told = "".join(f" --with {shlex.quote(s)}" for s in settings)
     setting = shlex.quote(f"{works.levels[name]}.noise_of={value}")
     return f"tactile-graph run {name} {shlex.quote(path)}{told} --set {setting}"

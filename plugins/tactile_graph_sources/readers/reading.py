@@ -18,6 +18,16 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.words.filled import filling
 from tactile_graph_sources.readers.words.told import Told
 
+FEWEST_RUN_OVER = 99
+FEWEST_COUNTED, BEGUN = 32, 0.1
+"""Frames by whose numbers it is known that they count, and the share of these that one which begins
+anew may have left out."""
+
+
+def runs_over(last: float, number: float) -> bool:
+    """Return whether a counter began anew at 0 or 1, as one of two digits or of a byte does."""
+    return last >= FEWEST_RUN_OVER and 0 <= number <= 1
+
 
 class Reading:
     """One file on its way to frames.
@@ -49,6 +59,7 @@ class Reading:
         self.first_damage = ""
         self._gaps: set[str] = set()
         self._seen: dict[str, set[float]] = {}
+        self._last: dict[str, float] = {}
         self._fresh: set[str] = set()
         self.is_own = False
         """Whether the project wrote the file, which says itself what cells are missing."""
@@ -115,9 +126,17 @@ class Reading:
     def is_repeat(self, line: int | str, number: float, name: str, sensor: str = "") -> bool:
         """Return whether a frame of that number was given before; if so, note that it is dropped.
 
-        Of frames with the same number the first whole one is kept.
+        Of frames with the same number the first whole one is kept. A number that falls back to
+        where they began is of a counter that ran over, or of a device that started again.
         """
         seen = self._seen.setdefault(sensor, set())
+        last = self._last.get(sensor, number)
+        self._last[sensor] = number
+        fell = len(seen) >= FEWEST_COUNTED and last - number >= len(seen) / 2
+        again = fell and number in seen and number <= min(seen) + BEGUN * len(seen)
+        if again or runs_over(last, number):
+            self.report.count("frame numbers that begin anew")
+            seen.clear()
         if number in seen:
             self.repeated(line, name)
             return True

@@ -23,6 +23,7 @@ from helpers_dialects import (
 from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
 from helpers_recordings import frames_of, write
+from helpers_stranger_dialects import stranger_dialects
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph_sources.readers.arrays.matlab import frames_first
@@ -32,7 +33,7 @@ from tactile_graph_sources.readers.words.told import Told
 
 FILES = dialects()
 HDF5 = find_spec("h5py") is not None
-MORE = [*more_dialects(HDF5), *export_dialects(HDF5)]
+MORE = [*more_dialects(HDF5), *export_dialects(HDF5), *stranger_dialects()]
 
 
 @pytest.mark.parametrize("dialect", [*FILES, *MORE], ids=lambda d: d.name)
@@ -422,3 +423,11 @@ def test_a_matlab_file_that_is_damaged_or_holds_no_numbers_says_so(tmp_path: Pat
         frames_of(write(tmp_path, matlab(n=3.0, words=cell_array(["a", "b"]), name="mat")))
     with pytest.raises(DataError, match="no variable 'q', there are p"):
         frames_of(write(tmp_path, whole), sensor="q")
+
+
+def test_a_matrix_with_a_short_row_is_no_error_of_numpy_s(tmp_path: Path) -> None:
+    """No whole matrix is among the first rows, so that there is nothing to look for sums in."""
+    rows = [",".join(f"{v:.0f}" for v in row) for row in SQUARE[0]]
+    rows[3] = rows[3].rpartition(",")[0]
+    with pytest.raises(DataError, match="holds no whole frame"):
+        frames_of(text_of(tmp_path, "\n".join(rows) + "\n"))

@@ -69,10 +69,13 @@ def _timed(
     frames = stack_of(reading, held.values, held.what)
     times, factor = held.times, 1.0
     if times is not None and len(times) != len(frames):
+        reading.assume(f"times left out ({len(times)}, for {len(frames)} frames)")
         times = None
     if times is not None:
         factor = _factor(reading, held.times_name, times)
     said = held.said
+    if times is None and said.frame_s is not None:
+        times, factor = np.arange(len(frames)), said.frame_s
     times_s = None if times is None else times.astype(np.float64) * factor
     told = {"factor": said.factor, "pitch_cm": said.pitch_cm, "quantity": said.quantity}
     return frames, times_s, told
@@ -155,11 +158,11 @@ def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
 
 def time_among(names: Iterable[str]) -> str:
     """Return the first of the names that says time; empty if none does."""
-    return next((n for n in sorted(names) if "time" in named((_bare(n), "")).roles), "")
+    return next((n for n in sorted(names) if "time" in named((bare(n), "")).roles), "")
 
 
 def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
-    factor = named((_bare(name), "")).time_factor
+    factor = named((bare(name), "")).time_factor
     if factor is not None:
         return factor
     known = times[np.isfinite(times)].astype(np.float64)
@@ -168,5 +171,6 @@ def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
     return factor
 
 
-def _bare(name: str) -> str:
+def bare(name: str) -> str:
+    """Return the name of an array without those of its groups."""
     return name.replace(".", "/").rpartition("/")[2]

@@ -13,8 +13,10 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import (
     Held,
+    bare,
     chosen,
     frames_of,
+    is_stack,
     numbered,
     time_among,
 )
@@ -92,6 +94,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
             _refuse_cells(where, numbers, [n for n, d in sets.items() if d.dtype.kind == "O"])
             shapes = {n: d.shape for n, d in numbers.items()}
+            _refuse_fields(where, shapes, {n: d.dtype.names for n, d in sets.items()})
             frames = [] if reading.told.sensor else numbered(shapes)
             name = frames[0] if frames else chosen(reading, shapes, "dataset")
             read = {*(frames or [name]), time_among(numbers)}
@@ -100,6 +103,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
             times = numbers[time][()].ravel() if time else None
             attributes = {**file.attrs, **numbers[name].attrs}
+            attributes |= {bare(n): d[()].item() for n, d in numbers.items() if d.size == 1}
             lines = [f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0]
     except DataError:
         raise
@@ -117,6 +121,19 @@ def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> 
         name = named[0]
         told = f"{name!r} is a cell array; in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"
         raise DataError(where, told)
+
+
+def _refuse_fields(
+    where: str, shapes: Mapping[str, tuple[int, ...]], fields: Mapping[str, Any]
+) -> None:
+    """Refuse a file whose only matrices may be fields of a dataset."""
+    name = next((n for n, names in fields.items() if names), "")
+    if name and not any(map(is_stack, shapes.values())):
+        raise DataError(
+            where,
+            f"dataset {name!r} has fields ({', '.join(fields[name])}); save the one with the cells "
+            f"as a dataset of its own, in Python: file['frames'] = file[{name!r}][field]",
+        )
 
 
 def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.words.preamble import Described
+from tactile_graph_sources.readers.words.preamble import described
 from tactile_graph_sources.readers.words.truth import Truth, truth_from_json
 
 MOST_MEMBERS = 1000
@@ -259,11 +259,13 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     """Return the only stack of another's archive, its times beside it."""
     values, what = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    stamps = {
-        n for n, (s, t) in outlines.items() if s[:1] == values.shape[:1] == s and t.kind in "iuf"
-    }
-    time = time_among(stamps)
-    return Held(values, what, Described(), arrays.load(time) if time else None, time)
+    time = time_among(n for n, (s, t) in outlines.items() if len(s) == 1 and t.kind in "iufMm")
+    single = [n for n, (s, t) in outlines.items() if math.prod(s) == 1 and t.kind in "iufU"]
+    said = described(f"{n}: {arrays.load(n).item()}" for n in single)
+    times = arrays.load(time) if time else None
+    if times is not None and len(times) and times.dtype.kind in "Mm":
+        times, time = (times - times[0]) / np.timedelta64(1, "s"), "time_s"
+    return Held(values, what, said, times, time)
 
 
 def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:

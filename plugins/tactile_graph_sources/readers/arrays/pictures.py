@@ -9,7 +9,7 @@ import os
 import re
 import warnings
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -55,17 +55,14 @@ def read(reading: Reading) -> Iterator[Frame]:
     reading.recognised("the first bytes of a picture")
     if reading.path.stat().st_size > MOST_BYTES:
         raise DataError(str(reading.path), f"is a picture of more than {MOST_BYTES >> 20} MB")
-    for matrix in _pages(reading, reading.path.read_bytes(), ""):
-        yield reading.frame(matrix)
+    yield from _in_turn(reading, [("", reading.path.read_bytes())])
 
 
 def _of_archive(reading: Reading, archive: zipfile.ZipFile) -> Iterator[Frame]:
     members = _pictures_of(archive)
     reading.recognised(f"an archive of {len(members)} pictures, in the order of their numbers")
     reading.report.expect(len(members))
-    for name in members:
-        for matrix in _pages(reading, _unpacked(reading, archive, name), name):
-            yield reading.frame(matrix)
+    yield from _in_turn(reading, ((n, _unpacked(reading, archive, n)) for n in members))
 
 
 def read_folder(reading: Reading) -> Iterator[Frame]:
@@ -73,10 +70,29 @@ def read_folder(reading: Reading) -> Iterator[Frame]:
     names = pictures_in(reading.path)
     reading.recognised(f"a folder of {len(names)} pictures, in the order of their numbers")
     reading.report.expect(len(names))
-    for name in names:
-        content = (reading.path / name).read_bytes()
-        reading.report.digest(str(reading.path / name), hashlib.sha256(content).hexdigest())
+    yield from _in_turn(reading, ((n, _content(reading, n)) for n in names))
+
+
+def _content(reading: Reading, name: str) -> bytes:
+    content = (reading.path / name).read_bytes()
+    reading.report.digest(str(reading.path / name), hashlib.sha256(content).hexdigest())
+    return content
+
+
+def _in_turn(reading: Reading, contents: Iterable[tuple[str, bytes]]) -> Iterator[Frame]:
+    """Yield the frames of pictures that belong together, which therefore are of one size."""
+    first: tuple[str, tuple[int, ...]] | None = None
+    for name, content in contents:
         for matrix in _pages(reading, content, name):
+            first = first or (name, matrix.shape)
+            if matrix.shape != first[1]:
+                (n, m), (rows, columns) = first[1], matrix.shape
+                raise DataError(
+                    f"{reading.path}:{name}" if name else str(reading.path),
+                    f"has {rows} x {columns} pixels, {first[0] or 'its first page'} {n} x {m}; the "
+                    "frames of a recording are of one size: keep those of each size in a file or "
+                    "folder of their own",
+                )
             yield reading.frame(matrix)
 
 
@@ -132,7 +148,7 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
             raise
         except Exception as error:  # every library below imageio has errors of its own
             if not n:
-                text = str(error).partition("\n")[0][:120]
+                text = str(error).partition("\n")[0].partition("<")[0].rstrip()[:120]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
             reading.damaged(f"page {n}", "cannot be read; the pages before it are kept")
 

@@ -21,6 +21,7 @@ ALIKE, UNLIKE = 2.5, 4.0
 """Times the difference of neighbours along one axis that those along another are, at most where
 they are axes of one kind, and at least where not."""
 MAD_TO_SD = 1.4826
+_AS_REAL = "such, in Python: numpy.save('out.npy', array.{})"
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -46,7 +47,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
     """
     where = str(reading.path)
     if array.dtype.kind not in "buif":
-        raise DataError(where, f"{name} holds {array.dtype}, not real numbers")
+        told = f"{name} holds {array.dtype}, not real numbers; save it as {_AS_REAL}"
+        raise DataError(where, told.format("real" if array.dtype.kind == "c" else "astype(float)"))
     rows, columns = reading.told.rows, reading.told.columns
     if array.ndim > 3:
         array = without_single_axes(array)

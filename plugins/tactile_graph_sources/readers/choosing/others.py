@@ -6,9 +6,11 @@ import re
 import struct
 
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.words.names import named
 
 _AS_CSV = "save its sheet as CSV"
 _UNPACK = "unpack it first"
+_AS_PICTURES = "save its frames as PNG or TIFF pictures, or as .npy"
 _MARKS = (
     (b"\x1f\x8b", "packed by gzip", f"{_UNPACK}: gunzip -k FILE"),
     (b"BZh", "packed by bzip2", f"{_UNPACK}: bunzip2 -k FILE"),
@@ -28,7 +30,10 @@ _MARKS = (
      "convert it to MCAP, or save its table as CSV"),
     (b"<", "HTML or XML", "open it in a spreadsheet, and save its table as CSV"),
     (b"%PDF", "a PDF", "save the numbers it was made from"),
-    (b"RIFF", "a film or a sound", "save its frames as pictures or as .npy"),
+    (b"RIFF", "a film, a sound or a WebP picture", _AS_PICTURES),
+    (b"P2\n", "a PGM picture", "save it as PNG or TIFF"),
+    (b"P5\n", "a PGM picture", "save it as PNG or TIFF"),
+    (b"P5 ", "a PGM picture", "save it as PNG or TIFF"),
     (b"HDF_UC", "HDF4", "save its array as .npy or HDF5"),
 )  # fmt: skip
 _PICKLE = (
@@ -42,8 +47,8 @@ _SHEETS = {
     "word/document.xml": "a Word document",
 }
 _HEXADECIMAL = re.compile(
-    r"(?:0x[0-9a-f]+[\s,;]*){3,}|(?=.*[a-f])(?:[0-9a-f]{2}[\s,;]+){7,}"
-    r"[0-9a-f]{2}",
+    r"(?:0x[0-9a-f]+[\s,;]*){3,}|(?=.*[a-f])(?:(?:[0-9a-f]{2}){1,4}[\s,;]+){7,}"
+    r"(?:[0-9a-f]{2}){1,4}|[0-9a-f]{7,8}:(?: [0-9a-f]{4}){4,8}.*",
     re.IGNORECASE,
 )
 _WITH_UNITS = re.compile(
@@ -67,16 +72,39 @@ def remedy_for(head: Head) -> str:
             return f"it is {what}: {remedy or _PICKLE}".replace("FILE", head.path.name)
     if _is_matlab_4(head.raw):
         return "it is a MATLAB file of version 4: save it anew, save('out.mat', '-v7')"
+    if head.raw[4:8] == b"ftyp":
+        return f"it is a film: {_AS_PICTURES}"
     if head.raw[257:262] == b"ustar":
         return f"it is a tar archive: unpack it first: tar -xf {head.path.name}"
     if any(_FORTRAN.search(line) for line in head.first(3)):
         return "its exponents are Fortran's (1.2D+03): write them as 1.2E+03"
     if any("\u2212" in line for line in head.first(5)):
         return "its minus signs are U+2212: write them as '-'"
-    if any(_WITH_UNITS.fullmatch(line.strip()) for line in head.first(5)):
-        return "a unit stands behind each of its numbers: leave them out"
     if any(_HEXADECIMAL.fullmatch(line.strip()) for line in head.first(5)):
         return "its numbers are hexadecimal: write them as decimal ones"
+    if any(_WITH_UNITS.fullmatch(line.strip()) for line in head.first(5)):
+        return "a unit stands behind each of its numbers: leave them out"
+    if melted := _melted(head.first(60)):
+        return melted.replace("FILE", head.path.name)
+    return ""
+
+
+def _melted(lines: list[str]) -> str:
+    """Return what to do with a cell a line that is known by its name: ``0.02,r0c1,17``."""
+    fields = [[f.strip().strip('"') for f in re.split(r"[,;\t]", line)] for line in lines]
+    if len(fields) < 3 or len(fields[0]) not in (2, 3) or len({*map(len, fields)}) > 1:
+        return ""
+    for k, column in enumerate(zip(*fields[1:], strict=True)):
+        lettered = all(any(c.isalpha() for c in text) for text in column)
+        if lettered and named(tuple(dict.fromkeys(column))).places:
+            header = fields[0]
+            time = next((n for j, n in enumerate(header[:-1]) if j != k), "")
+            index = f"index={time!r}, " if time else ""
+            return (
+                f"each of its lines is a cell by its name ({column[0]!r}); make a line of each "
+                f"frame, in Python: pandas.read_csv('FILE').pivot({index}columns={header[k]!r}, "
+                f"values={header[-1]!r}).to_csv('out.csv')"
+            )
     return ""
 
 

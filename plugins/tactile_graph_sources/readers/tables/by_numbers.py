@@ -13,6 +13,7 @@ from tactile_graph_sources.readers.tables.breaks import times_without_unit
 from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
     is_one_row,
+    is_sum,
     line_period,
     row_length_clarity,
     row_lengths,
@@ -24,6 +25,7 @@ from tactile_graph_sources.readers.tables.table import ENDLESS, Table
 from tactile_graph_sources.readers.words.told import Told
 
 SMALLEST_SURE_SQUARE = 64
+FEWEST_SUMMED = 3
 MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 LEAST_FRAMED = 16
 """Values of a line that may be a frame by how they lie together."""
@@ -46,14 +48,17 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
     if base.trouble:
         return base
     width, (groups, run) = len(base.cells), table.groups
-    index = table.named.names[base.roles["frame"]] if "frame" in base.roles else "?"
     # What pandas writes before each line numbers frames or the rows of one matrix alike.
-    lead = bool(base.roles) and not (table.named.names and not index and len(base.roles) == 1)
+    index, header = base.roles.get("frame"), table.named.names
+    is_index = index is not None and bool(header) and not header[index]
+    lead = bool(base.roles) and not (is_index and len(base.roles) == 1)
     kind, rows, why = _decide(table, base, told, lead)
     if kind == "stacked":
         if len(groups) < 2 and told.rows is None and told.columns is None:
             note = f"{rows} lines of {width} values assumed to be the rows of one matrix"
             base = replace(base, assumed=(*base.assumed, note))
+        if told.rows is None and told.columns is None:
+            base = _without_sums(base, table, rows)
         return replace(
             base,
             kind=kind,
@@ -138,6 +143,25 @@ def _by_row_numbers(base: Layout, table: Table, told: Told) -> Layout | None:
         assumed=left_out,
         why=f"its column {name!r} numbers the rows of each matrix",
     )
+
+
+def _without_sums(base: Layout, table: Table, rows: int) -> Layout:
+    """Return the layout of matrices without a last column, and a last row, of sums."""
+    n = len(table.rows) // rows
+    cells = table.rows[: n * rows, base.cells].reshape(n, rows, len(base.cells))
+    if (
+        not n
+        or min(cells.shape[1:]) <= FEWEST_SUMMED
+        or not is_sum(cells[..., -1].ravel(), cells[..., :-1].reshape(n * rows, -1))
+    ):
+        return base
+    note = "columns left out that are no cells (the last, a sum)"
+    base = replace(base, cells=base.cells[:-1], assumed=(*base.assumed, note))
+    last, above = cells[:, -1, :-1], np.moveaxis(cells[:, :-1, :-1], 1, -1)
+    if not is_sum(last.ravel(), above.reshape(last.size, -1)):
+        return base
+    note = "rows left out that are no cells (the last of each matrix, a sum)"
+    return replace(base, rows_of_sums=1, assumed=(*base.assumed, note))
 
 
 def _time_unit(base: Layout, table: Table) -> dict[str, Any]:

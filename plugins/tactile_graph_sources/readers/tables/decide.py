@@ -16,23 +16,26 @@ A table seldom says what it is. The rules, in order:
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from tactile_graph.errors import one_of
+from tactile_graph_sources.readers.reading import runs_over
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
-from tactile_graph_sources.readers.words.names import ColumnsTold, named
+from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_of
 from tactile_graph_sources.readers.words.told import Told
-from tactile_graph_sources.readers.words.units import length_unit
+from tactile_graph_sources.readers.words.units import NO_UNITS, OHMS, length_unit, value_unit
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"
+_MARKED_UP = ("<?xml", "<!doctype", "<html")
 _TIME_NAME = re.compile(
     r"(?:t|time|zeit|temps|tiempo|tempo)\s*[=_ ]\s*(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)?"
     r"|(\d+(?:[.,]\d+)?)\s*(?:s|sec|ms|us|min)"
@@ -54,6 +57,8 @@ def layout_of(
     names : sequence of str
         Of the columns, where each line says them.
     """
+    if lines and lines[0].lstrip().lower().startswith(_MARKED_UP):
+        return None
     try:
         table = table_of(lines, told.of_columns, whole, names)
     except ValueError as error:
@@ -73,6 +78,7 @@ def layout_of(
         doubt_about(lines, table.dialect)
         or _unnamed_value(table, roles)
         or _strange_column(table, roles)
+        or _several_units(table)
         or _cells_by_line(table, roles)
         or _frames_by_column(table)
     )
@@ -80,18 +86,19 @@ def layout_of(
         return replace(base, trouble=trouble)
     if table.named.is_long:
         return _long(base, table)
-    base = replace(base, roles=roles)
+    base = replace(base, assumed=(*base.assumed, *_strange_unit(table)))
+    date = table.dates[0] if table.dates and _CLOCK in roles else None
+    base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format)
     n_told = (told.rows or 0) * (told.columns or 0)
     empty = () if table.width in (n_told, told.columns) else table.empty
-    cells = table.named.cells or tuple(
-        k
-        for k in range(table.width)
-        if k not in roles.values() and k not in table.labels and k not in empty
-    )
-    base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, roles, cells)))
+    apart = {*roles.values(), *table.labels, *table.dates, *empty}
+    cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
+    read = {*cells, *roles.values(), *(() if date is None else (date,))}
+    read |= {base.part[0]} if base.part else set()
+    base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, read)))
     if not cells:
         return None
     if table.named.places:
@@ -106,11 +113,14 @@ def layout_of(
 def _roles(table: Table, told: ColumnsTold) -> dict[str, int]:
     """Return the columns of frame and time that the header or their form makes known."""
     roles = {k: v for k, v in table.named.roles.items() if k in ("frame", "time")}
+    if roles.get("time") in table.dates:
+        del roles["time"]  # its time of day stands elsewhere
     if "frame" in roles:
         numbers = table.rows[:, roles["frame"]]
-        steps = np.diff(numbers)
-        # A finger is called index too: what numbers frames never goes down.
-        if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or (steps < 0).any():
+        falls = np.flatnonzero(np.diff(numbers) < 0)
+        # A finger is called index too: what numbers frames goes down only where it runs over.
+        down = not all(runs_over(numbers[k], numbers[k + 1]) for k in falls)
+        if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or down:
             del roles["frame"]
     if "time" not in roles and not table.clocks:
         days = [k for k in table.named.others if are_days(table.rows[:, k])]
@@ -138,7 +148,7 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
 
 
 def _strange_column(table: Table, roles: dict[str, int]) -> str:
-    known = {*table.clocks, *table.labels, *roles.values()}
+    known = {*table.clocks, *table.dates, *table.labels, *roles.values()}
     words = [k for k in table.words if k not in known and k not in table.named.others]
     if not words:
         return ""
@@ -153,8 +163,36 @@ def _strange_column(table: Table, roles: dict[str, int]) -> str:
         )
     return (
         f"{line}column {k + 1}: {text!r} is no number; write numbers with a decimal point and "
-        "without marks between thousands, or say which columns are cells, such as cells=2-65"
+        "without marks between thousands (a cell without a value is left empty, or NaN), or say "
+        "which columns are cells, such as cells=2-65"
     )
+
+
+def _several_units(table: Table) -> str:
+    """Return what to ask where cells are of several units, by their names."""
+    units = sorted(_units(table) - {""})
+    if len({value_unit(u) for u in units}) < 2:
+        return ""
+    return (
+        f"its cells are in several units ({one_of(map(repr, units))}); write them in one, or say "
+        "which columns are cells, such as cells=2-65"
+    )
+
+
+def _units(table: Table) -> set[str]:
+    """Return the units that the names of cells say, an empty text for none."""
+    names = table.named.names
+    return units_of([names[k] for k in table.named.cells]) if names else set()
+
+
+def _strange_unit(table: Table) -> tuple[str, ...]:
+    """Return the note on a unit of all cells that stands for no known quantity."""
+    units = _units(table)
+    unit = units.pop() if len(units) == 1 else ""
+    if not unit or value_unit(unit)[0] != "raw" or unit.lower() in NO_UNITS:
+        return ()
+    falls = ", which falls under load" if OHMS.fullmatch(unit.lower()) else ""
+    return (f"values in {unit!r}{falls} taken as they are",)
 
 
 def _cells_by_line(table: Table, roles: dict[str, int]) -> str:
@@ -187,9 +225,8 @@ def _frames_by_column(table: Table) -> str:
     )
 
 
-def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tuple[str, ...]:
-    """Return the note on columns that are neither cells nor known."""
-    taken = {*cells, *roles.values()}
+def _left_out(table: Table, taken: Collection[int]) -> tuple[str, ...]:
+    """Return the note on columns that nothing is taken from."""
     names = [
         table.named.names[k] if table.named.names else f"column {k + 1}"
         for k in range(table.width)
@@ -203,9 +240,10 @@ def _left_out(table: Table, roles: dict[str, int], cells: Sequence[int]) -> tupl
 
 def _long(base: Layout, table: Table) -> Layout:
     roles = dict(table.named.roles)
-    if table.clocks and roles.get("time", table.clocks[0]) in table.clocks:
+    if table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
         roles.pop("time", None)
         roles[_CLOCK] = table.clocks[0]
+    base = replace(base, date=table.dates[0] if table.dates and _CLOCK in roles else None)
     names = {role: table.named.names[k] for role, k in table.named.roles.items()}
     said = table.said
     if table.named.quantity != "raw":
@@ -218,7 +256,7 @@ def _long(base: Layout, table: Table) -> Layout:
         role = "row" if apart[0] is None else "column"
         what = (
             f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
-            f"stands under {names[role]!r} are no places on a grid"
+            f"stands under {names[role]!r} are no places on a grid; write whole numbers there"
         )
         return replace(base, kind="unclear", trouble=what)
     base = _spaced(base, table, (apart[0], apart[1]))

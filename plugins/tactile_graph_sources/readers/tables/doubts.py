@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import zip_longest
 
-from tactile_graph_sources.readers.words.dialect import Dialect, is_row
+from tactile_graph_sources.readers.words.dialect import Dialect, is_row, unquoted
 
 _LOOKED_AT = 400
 _FEWEST_PAIRS, _FEWEST_LINES = 3, 2
@@ -13,6 +14,8 @@ _PARTED = re.compile(r"\s*Columns?\s+\d+\s+(?:through|to|and)\s+\d+\W*", re.IGNO
 _BRACKETED = re.compile(r"\(\s*\d[\d.,]*\s*\)")
 _WHOLE = re.compile(r"[-+]?\d+")
 _FEW_DIGITS = re.compile(r"\d{1,3}")
+_SET_APART = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
+_SMALL = re.compile(r"[-+]?\d{1,3}")
 _SHORTENED = re.compile(r"(?:^|[\s,\[])\.\.\.(?:[\s,\]]|$)")
 
 _PRINTS = {
@@ -40,6 +43,7 @@ def doubt_about(lines: Sequence[str], dialect: Dialect) -> str:
         next((told for line in first if (told := _of_line(line, dialect))), "")
         or _of_commas(rows := [line for line in first if is_row(line)], dialect)
         or _of_places(rows[:2], dialect)
+        or _of_thousands(rows, dialect)
     )  # fmt: skip
 
 
@@ -100,6 +104,25 @@ def _of_commas(rows: Sequence[str], dialect: Dialect) -> str:
         f"{width} numbers a line with commas between them, every second one of {digits.pop()} "
         f"digits: {width // 2} numbers such as {one} with a decimal comma? Write decimal points, "
         "or semicolons between the numbers"
+    )
+
+
+def _of_thousands(rows: Sequence[str], dialect: Dialect) -> str:
+    """Return the question whether 1.200 is 1200, where numbers below 1000 are whole ones."""
+    if dialect.thousands or not any("." in row or "," in row for row in rows):
+        return ""
+    fields = [[unquoted(f) for f in row.split(dialect.separator)] for row in rows]
+    columns = zip_longest(*fields, fillvalue="0")
+    found = [
+        c for c in columns if any(map(_SET_APART.fullmatch, c)) and any(map(_SMALL.fullmatch, c))
+    ]
+    doubtful = [c for c in found if all(_SET_APART.fullmatch(f) or _SMALL.fullmatch(f) for f in c)]
+    if len(doubtful) < _FEWEST_PAIRS or len(doubtful) < len(found):
+        return ""
+    one = next(filter(_SET_APART.fullmatch, doubtful[0]))
+    return (
+        f"{one!r} may be {one.replace(',', '.')} or {re.sub('[.,]', '', one)}, as numbers below "
+        "1000 are whole ones; write numbers without marks between thousands"
     )
 
 

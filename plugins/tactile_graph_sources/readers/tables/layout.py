@@ -39,6 +39,8 @@ class Layout:
         Where each cell lies in a frame, row by row; empty where that is the order of the columns.
     rows : int
         Of a stacked matrix.
+    rows_of_sums : int
+        Of these, the last ones, which are no cells.
     blank_run : int
         Blank lines that end a matrix.
     breaks : frozenset of str
@@ -47,6 +49,10 @@ class Layout:
         The line that numbers the columns of a matrix; empty without one.
     time_factor : float
         From the column of time to seconds.
+    part : (int, float), optional
+        Column of what comes on top of the time, and the seconds of one in it.
+    date : int, optional
+        Column of the date, where that of clock holds times of day alone.
     time_format : str
         Of the column of clock, where the settings say it.
     spacing : (float, float)
@@ -73,10 +79,13 @@ class Layout:
     shape: tuple[int, int] | None = None
     places: tuple[int, ...] = ()
     rows: int = 0
+    rows_of_sums: int = 0
     blank_run: int = 1
     breaks: frozenset[str] = frozenset()
     header_line: str = ""
     time_factor: float = 1.0
+    part: tuple[int, float] | None = None
+    date: int | None = None
     time_format: str = ""
     spacing: tuple[float, float] = (1.0, 1.0)
     first: tuple[float, float] = (0.0, 0.0)
@@ -100,7 +109,7 @@ def of_sensor(layout: Layout, line: str) -> bool:
 def timed(base: Layout, table: Table) -> Layout:
     """Return the layout with the factor of its time; where nobody says the unit, it is assumed."""
     if table.named.time_factor is not None:
-        return replace(base, time_factor=table.named.time_factor)
+        return replace(base, time_factor=table.named.time_factor, part=table.named.part)
     times = table.rows[:, base.roles["time"]]
     factor, unit = unit_of(times[np.isfinite(times)])
     return replace(

@@ -158,13 +158,21 @@ def lines_of_sensors(
         None where no column does, or all lines are of one sensor.
     """
     for k, name in enumerate(names):
-        if name.strip().lower() not in _LINE_COLUMNS:
-            continue
-        said = Counter(unquoted(row[k]) for row in texts)
-        often = sorted(n for n, times in said.items() if times > 1)
-        if 1 < len(often) == len(said) <= MOST_SENSORS:
-            return k, tuple(often)
+        if found := labels_of_lines(name, (unquoted(row[k]) for row in texts)):
+            return k, found
     return None
+
+
+def labels_of_lines(name: str, said: Iterable[str]) -> tuple[str, ...]:
+    """Return the sensors that a column or key of such a name tells apart by what it says.
+
+    None where it is not called so, or says the same of all, or hardly anything twice.
+    """
+    if name.strip().lower() not in _LINE_COLUMNS:
+        return ()
+    counted = Counter(said)
+    often = sorted(n for n, times in counted.items() if times > 1)
+    return tuple(often) if 1 < len(often) == len(counted) <= MOST_SENSORS else ()
 
 
 def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | None]:

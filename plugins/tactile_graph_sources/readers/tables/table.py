@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 from collections import Counter
@@ -20,13 +21,16 @@ from tactile_graph_sources.readers.tables.breaks import (
 )
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
 from tactile_graph_sources.readers.words.dialect import (
+    ERRORS,
     MISSING,
     Dialect,
     clock_s,
+    is_date,
     is_row,
     without_rules,
 )
 from tactile_graph_sources.readers.words.names import (
+    ROLES,
     SECONDS,
     ColumnsTold,
     Named,
@@ -51,8 +55,9 @@ def is_blank(line: str) -> bool:
 
 
 def is_comment(line: str) -> bool:
-    """Return whether a line is a comment."""
-    return line.lstrip().startswith(_COMMENT)
+    """Return whether a line is a comment, not a row that begins with a spreadsheet's error."""
+    text = line.lstrip()
+    return text.startswith(_COMMENT) and not text.lower().startswith(ERRORS)
 
 
 @dataclass(frozen=True)
@@ -127,6 +132,11 @@ class Table:
         return tuple(k for k in self.words if clock_s(self.texts[0][k]) is not None)
 
     @cached_property
+    def dates(self) -> tuple[int, ...]:
+        """Columns that hold dates without a time of day."""
+        return tuple(k for k in self.words if is_date(self.texts[0][k]))
+
+    @cached_property
     def labels(self) -> tuple[int, ...]:
         """Columns that hold words without a digit."""
         column = {k: [row[k] for row in self.texts] for k in self.words}
@@ -145,9 +155,11 @@ class Table:
     @cached_property
     def words(self) -> tuple[int, ...]:
         """Columns of which most fields are no numbers and not empty."""
+        # Between blanks a line of one value may begin with a dash, as lists are written.
+        missing = MISSING - {"-"} if self.dialect.separator is None else MISSING
         wrong = [
             sum(
-                math.isnan(value) and row[k].strip().lower() not in MISSING
+                math.isnan(value) and row[k].strip().lower() not in missing
                 for value, row in zip(self.rows[:, k], self.texts, strict=True)
             )
             for k in range(self.width)
@@ -222,6 +234,8 @@ def table_of(
     full = [(k, f[:width]) for k, f in fields if len(f) >= width and not any(f[width:])]
     if not width or not full:
         return None
+    if len(full) > 1 and width > 1 and not any(map(_is_number, full[0][1])):
+        full = full[1:]  # names with numbers in them look like a row
     start = full[0][0]
     content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
     if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
@@ -270,6 +284,10 @@ def _number(text: str) -> float:
         return math.nan
 
 
+def _is_number(text: str) -> bool:
+    return not math.isnan(_number(text))
+
+
 def _width(fields: Sequence[Sequence[str]]) -> int:
     usual = Counter(len(f) for f in fields).most_common(1)[0][0]
     alike = [f for f in fields if len(f) == usual]
@@ -305,6 +323,9 @@ def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ..
     """Return the names in the last line of words, if it has as many as the rows have fields."""
     line = next((x for x in reversed(before) if not is_blank(x)), "")
     text = line.lstrip().lstrip("#%/ ") if is_comment(line) else line
+    quoted = tuple(n.strip() for n in next(csv.reader([text]))) if '"' in text else ()
+    if len(quoted) == width > 1 and dialect.separator == "," and not any(map(_is_number, quoted)):
+        return quoted  # as pandas writes names that are pairs: "(0, 1)"
     if not text or is_row(text) or FRAME_LINE.fullmatch(text) or width < 2:
         return ()
     separator = dialect.separator
@@ -319,8 +340,11 @@ def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ..
 
 def _is_numbered(first: Sequence[str]) -> bool:
     """Return whether a first row counts the columns, as tables without names are written."""
-    head = first[0].strip().strip('"')
-    rest = first if head.isdecimal() else first[1:]
-    if len(rest) < 3 or not all(t.strip().strip('"').isdecimal() for t in rest):
+    texts = [t.strip().strip('"') for t in first]
+    led = next((k for k, t in enumerate(texts) if t.isdecimal()), 0)
+    rest = texts[led:]
+    if led > 1 and not all(t.lower() in ROLES for t in texts[:led]):
         return False
-    return is_count(np.array([float(t.strip().strip('"')[:9]) for t in rest]))
+    if len(rest) < 3 or not all(t.isdecimal() for t in rest):
+        return False
+    return is_count(np.array([float(t[:9]) for t in rest]))

@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, one_of
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
 from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.names import ROLES, named
 from tactile_graph_sources.readers.words.preamble import Described, described
@@ -29,6 +31,8 @@ MOST_KEYS, MOST_DAMAGED = 1_000, 1_000
 _SHAPES = ("shape", "size", "dims", "dimensions", "grid")
 _ROS_PARTS = {"secs": "nsecs", "sec": "nanosec"}
 """How messages of ROS 1 and 2 spell the seconds of a stamp, and what comes on top."""
+_BASE64 = re.compile(r"(?=.*[A-Za-z])[A-Za-z0-9+/]+={0,2}")
+FEWEST_PACKED = 16
 _NUMBERED = re.compile(r"(\D*)(\d{1,9})")
 Cells = NDArray[np.float64]
 
@@ -53,7 +57,14 @@ def recognises(head: Head) -> bool:
     first = next((x.strip() for x in head.lines if x.strip()), "")
     if not head.whole:
         return first.startswith(("[[", "[{")) or not first.endswith("]")
-    return _parsed("\n".join(head.lines)) is not None or _is_nested(first)
+    one = first if first.startswith(("[[[", "[{")) and len(head.first(2)) == 1 else ""
+    whole = _parsed("\n".join(head.lines))
+    return whole is not None or _is_nested(first) or (", " in one and is_cut_off(one))
+
+
+def is_cut_off(text: str) -> bool:
+    """Return whether brackets are opened and not closed at the end of a text."""
+    return text.count("[") > text.count("]") or text.count("{") > text.count("}")
 
 
 def _holds_objects(lines: list[str]) -> bool:
@@ -76,7 +87,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the file is no JSON, holds no frames, or does not say their shape.
     """
-    yield from frames_of(reading, entries_of(str(reading.path), _content(reading)))
+    content = _content(reading)
+    yield from frames_of(reading, entries_of(str(reading.path), content, reading.told.sensor))
 
 
 def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
@@ -148,8 +160,12 @@ def _by_lines(reading: Reading, text: str) -> list[Any]:
             if n_damaged > MOST_DAMAGED + len(lines):
                 break
     if not lines or n_damaged > MOST_DAMAGED + len(lines):
-        text = "it begins as JSON does, and is none, as a whole or by lines"
-        raise DataError(str(reading.path), text)
+        told = "it begins as JSON does, and is none, as a whole or by lines"
+        if is_cut_off(text):
+            told += (
+                "; brackets are not closed, as where it is cut off: save it again, or close them"
+            )
+        raise DataError(str(reading.path), told)
     return lines
 
 
@@ -167,16 +183,25 @@ def _array(entry: object) -> Cells | None:
         return None
 
 
-def entries_of(where: str, content: Any) -> Entries:
+def entries_of(where: str, content: Any, sensor: str | None = None) -> Entries:
     """Return the frames in what was parsed, wherever they lie in it.
+
+    Parameters
+    ----------
+    where : str
+    content
+        What JSON holds.
+    sensor : str, optional
+        The sensor that is asked for, or none by an empty text, where each frame says whose it is;
+        None where nobody asks.
 
     Raises
     ------
     DataError
-        If there are none, or several lists could be them.
+        If there are none, several lists could be them, or they are of several sensors.
     """
     if isinstance(content, dict):
-        return _of_object(where, content)
+        return _of_object(where, content, sensor)
     if not isinstance(content, list) or not content:
         raise DataError(where, "its JSON is neither a list of frames nor an object around one")
     if not isinstance(content[0], dict):
@@ -190,8 +215,17 @@ def entries_of(where: str, content: Any) -> Entries:
     if len(content[0]) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content[0])} keys; allowed are {MOST_KEYS}")
     objects = [_plain(e) if isinstance(e, dict) else {} for e in content]
+    objects = objects if sensor is None else _of_one_sensor(where, objects, sensor)
     first = objects[0]
     lists = [k for k, v in first.items() if isinstance(v, list) and not _is_of_objects(v)]
+    text = next((k for k, v in first.items() if isinstance(v, str) and _is_packed(v)), "")
+    if text and not lists:
+        raise DataError(
+            where,
+            f"its JSON holds the cells of a frame packed as text ({text!r}: base64); write them as "
+            "numbers, in Python, with the type and the shape of its values: numpy.frombuffer("
+            "base64.b64decode(text), '<u2').reshape(ROWS, COLUMNS).tolist()",
+        )
     if not lists and {"row", "column"} <= named(tuple(first)).roles.keys():
         raise DataError(
             where,
@@ -205,9 +239,31 @@ def entries_of(where: str, content: Any) -> Entries:
     return Entries([e.get(key) for e in objects], times, time, said, f"an object a frame, {key!r}")
 
 
+def _of_one_sensor(where: str, objects: list[dict[str, Any]], sensor: str) -> list[dict[str, Any]]:
+    """Return the frames of the one sensor that is asked for, where they say whose they are."""
+    for key in objects[0]:
+        said = [str(e.get(key)) for e in objects]
+        labels = labels_of_lines(key.rpartition(".")[2], said)
+        if labels and not sensor:
+            told = f"its frames are those of several sensors, as {key!r} says: {one_of(labels)}"
+            raise SeveralSensorsError(where, f"{told}; name one with sensor", labels)
+        if labels:
+            try:
+                mine = chosen(labels, sensor)
+            except ValueError as error:
+                raise DataError(where, str(error)) from None
+            return [e for e, whose in zip(objects, said, strict=True) if whose == mine]
+    return objects
+
+
 def _plain(entry: dict[str, Any]) -> dict[str, Any]:
     """Return an object with its cells in one list, and its shape, if it has one, as numbers."""
     return _with_cells(_with_shape(_with_rows(_of_ros(_flattened(_flattened(entry))))))
+
+
+def _is_packed(text: str) -> bool:
+    """Return whether a text is bytes as base64 writes them."""
+    return len(text) >= FEWEST_PACKED and len(text) % 4 == 0 and bool(_BASE64.fullmatch(text))
 
 
 def _is_of_objects(entry: list[Any]) -> bool:
@@ -284,7 +340,7 @@ def _with_rows(entry: dict[str, Any]) -> dict[str, Any]:
     return {**rest, f"{names[0]} to {names[-1]}": [entry[k] for k in names]}
 
 
-def _of_object(where: str, content: dict[str, Any]) -> Entries:
+def _of_object(where: str, content: dict[str, Any], sensor: str | None) -> Entries:
     if len(content) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
     content = _plain(content)
@@ -293,7 +349,7 @@ def _of_object(where: str, content: dict[str, Any]) -> Entries:
     times = lists.pop(time, None)
     deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
     key = _only(where, deep or lists)
-    inner = entries_of(where, lists[key])
+    inner = entries_of(where, lists[key], sensor)
     said = _said(content) if _said(content) != Described() else inner.said
     if inner.times is None and times is not None and len(times) == len(inner.values):
         return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
@@ -315,7 +371,8 @@ def _only(where: str, keys: Any) -> str:
     raise DataError(
         where,
         "its JSON holds no list that could be a frame; save a list of rows for each, such as "
-        '{"time": 0.05, "values": [[1, 2], [3, 4]]}',
+        '{"time": 0.05, "values": [[1, 2], [3, 4]]}, or where pandas wrote it, in Python: '
+        f"pandas.read_json('{Path(where).name}').to_csv('out.csv', index=False)",
     )
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
@@ -37,7 +37,8 @@ def recognises(head: Head) -> bool:
 def read(reading: Reading) -> Iterator[Frame]:
     """Yield a frame for each frame number, in the order in which the numbers first appear.
 
-    The cells may come in any order, so all are gathered first, as 48 bytes each. A cell the
+    The cells may come in any order, so all are gathered first, as 48 bytes each. Where the cells
+    of several frames come mixed, the frames follow one another by time and number. A cell the
     file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1. Without
     a number, cells of one time are a frame, or those until the first place comes again.
 
@@ -67,7 +68,9 @@ def read(reading: Reading) -> Iterator[Frame]:
     order = np.argsort(group, kind="stable")
     ends = np.cumsum(np.bincount(group))
     left_out = _unlisted(reading, cells, row * columns + column, group)
-    for k in np.argsort(starts):
+    mixed = np.count_nonzero(np.diff(group)) >= len(numbers)
+    by_number = np.lexsort((numbers, cells[starts, 1])) if mixed else np.argsort(starts)
+    for k in by_number:
         mine = order[ends[k - 1] if k else 0 : ends[k]]
         place = (row[mine] - first) * columns + column[mine] - first
         on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
@@ -145,7 +148,7 @@ def _frame_of_each(
 ) -> tuple[Cells, str]:
     """Return the number of each cell's frame, and how it was found, in words."""
     if "frame" in layout.roles:
-        return cells[:, 0], "frames by their numbers"
+        return _run_on(cells[:, 0]), "frames by their numbers"
     scan = _scans(place)
     if "time" not in layout.roles and "clock" not in layout.roles:
         if scan is None:
@@ -168,6 +171,15 @@ def _frame_of_each(
         f"its times change after {np.median(sizes):g} cells, its {n_places} places come in no "
         "steady order, and no column numbers the frames; give frame_column",
     )
+
+
+def _run_on(numbers: Cells) -> Cells:
+    """Return numbers of frames as if their counter had not begun anew."""
+    extent = float(np.ptp(numbers)) + 1.0
+    begun = np.diff(numbers, prepend=numbers[0]) < -0.9 * extent
+    # Mixed lines fall back as often as there are frames.
+    few = np.count_nonzero(begun) * FEWEST_COUNTED < len(np.unique(numbers))
+    return numbers + extent * np.cumsum(begun) if few else numbers
 
 
 def _scans(place: NDArray[np.intp]) -> Cells | None:
@@ -238,6 +250,8 @@ def _chosen(layout: Layout, table: Cells) -> Cells | None:
     chosen = np.empty((len(table), 5))
     chosen[:, 0] = table[:, where["frame"]] if "frame" in where else 0.0
     chosen[:, 1] = table[:, where["time"]] * layout.time_factor if "time" in where else np.nan
+    if layout.part is not None:
+        chosen[:, 1] += table[:, layout.part[0]] * layout.part[1]
     chosen[:, 2:] = table[:, [where["row"], where["column"], where["value"]]]
     return chosen if _are_places(layout, chosen) else None
 
@@ -264,6 +278,7 @@ def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
         separator is None
         or "_" in text
         or "clock" in layout.roles
+        or layout.dialect.thousands
         or any(line.count(separator) != layout.width - 1 for line in lines)
     ):
         return None

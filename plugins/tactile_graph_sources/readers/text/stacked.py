@@ -55,7 +55,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     layout = reading.head.layout or Layout("stacked")
     if layout.trouble:
         raise DataError(str(reading.path), layout.trouble)
-    reading.told.agree(str(reading.path), layout.rows, len(layout.cells))
+    n_rows = layout.rows - layout.rows_of_sums
+    reading.told.agree(str(reading.path), n_rows, len(layout.cells))
     reading.recognised(layout.why, layout.assumed)
     endless, matrix, blanks = layout.blank_run == ENDLESS, _Matrix(), 0
     times = _Times(layout)
@@ -161,7 +162,7 @@ def _flush(reading: Reading, layout: Layout, matrix: _Matrix, times: _Times) -> 
         said = layout.said
         n = reading.index - reading.start
         yield reading.frame(
-            np.array(matrix.rows),
+            np.array(matrix.rows[: layout.rows - layout.rows_of_sums]),
             pitch_cm=said.pitch_cm,
             quantity=said.quantity,
             factor=said.factor,

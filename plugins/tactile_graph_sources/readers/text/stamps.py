@@ -11,6 +11,7 @@ from tactile_graph_sources.readers.tables.layout import Layout
 from tactile_graph_sources.readers.words.dialect import clock_s, floats
 
 _DAY_S = 86400.0
+_COUNTS = float(1 << 32)
 
 
 class Stamps:
@@ -27,6 +28,8 @@ class Stamps:
         self._last = -math.inf
         self._days = 0.0
         self._start = reading.index
+        self._last_count = -math.inf
+        self._runs = 0
 
     def of(self, fields: Sequence[str]) -> tuple[float | None, float | None]:
         """Return the number and the time (s) of a frame; None where there is none.
@@ -48,14 +51,26 @@ class Stamps:
         """Return the time of a frame; raises what `of` raises."""
         layout = self._layout
         if "clock" in layout.roles:
-            return self._clock(fields[layout.roles["clock"]])
+            clock = fields[layout.roles["clock"]]
+            dated = "" if layout.date is None else f"{fields[layout.date].strip()} {clock.strip()}"
+            return self._clock(dated if dated and clock_s(dated) is not None else clock)
         if "time" not in layout.roles:
             frame_s = layout.said.frame_s
             return None if frame_s is None else (self._reading.index - self._start) * frame_s
-        time_s = floats([fields[layout.roles["time"]]])[0] * layout.time_factor
+        time_s = self._run_on(floats([fields[layout.roles["time"]]])[0]) * layout.time_factor
+        if layout.part is not None:
+            time_s += floats([fields[layout.part[0]]])[0] * layout.part[1]
         if not math.isfinite(time_s):
             raise ValueError("the time is no number")
         return time_s
+
+    def _run_on(self, time: float) -> float:
+        """Return a time in counts as if micros() and the like did not begin anew at 2^32."""
+        over = self._last_count - time > 0.9 * _COUNTS and self._last_count < _COUNTS
+        if over and self._layout.time_factor <= 1e-3:
+            self._runs += 1
+        self._last_count = time
+        return time + self._runs * _COUNTS
 
     def _clock(self, text: str) -> float:
         given = self._layout.time_format

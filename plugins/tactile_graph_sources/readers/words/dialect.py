@@ -9,28 +9,48 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-MISSING = frozenset({"", "b", "nan", "na", "n/a", "null"})
-_NUMERIC = re.compile(r"[-+.\d,;\s\"eEnaNIifB]+")
+ERRORS = ("#n/a", "#nv", "#div/0!", "#value!", "#wert!", "#valeur!", "#num!", "#zahl!", "#ref!",
+          "#bezug!", "#name?", "#null!")  # fmt: skip
+"""What spreadsheets write into cells of which a formula gives no value."""
+MISSING = frozenset({"", "b", "nan", "na", "n/a", "n.a.", "null", "none", "<na>", "-", "--", "."})
+MISSING |= {*ERRORS, "1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "1.#inf", "-1.#inf"}
+"""What files write for a cell without a value, in lower case."""
+_NUMERIC = re.compile(r"[-+.\d,;\s\"'’eEnaNIifB]+")
 _DIGIT = re.compile(r"\d")
 _QUOTED_COMMA = re.compile(r'(?:^|,)\s*"[^",]*,[^"]*"\s*(?:,|$)')
 _WORDY = re.compile(r"[naNIifB]\d|(?<![\d.])[eE][-+]?\d")
 _BRACKETS = str.maketrans("", "", "[](){}")
 _WORD = re.compile(r"[^\s,;|]+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_ARROW = "->"
+_ARROW = re.compile(r"\s*->|\s>\s")
+"""What serial monitors put behind the time of a line."""
 _CLOCK = re.compile(
     r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
     r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?(?:\s?([AP])\.?M\.?)?",
     re.IGNORECASE,
 )
+_DATE = re.compile(r"\d{4}[-/.]\d\d?[-/.]\d\d?|\d\d?[-/.]\d\d?[-/.](?:\d{4}|\d\d)")
+_ELAPSED = re.compile(
+    r"(?:(\d{1,2}):)?(\d{1,2}\.\d{1,9})|([-+]?\d+(?:\.\d+)?)\s*(s|secs?|ms|us|µs)"
+)
+"""Minutes and seconds, as spreadsheets show times of day, or seconds with their unit."""
+_UNIT_S = {"s": 1.0, "sec": 1.0, "secs": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 _DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 _GROUPED = {
     ".": re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+(?:,\d+)?"),
     ",": re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d+)?"),
+    **{
+        mark: re.compile(rf"[-+]?[1-9]\d{{0,2}}(?:{mark}\d{{3}})+(?:[.,]\d+)?")
+        for mark in ("'", "’", "\u00a0", "\u202f", "\u2009")
+    },
 }
 """Numbers whose thousands are set apart, by what sets them apart."""
-_SURELY_GROUPED = re.compile(r"[-+]?\d{1,3}(?:\.\d{3})+,\d+")
+_SURELY_GROUPED = {
+    ".": re.compile(r"[-+]?\d{1,3}(?:(?:\.\d{3})+,\d+|(?:\.\d{3}){2,})"),
+    ",": re.compile(r"[-+]?\d{1,3}(?:(?:,\d{3})+\.\d+|(?:,\d{3}){2,})"),
+}
+"""The same where the mark can be no decimal one; apostrophes and narrow blanks never are."""
 _SURELY_DECIMAL = re.compile(r"[-+]?(?:0\d*|\d+),(?:\d{1,2}|\d{4,})")
 FEWEST_GROUPED = 5
 
@@ -63,14 +83,26 @@ def is_row(line: str) -> bool:
     return n >= 3 and 5 * n >= 3 * len(words)
 
 
+def is_date(text: str) -> bool:
+    """Return whether a text is a date without a time of day."""
+    return _DATE.fullmatch(text.strip().strip('"')) is not None
+
+
 def clock_s(text: str) -> float | None:
     """Return a date and time of day, or a time of day alone, in seconds; None where it is none.
 
     Only differences mean anything.
     """
-    found = _CLOCK.fullmatch(text.strip().strip('"'))
+    text = text.strip().strip('"')
+    found = _CLOCK.fullmatch(text)
     if found is None:
-        return None
+        elapsed = _ELAPSED.fullmatch(text)
+        if elapsed is None:
+            return None
+        minutes, seconds, number, unit = elapsed.groups()
+        if unit:
+            return float(number) * _UNIT_S[unit]
+        return int(minutes) * 60 + float(seconds) if minutes else None
     year, month, day, day2, month2, year2, hour, minute, second, part, half = found.groups()
     days = 0
     if year or year2:
@@ -104,17 +136,16 @@ class Dialect(NamedTuple):
     def of(cls, lines: Sequence[str]) -> Dialect:
         """Return the dialect of some numeric lines."""
         half = len(lines) / 2
-        arrow = sum(_ARROW in line for line in lines) > half
+        arrow = sum(_ARROW.search(line) is not None for line in lines) > half
         brackets = sum("[" in line or "(" in line for line in lines) > half
         if arrow or brackets:
-            plain = [line.rpartition(_ARROW)[2].translate(_BRACKETS) for line in lines]
+            plain = [_ARROW.split(line)[-1].translate(_BRACKETS) for line in lines]
             return cls.of(plain)._replace(brackets=brackets, arrow=arrow)
         for separator in (";", "\t", "|"):
             if 2 * sum(separator in line for line in lines) > len(lines):
                 rest = separator.join(lines)
-                fields = rest.split(separator) if "," in rest and "." in rest else []
-                grouped = any(_SURELY_GROUPED.fullmatch(unquoted(f)) for f in fields)
-                return cls(separator, "," in rest, thousands="." if grouped else "")
+                mark = _thousands(rest.split(separator))
+                return cls(separator, "," in rest if mark != "," else False, thousands=mark)
         if 2 * sum("," in line for line in lines) <= len(lines):
             return cls(None)
         words = [line.split() for line in lines]
@@ -128,8 +159,8 @@ class Dialect(NamedTuple):
 
     def fields(self, line: str) -> list[str]:
         """Return the texts between the separators."""
-        if self.arrow and _ARROW in line:
-            stamp, _, rest = line.partition(_ARROW)
+        if self.arrow and (found := _ARROW.search(line)):
+            stamp, rest = line[: found.start()], line[found.end() :]
             return [stamp.strip(), *self._replace(arrow=False).fields(rest)]
         if self.brackets:
             line = line.translate(_BRACKETS)
@@ -143,9 +174,9 @@ class Dialect(NamedTuple):
             return [_ungrouped(f, ",") for f in fields] if self.thousands == "," else fields
         if '"' in line:
             line = line.replace('"', "")
-        if self.thousands == ".":
-            fields = [_ungrouped(f, ".") for f in line.split(self.separator)]
-            return [f.replace(",", ".") for f in fields]
+        if self.thousands and self.separator != ",":
+            fields = [_ungrouped(f, self.thousands) for f in line.split(self.separator)]
+            return fields if self.thousands == "," else [f.replace(",", ".") for f in fields]
         if self.decimal_comma and self.separator != ",":
             line = line.replace(",", ".")
         return line.split(self.separator)
@@ -177,6 +208,15 @@ class Dialect(NamedTuple):
                 raise ValueError(f"{n} values, not {width}")
             del fields[width:]
         return fields
+
+
+def _thousands(fields: Sequence[str]) -> str:
+    """Return what surely stands between the thousands of some numbers; empty where nothing does."""
+    marks = [mark for mark in _GROUPED if any(mark in f.strip() for f in fields)]
+    plain = [unquoted(f) for f in fields] if marks else []
+    return next(
+        (m for m in marks if any(map(_SURELY_GROUPED.get(m, _GROUPED[m]).fullmatch, plain))), ""
+    )
 
 
 def _quoted(lines: Sequence[str]) -> list[str]:

@@ -28,7 +28,8 @@ _ROLES = {
     "packet bild bildnr image trame cuadro fotograma muestra quadro #",
     "time": "time t ts timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
     "datetime date_time clock epoch epoch_time unix unix_time zeit zeitstempel uhrzeit temps heure "
-    "horodatage tiempo hora tempo ora timestamps zeitpunkt instant momento tijd tid czas",
+    "horodatage tiempo hora tempo ora timestamps zeitpunkt instant momento tijd tid czas stamp "
+    "systime system_time host_time device_time",
     "row": "row r y i rows row_index zeile reihe ligne rang fila riga line linha rij rad wiersz",
     "column": "column col c x j columns col_index column_index spalte colonne columna colonna "
     "coluna kolom kolumn kolumna",
@@ -39,12 +40,23 @@ _ROLES = {
 ROLES = {word: role for role, words in _ROLES.items() for word in words.split()}
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\]\d][^\]]*)\]|\(([^)\d][^)]*)\)|[_/ ]([^\W\d_]+\d?))$")
 _BRACKETED = re.compile(r"[\[(]\s*([^\W\d_][^\])]*?)\s*[\])]\s*$")
+_PARTS = {
+    "nsec": 1e-9,
+    "nsecs": 1e-9,
+    "nanosec": 1e-9,
+    "nanosecs": 1e-9,
+    "usec": 1e-6,
+    "usecs": 1e-6,
+}
+_WHOLE = {"sec", "secs"}
+"""How the two columns are called that ROS and others write a time in, and seconds of the second."""
+_ANY_TWO = re.compile(r"\D*(\d+)\D+(\d+)\D*")
 _PAIRS = (
     (re.compile(r"\D*?\b[a-z_]*?r(?:ow)?\W?_?(\d+)\W*_?c(?:ol|olumn)?\W?_?(\d+)\W*"), False),
     (re.compile(r"\D*?\b[a-z_]*?c(?:ol|olumn)?\W?_?(\d+)\W*_?r(?:ow)?\W?_?(\d+)\W*"), True),
     (re.compile(r"\W*x\W?_?(\d+)\W*_?y\W?_?(\d+)\W*"), True),
     (re.compile(r"\W*s(?:palte)?\W?_?(\d+)\W*_?z(?:eile)?\W?_?(\d+)\W*"), True),
-    (re.compile(r"\D*(\d+)\D+(\d+)\D*"), False),
+    (_ANY_TWO, False),
 )
 """Names of cells with two numbers, and whether the column comes first."""
 _LETTER = re.compile(r"([a-z])(\d+)")
@@ -99,6 +111,8 @@ class Named:
         From the column of time to seconds; None where its name has no unit.
     quantity, factor : str, float
         What the column of values, or what all cells hold, by the unit in their names.
+    part : (int, float), optional
+        The column that comes on top of the one of time, and the seconds of one in it.
     """
 
     names: tuple[str, ...] = ()
@@ -109,6 +123,7 @@ class Named:
     time_factor: float | None = None
     quantity: str = "raw"
     factor: float = 1.0
+    part: tuple[int, float] | None = None
 
     @property
     def others(self) -> tuple[int, ...]:
@@ -119,7 +134,7 @@ class Named:
 
     @property
     def _known(self) -> set[int]:
-        return set(self.roles.values())
+        return {*self.roles.values(), *([self.part[0]] if self.part else [])}
 
     @property
     def is_long(self) -> bool:
@@ -203,6 +218,13 @@ def named(header: Sequence[str]) -> Named:
             factor = SECONDS.get(unit) or SECONDS.get(name.lower())
         elif role == "value":
             quantity, scale = value_unit(unit or base)
+    part = _in_parts(names)
+    if part is not None and part[0] not in cells:
+        roles["time"], factor = part[0], 1.0
+    for k, name in enumerate(names[:2]):
+        unit = found[1].lower() if (found := _BRACKETED.search(name)) else ""
+        if "time" not in roles and k not in cells and unit in SECONDS:  # X(s) of an oscilloscope
+            roles["time"], factor = k, SECONDS[unit]
     if names and not names[0] and "frame" not in roles and cells[:1] != (0,):
         roles["frame"] = 0  # as pandas writes an index
     if {"row", "column"} <= roles.keys() and "value" not in roles:
@@ -217,13 +239,28 @@ def named(header: Sequence[str]) -> Named:
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])
     if cells:
         quantity, scale = _unit_of_cells([names[k] for k in cells])
-    return Named(names, roles, cells, places, numbers, factor, quantity, scale)
+    return Named(
+        names, roles, cells, places, numbers, factor, quantity, scale, part[1:] if part else None
+    )
+
+
+def _in_parts(names: Sequence[str]) -> tuple[int, int, float] | None:
+    """Return the columns of whole seconds and of what comes on top, and its unit in seconds."""
+    ends = [re.split(r"[\W_]+", name.lower())[-1] for name in names]
+    whole = next((k for k, end in enumerate(ends) if end in _WHOLE), None)
+    part = next((k for k, end in enumerate(ends) if end in _PARTS), None)
+    return None if whole is None or part is None else (whole, part, _PARTS[ends[part]])
 
 
 def _unit_of_cells(names: Sequence[str]) -> tuple[str, float]:
     """Return the quantity and factor of the unit that stands in brackets behind every name."""
-    units = {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
+    units = units_of(names)
     return value_unit(units.pop()) if len(units) == 1 else ("raw", 1.0)
+
+
+def units_of(names: Sequence[str]) -> set[str]:
+    """Return what stands in brackets behind names; an empty text for those without."""
+    return {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
 
 
 def _is_value(name: str) -> bool:
@@ -248,6 +285,8 @@ def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tu
         found = [(k, m) for k, n in enumerate(lower) if (m := pattern.fullmatch(n))]
         if len(found) >= FEWEST_CELLS and 2 * len(found) > len(names):
             pairs = [(int(m[1][:6]), int(m[2][:6])) for _, m in found]
+            if pattern is _ANY_TWO and _is_of_one_device(found):
+                return tuple(k for k, _ in found), (), tuple(b for _, b in pairs)
             if len(set(pairs)) == len(pairs):
                 pairs = [(b, a) for a, b in pairs] if column_first else pairs
                 return tuple(k for k, _ in found), tuple(_from_zero(pairs)), ()
@@ -261,6 +300,13 @@ def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tu
             pairs = [(b, a) for a, b in pairs] if turned else pairs
             return tuple(k for k, _ in lettered), tuple(_from_zero(pairs)), ()
     return _numbered(lower)
+
+
+def _is_of_one_device(found: Sequence[tuple[int, re.Match[str]]]) -> bool:
+    """Return whether the first of two numbers is a device's: ``Dev1/ai0``, ``Dev1/ai1``, …."""
+    between = {m.string[m.end(1) : m.start(2)].strip("\\/_-. [](){},;:") for _, m in found}
+    words = {m[1] for _, m in found}
+    return len(words) == len(between) == 1 and between.pop() not in {"", *ROLES}
 
 
 def _numbered(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tuple[int, ...]]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,6 +13,9 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
+_ASKED = re.compile(r"\b(?:give|name|say|settings?)\b(.*)", re.DOTALL)
+_LIKELY = re.compile(r"(\d+) x (\d+)(?: cells)?(?=, as they lie\))|could be (\d+) x (\d+)")
+_SETTINGS = ("rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells")
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 
 
@@ -94,5 +100,23 @@ class Told:
         )
         return (
             f"a frame is {n_values} values in a row, and the settings say {said} of its shape; "
-            "give rows and columns whose product is that number"
+            "give rows and columns whose product is that number, or say which columns are cells, "
+            "such as cells=2-65"
         )
+
+
+def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
+    """Return how the settings that a refusal asks for are typed on a command line; empty if none.
+
+    What the shape may be by its words, and the first of ``sensors``, is put in.
+    """
+    asked = _ASKED.search(what)
+    if asked is None:
+        return ""
+    words = re.findall(r"[a-z_]+", asked[1])
+    likely = _LIKELY.search(what)
+    rows, columns = [g for g in likely.groups() if g] if likely else ("…", "…")
+    values = {"rows": rows, "columns": columns, "cells": "2-65", "sensor": [*sensors, "…"][0]}
+    pairs = [f"{s}={values.get(s, '…')}" for s in _SETTINGS if s in words]
+    typed = [f"--with {shlex.quote(p) if '…' not in p else p}" for p in pairs]
+    return f" (as typed: {' '.join(typed)})" if typed else ""

@@ -24,7 +24,10 @@ _VALUES = {
     "g": ("gram", 1.0), "gram": ("gram", 1.0), "grams": ("gram", 1.0), "kg": ("gram", 1e3),
     "count": ("counts", 1.0), "counts": ("counts", 1.0), "adc": ("counts", 1.0),
     "lsb": ("counts", 1.0), "siemens": ("siemens", 1.0),
+    "vdc": ("volt", 1.0), "mvdc": ("volt", 1e-3),
 }  # fmt: skip
+NO_UNITS = frozenset({"raw", "a.u.", "au", "-", "1", "arb. units"})
+OHMS = re.compile(r"[km]?(?:ohms?|ω)")
 _CENTIMETRES = {"mm": 0.1, "cm": 1.0, "m": 100.0, "in": 2.54, "inch": 2.54, "inches": 2.54}
 _CENTIMETRES |= {f"{n}met{e}": f for n, f in (("milli", 0.1), ("centi", 1.0)) for e in ("er", "re")}
 _LENGTH = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([a-zA-Z]+)")
