@@ -15,6 +15,7 @@ from types import FrameType
 import uvicorn
 
 from tactile_graph.errors import UsageError
+from tactile_graph_live.bench.process import ENDS
 from tactile_graph_live.server.app import make_app
 from tactile_graph_live.server.guard import Door, is_loopback
 from tactile_graph_live.server.session import Say, Session, Setup
@@ -24,9 +25,6 @@ LARGEST_MESSAGE = 64 * 1024
 MOST_BACKLOG = 64
 PORTS_TRIED = 50
 FAREWELL_S = 1
-ENDS = tuple(
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-)
 
 
 def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.socket]:
