@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import re
 import secrets
 import signal
 import socket
@@ -25,6 +26,8 @@ LARGEST_MESSAGE = 64 * 1024
 MOST_BACKLOG = 64
 PORTS_TRIED = 50
 FAREWELL_S = 1
+TOKEN = re.compile(r"[A-Za-z0-9._~-]{1,200}")
+"""What stands in an address and in a cookie as it is."""
 
 
 def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.socket]:
@@ -41,8 +44,11 @@ def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.sock
     Raises
     ------
     UsageError
-        If the port is taken, or the address is none of this machine's.
+        If the port is taken, the address is none of this machine's, or the token cannot stand in
+        an address.
     """
+    if token and not TOKEN.fullmatch(token):
+        raise UsageError("--token: must be of letters, digits, '-', '_', '.' and '~', 200 at most")
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     except OSError as error:
