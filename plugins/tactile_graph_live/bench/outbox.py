@@ -37,7 +37,9 @@ class Outbox:
         self._frames: deque[Frame] = deque()
         self._lost_rows = self._lost_frames = 0
         self._last_frames = self._ended = False
-        self._turns = deque((self._some_rows, self._picture, self._some_frames))
+        self._turns: deque[Callable[[], FromBench | None]] = deque(
+            (self._some_rows, self._picture, self._some_frames)
+        )
         self._thread = Thread(target=self._go, name="tactile-graph outbox", daemon=True)
         self._thread.start()
 

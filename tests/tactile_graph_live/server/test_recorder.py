@@ -112,7 +112,8 @@ def test_what_the_disc_does_not_keep_up_with_is_counted_and_leaves_a_gap(
 
     monkeypatch.setattr(StoreWriter, "write", slow)
     monkeypatch.setattr(recorders, "MOST_BYTES", 5 * 4 * 4 * 8)
-    recorder = Recorder(tmp_path, "mine", "", {}, [].append)
+    failures: list[str] = []
+    recorder = Recorder(tmp_path, "mine", "", {}, failures.append)
     recorder.take(frames(0, 3), 0)
     recorder.take(frames(3, 3), 0)  # with these there would be six
     recorder.take(frames(6, 2), 0)
