@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Sequence
+
+from tactile_graph.out_of_reach import out_of_reach
 
 FORKED = "tactile_graph.many.forked"
 
@@ -11,9 +12,7 @@ FORKED = "tactile_graph.many.forked"
 def begin_forkserver(preloaded: Sequence[str] = ()) -> None:
     """Begin the process that workers are forked from, unless it runs already.
 
-    A terminal sends Ctrl-C to it too. It imports for a second or two before it would ignore that,
-    and ends in a traceback. So the signal is blocked while it is begun: it is for this process,
-    which gets it right after.
+    It imports for a second or two before it would ignore Ctrl-C.
 
     Parameters
     ----------
@@ -25,8 +24,5 @@ def begin_forkserver(preloaded: Sequence[str] = ()) -> None:
 
     set_forkserver_preload([FORKED, *preloaded])
     resource_tracker.ensure_running()  # or it would be begun below, and unblock the signal
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
+    with out_of_reach():
         ensure_running()
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)

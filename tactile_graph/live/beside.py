@@ -23,6 +23,7 @@ from tactile_graph.engine.calls.isolated_worker import received, sent
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.tables.rows import scalars
+from tactile_graph.out_of_reach import out_of_reach
 from tactile_graph.wires.frame import Frame
 
 KEEP = 20
@@ -141,7 +142,8 @@ class Beside:
         self._came, self._lock, self._closed = Condition(), Lock(), False
         order = (variant, only, seed)
         command = [sys.executable, "-m", "tactile_graph.live.beside_worker"]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        with out_of_reach():
+            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._end = weakref.finalize(self, _ended, self._process)
         self._thread = Thread(target=self._go, args=(order,), name="beside", daemon=True)
         self._thread.start()

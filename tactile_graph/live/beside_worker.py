@@ -7,7 +7,7 @@ import sys
 import time
 from typing import IO, Any
 
-from tactile_graph.engine.calls.isolated_worker import received, sent
+from tactile_graph.engine.calls.isolated_worker import end_with_parent, received, sent
 
 NICE = 19
 """Whoever else works on this machine comes first."""
@@ -35,4 +35,5 @@ if __name__ == "__main__":
         os.nice(NICE)
     channel = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a step prints is for people
+    end_with_parent()
     serve(sys.stdin.buffer, channel)

@@ -25,6 +25,7 @@ PUBLIC = (
     "tactile_graph.live",
     "tactile_graph.locks",
     "tactile_graph.many",
+    "tactile_graph.out_of_reach",
     "tactile_graph.compiled",
     "tactile_graph.plugins.hookspecs",
     "tactile_graph.plugins.file_check",

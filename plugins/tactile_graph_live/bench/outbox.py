@@ -19,7 +19,8 @@ class Outbox:
     """Sends what it is given in order of urgency; bounded, whatever the other side does.
 
     The newest picture wins. Of rows and of frames to record the oldest go when too many wait, and
-    are counted. Everything else is small and rare, and goes first.
+    are counted; these three go in turn, so that none waits for ever where results never end.
+    Everything else is small and rare, and goes first.
 
     Parameters
     ----------
@@ -36,6 +37,9 @@ class Outbox:
         self._frames: deque[Frame] = deque()
         self._lost_rows = self._lost_frames = 0
         self._last_frames = self._ended = False
+        self._turns: deque[Callable[[], FromBench | None]] = deque(
+            (self._some_rows, self._picture, self._some_frames)
+        )
         self._thread = Thread(target=self._go, name="tactile-graph outbox", daemon=True)
         self._thread.start()
 
@@ -94,21 +98,33 @@ class Outbox:
     def _waiting(self) -> FromBench | None:
         if self._notes:
             return self._notes.popleft()
-        if self._rows:
-            rows, lost = tuple(self._rows), self._lost_rows
-            self._rows.clear()
-            self._lost_rows = 0
-            return Rows(rows, lost)
-        if self._snapshot is not None:
-            snapshot, self._snapshot = self._snapshot, None
-            return snapshot
-        if self._frames or self._last_frames:
-            n = min(len(self._frames), AT_ONCE)
-            frames, lost = tuple(self._frames.popleft() for _ in range(n)), self._lost_frames
-            last = self._last_frames and not self._frames
-            self._lost_frames, self._last_frames = 0, self._last_frames and not last
-            return Taken(frames, lost, last)
+        for _ in range(len(self._turns)):
+            found = self._turns[0]()
+            self._turns.rotate(-1)
+            if found is not None:
+                return found
         return None
+
+    def _some_rows(self) -> Rows | None:
+        if not self._rows:
+            return None
+        rows, lost = tuple(self._rows), self._lost_rows
+        self._rows.clear()
+        self._lost_rows = 0
+        return Rows(rows, lost)
+
+    def _picture(self) -> Snapshot | None:
+        snapshot, self._snapshot = self._snapshot, None
+        return snapshot
+
+    def _some_frames(self) -> Taken | None:
+        if not (self._frames or self._last_frames):
+            return None
+        n = min(len(self._frames), AT_ONCE)
+        frames, lost = tuple(self._frames.popleft() for _ in range(n)), self._lost_frames
+        last = self._last_frames and not self._frames
+        self._lost_frames, self._last_frames = 0, self._last_frames and not last
+        return Taken(frames, lost, last)
 
     def _go(self) -> None:
         while (found := self._next()) is not None:

@@ -16,6 +16,10 @@ from tactile_graph_live.bench.bench import Bench
 from tactile_graph_live.bench.outbox import Outbox
 from tactile_graph_live.bench.settled import Settled
 
+ENDS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""Signals that end a program, sent to all of its processes by terminals and service managers."""
 SWITCH_S = 0.0005
 """Between threads: a frame's reader must not wait 5 ms for a step's loop."""
 TICK_S = 0.25
@@ -23,8 +27,8 @@ TICK_S = 0.25
 
 def main(pipe: Connection, order: wire.Order) -> None:
     """Run a bench until the server says so, or is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's, which tells us
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    for number in ENDS:  # they are the server's, which tells us, and may want the last frames
+        signal.signal(number, signal.SIG_IGN)
     if sys.stderr is not None:
         os.dup2(2, 1)  # stdout may be kept for programs
     restrict(order.selection)

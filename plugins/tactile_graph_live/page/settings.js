@@ -166,7 +166,8 @@ function makeInputs(setting, id, name) {
 function put(input, value) {
   if (input.type === "checkbox") input.checked = value === true;
   else if (input.tagName === "SELECT") input.value = JSON.stringify(value);
-  else if (typeof value === "number") input.value = String(Number(value.toPrecision(6)));
+  else if (Number.isInteger(value)) input.value = String(value);
+  else if (Number.isFinite(value)) input.value = String(Number(value.toPrecision(6)));
   else if (input.type === "range") input.value = input.min;
-  else input.value = value === null ? "" : String(value);
+  else input.value = value === null || typeof value === "number" ? "" : String(value); // no number is infinite
 }

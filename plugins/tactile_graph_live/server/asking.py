@@ -45,7 +45,7 @@ def _fits(value: Any, allowed: type | tuple[type, ...]) -> bool:
         return _size(value) <= LONGEST_TEXT
     if isinstance(value, bool) and allowed is not bool:
         return False
-    if isinstance(value, float) and not math.isfinite(value):
+    if isinstance(value, int | float) and not _is_finite(value):
         return False
     if isinstance(value, list):
         if not (len(value) <= MOST_NODES and all(isinstance(v, str) for v in value)):
@@ -53,6 +53,13 @@ def _fits(value: Any, allowed: type | tuple[type, ...]) -> bool:
     elif isinstance(value, str) and len(value) > LONGEST_TEXT:
         return False
     return isinstance(value, allowed)
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond all floating-point numbers
+        return False
 
 
 def _size(value: Any) -> int:

@@ -14,6 +14,7 @@ from tactile_graph_live.server.draft import Draft, faults
 from tactile_graph_live.server.graph_message import graph_message
 from tactile_graph_live.server.lookback import Lookback
 from tactile_graph_live.server.messages import Fault, Graph, Trouble
+from tactile_graph_live.server.unawaited import unawaited
 from tactile_graph_live.server.watching import SETTLE_S, FileSense, Watched
 
 SLOW_S = 2.0
@@ -96,7 +97,7 @@ class Editor:
         began = time.perf_counter()
         async with self._lock:
             try:
-                draft = await asyncio.to_thread(self._read)
+                draft = await unawaited(self._read)
             except Exception as error:  # a plugin may raise anything while it is imported
                 await asyncio.sleep(SETTLE_S)
                 if not self._watched.changed():
@@ -125,14 +126,14 @@ class Editor:
             if (node, setting) not in self._waiting:
                 return  # who waited before us has set the newest already
             value = self._waiting.pop((node, setting))
-            draft = await asyncio.to_thread(self.now.draft.with_value, node, setting, value)
+            draft = await unawaited(self.now.draft.with_value, node, setting, value)
             await self._apply(draft, began)
 
     async def unset(self, node: str = "", setting: str = "") -> None:
         """Take back what was set on the page, all of it if no setting is named."""
         began = time.perf_counter()
         async with self._lock:
-            draft = await asyncio.to_thread(self.now.draft.without_values, node, setting)
+            draft = await unawaited(self.now.draft.without_values, node, setting)
             await self._apply(draft, began)
 
     # -- the bench ---------------------------------------------------------------------------------
@@ -157,7 +158,7 @@ class Editor:
         self._answer = asyncio.get_running_loop().create_future()
         restart = not draft.same_source(self.now.draft)
         self._swap(Swap(self._version, pickle.dumps(draft.pipeline), restart))
-        edited = await asyncio.to_thread(self._edited, draft, self._version)
+        edited = await unawaited(self._edited, draft, self._version)
         self._asked = edited, began
         answer = await self._answered(self._answer)
         if answer.error:

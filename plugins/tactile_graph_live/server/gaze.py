@@ -8,6 +8,7 @@ from typing import Any
 
 from tactile_graph_live.bench import wire
 from tactile_graph_live.server.lookback import Lookback
+from tactile_graph_live.server.unawaited import unawaited
 from tactile_graph_live.server.viewers import Picture, Viewers
 
 Later = Callable[[Coroutine[Any, Any, None]], None]
@@ -117,7 +118,7 @@ class Gaze:
                 return
             pad = self._newest.frame.pad if self._newest is not None else None
             look, shown = self._lookback(), self._viewers.shown
-            frame = await asyncio.to_thread(look.frame, kept, shown, pad)
+            frame = await unawaited(look.frame, kept, shown, pad)
             if kept.ticket == self._ticket:
                 self._show(Picture(frame))
 

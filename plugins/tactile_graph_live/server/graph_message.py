@@ -17,6 +17,8 @@ from tactile_graph.vocabulary import words_and_unit
 from tactile_graph_live.server import messages
 
 Overrides = Mapping[str, Mapping[str, Any]]
+LARGEST = 1e300
+"""Of a slider's ends: beyond, their distance is no number."""
 
 
 def graph_message(
@@ -152,6 +154,7 @@ def _slider(
 
     An open or very wide one is cut to some times what the value is.
     """
+    values = [max(-LARGEST, min(LARGEST, v)) for v in values]
     size = max((abs(float(v)) for v in values), default=0.0) or 1.0
     first = low if low is not None and low >= -4 * size else (-4 * size if low != 0.0 else 0.0)
     if low is None and all(float(v) >= 0 for v in values):

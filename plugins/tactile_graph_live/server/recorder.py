@@ -11,10 +11,11 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from tactile_graph import Frame
-from tactile_graph.errors import TactileGraphError
 from tactile_graph_live.server.messages import Recording
 
 LONGEST_LABEL = 100
+MOST_BYTES = 64 * 2**20
+"""Of readings that wait for the disc; of more the newest go, and are counted."""
 
 
 class Recorder:
@@ -54,7 +55,8 @@ class Recorder:
         self._store = StoreWriter(self.path, about=about)
         self._failed = failed
         self._queue: SimpleQueue[Sequence[Frame] | None] = SimpleQueue()
-        self._broken = False
+        self._bytes_taken = self._bytes_done = 0
+        self._after_loss = False
         self._thread = threading.Thread(target=self._write, name="tactile-graph recorder")
         self._thread.start()
 
@@ -66,6 +68,16 @@ class Recorder:
     def take(self, frames: Sequence[Frame], n_lost: int) -> None:
         """Have frames written under the label of the moment."""
         self.n_lost += n_lost
+        self._after_loss = self._after_loss or n_lost > 0
+        n_bytes = _bytes_of(frames)
+        if self._bytes_taken - self._bytes_done + n_bytes > MOST_BYTES:
+            self.n_lost += len(frames)
+            self._after_loss = True
+            return
+        self._bytes_taken += n_bytes
+        if self._after_loss and frames:
+            frames = [replace(frames[0], gap=True), *frames[1:]]
+            self._after_loss = False
         label = self.label
         self._queue.put([replace(f, label=label) for f in frames] if label else frames)
 
@@ -77,16 +89,17 @@ class Recorder:
 
     def _write(self) -> None:
         try:
-            while (frames := self._queue.get()) is not None:
-                for frame in frames:
-                    self._store.write(frame)
-        except (TactileGraphError, OSError) as error:
-            self._failed(str(error))
-        finally:
-            try:
-                self._store.close()
-            except (TactileGraphError, OSError) as error:
-                self._failed(str(error))
+            with self._store:
+                while (frames := self._queue.get()) is not None:
+                    for frame in frames:
+                        self._store.write(frame)
+                    self._bytes_done += _bytes_of(frames)
+        except Exception as error:  # told once, whatever else the end of it came to
+            self._failed(str(error) or type(error).__name__)
+
+
+def _bytes_of(frames: Sequence[Frame]) -> int:
+    return sum(f.image.values.nbytes for f in frames)
 
 
 def free_name(folder: Path, name: str, now: datetime) -> Path:

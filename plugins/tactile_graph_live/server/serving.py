@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import re
 import secrets
 import signal
 import socket
@@ -15,6 +16,7 @@ from types import FrameType
 import uvicorn
 
 from tactile_graph.errors import UsageError
+from tactile_graph_live.bench.process import ENDS
 from tactile_graph_live.server.app import make_app
 from tactile_graph_live.server.guard import Door, is_loopback
 from tactile_graph_live.server.session import Say, Session, Setup
@@ -24,9 +26,8 @@ LARGEST_MESSAGE = 64 * 1024
 MOST_BACKLOG = 64
 PORTS_TRIED = 50
 FAREWELL_S = 1
-ENDS = tuple(
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-)
+TOKEN = re.compile(r"[A-Za-z0-9._~-]{1,200}")
+"""What stands in an address and in a cookie as it is."""
 
 
 def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.socket]:
@@ -43,8 +44,11 @@ def taken_door(host: str, port: int, token: str = "") -> tuple[Door, socket.sock
     Raises
     ------
     UsageError
-        If the port is taken, or the address is none of this machine's.
+        If the port is taken, the address is none of this machine's, or the token cannot stand in
+        an address.
     """
+    if token and not TOKEN.fullmatch(token):
+        raise UsageError("--token: must be of letters, digits, '-', '_', '.' and '~', 200 at most")
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     except OSError as error:

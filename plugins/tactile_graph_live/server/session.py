@@ -90,6 +90,7 @@ class Session:
         self._restarts = Restarts()
         self._taking: _Recording | None = None
         self._recording_changes = asyncio.Lock()
+        self._closing = False
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -152,14 +153,16 @@ class Session:
             return
 
     async def close(self) -> None:
-        """End the recording properly, and the bench."""
-        if self._taking is not None:
-            await self._stop_recording()
-        if self._setup.order.beside:
-            await self._write_comparison()
-        await asyncio.to_thread(self._link.close)
-        if self._osc is not None:
-            self._osc.close()
+        """End the recording properly, also one that is just begun or ended, and the bench."""
+        self._closing = True
+        try:
+            await self._record(False, "")
+            if self._setup.order.beside:
+                await self._write_comparison()
+        finally:
+            await asyncio.to_thread(self._link.close)
+            if self._osc is not None:
+                self._osc.close()
 
     def _gone(self) -> None:
         """Start another bench where this one died, unless it does nothing else."""
@@ -332,10 +335,10 @@ class Session:
         async with self._recording_changes:
             if self._taking is not None and on:
                 self._taking.recorder.label = label
-            elif on:
-                await self._start_recording(label)
-            else:
+            elif not on:
                 await self._stop_recording()
+            elif not self._closing:
+                await self._start_recording(label)
 
     async def _start_recording(self, label: str) -> None:
         pipeline = self._editor.now.draft.pipeline
@@ -365,12 +368,11 @@ class Session:
 
     def _broken(self, what: str) -> None:
         self._tell(f"the recording failed: {what}", "error")
-        if self._taking is not None and not self._taking.ending:
-            self._later(self._stop_recording())
+        self._later(self._record(False, ""))
 
     async def _stop_recording(self) -> None:
         taking = self._taking
-        if taking is None or taking.ending:
+        if taking is None:
             return
         taking.ending = True
         self._tell_wants()
@@ -381,7 +383,8 @@ class Session:
         n = await asyncio.to_thread(taking.recorder.close)
         self._taking = None
         lost = f", {taking.recorder.n_lost} lost" if taking.recorder.n_lost else ""
-        self._tell(f"recorded {n} frames to {taking.recorder.path}{lost}")
+        what = f"{n} frame{'s' if n != 1 else ''} to {taking.recorder.path}" if n else "no frame"
+        self._tell(f"recorded {what}{lost}")
 
 
 class _Recording:

@@ -35,7 +35,11 @@ class SoleWriter:
                 raise UsageError(f"{self.path}: is being written to{self._who()}")
             since = time.strftime("%Y-%m-%d %H:%M:%S")
             name = f"process {os.getpid()} on {platform.node()}, since {since}"
-            self._holder.write_text(name, encoding="utf-8")
+            try:
+                self._holder.write_text(name, encoding="utf-8")
+            except OSError:
+                self.release()
+                raise
 
     def _who(self) -> str:
         try:

@@ -21,6 +21,7 @@ from typing import IO, Any, NamedTuple
 
 from tactile_graph.engine.calls.isolated_worker import ENDED, MADE, Message, received, sent
 from tactile_graph.errors import Skip, TactileGraphError, UsageError
+from tactile_graph.out_of_reach import out_of_reach
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.steps.signature import Kind
 
@@ -227,7 +228,8 @@ class _Process:
 
     def __init__(self) -> None:
         command = [sys.executable, "-m", "tactile_graph.engine.calls.isolated_worker"]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        with out_of_reach():
+            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._stdin: IO[bytes] = self._process.stdin

@@ -7,6 +7,8 @@ import os
 import pickle
 import struct
 import sys
+import threading
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
@@ -16,6 +18,7 @@ MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
 Message = tuple[str, Any]
 KERNELS = "tactile_graph.compiled.kernel"
 _LENGTH = struct.Struct("<Q")
+LOOK_S = 1.0
 
 
 def sent(file: IO[bytes], message: Any) -> None:
@@ -41,6 +44,18 @@ def received(file: IO[bytes]) -> Any:
     if len(data) < length:
         raise EOFError
     return pickle.loads(data)
+
+
+def end_with_parent() -> None:
+    """End this process when the one that began it is gone, even within a step that hangs."""
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(LOOK_S)
+        os._exit(1)
+
+    threading.Thread(target=watch, name="end with parent", daemon=True).start()
 
 
 def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> None:
@@ -120,5 +135,6 @@ def _answer(answers: IO[bytes], answer: Message) -> None:
 if __name__ == "__main__":
     channel = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a step prints is for people
+    end_with_parent()
     with _Kernels() as kernels:
         serve(sys.stdin.buffer, channel, kernels.make_ready)

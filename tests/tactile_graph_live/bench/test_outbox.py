@@ -98,3 +98,21 @@ def test_a_recording_without_frames_has_a_last_too(pipe: Slow) -> None:
     box = stuck(pipe)
     box.last_frame()
     assert finished(box, pipe) == [Taken((), 0, True)]
+
+
+def test_results_without_end_hold_up_neither_pictures_nor_frames(pipe: Slow) -> None:
+    kinds: list[type] = []
+
+    def send(what: Any) -> None:
+        assert pipe.may.wait(5)
+        kinds.append(type(what))
+        if len(kinds) < 20:
+            box.row(row(len(kinds)))  # the next is there before this one is through
+
+    box = Outbox(send)
+    box.row(row(0))
+    box.show(Snapshot(0, 0))  # type: ignore[arg-type]
+    box.frame(Frame(Image(np.zeros((1, 1))), 0))
+    pipe.may.set()
+    box.end()
+    assert {Snapshot, Taken} <= set(kinds[:4])

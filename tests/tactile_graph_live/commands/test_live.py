@@ -236,6 +236,54 @@ def test_ctrl_c_closes_the_recording_and_leaves_no_process(command: Command, fol
     assert call("check", str(store)).exit_code == 0
 
 
+@pytest.mark.parametrize("wait_s", [0.0, 0.05, 0.5])
+def test_ctrl_c_while_a_recording_begins_ends_the_command(
+    command: Command, folder: Path, wait_s: float
+) -> None:
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("record", on=True)
+        time.sleep(wait_s)
+        code, out = command.end()
+    assert (code, "Traceback" in out) == (0, False)
+    assert not list(folder.glob(".*.writer"))
+
+
+def test_what_ends_all_processes_at_once_still_keeps_the_recording_whole(
+    command: Command, folder: Path
+) -> None:
+    """As a service manager does, or a terminal that is closed."""
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("record", on=True)
+        while page.until("pulse")["recording"]["frames"] < 10:
+            pass
+        for child in command.children():
+            os.kill(child, signal.SIGTERM)
+        code, out = command.end(signal.SIGTERM)
+    assert code == 143
+    assert "recorded" in out
+    assert "did not come in time" not in out
+    assert "died" not in out
+    (store,) = folder.glob("*.zarr")
+    assert call("check", str(store)).exit_code == 0
+
+
+def test_ctrl_c_for_all_processes_as_the_bench_starts_is_no_error(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "40", "--beside", "circle-1") as command:
+        end = time.monotonic() + 3.0
+        while time.monotonic() < end:  # from before it imports anything until it runs
+            for child in command.children():
+                os.kill(child, signal.SIGINT)
+            time.sleep(0.02)
+        with Page(command) as page:
+            page.until("frame")
+        code, out = command.end()
+    assert (code, "Traceback" in out, "died" in out) == (0, False, False)
+
+
 def test_the_end_comes_to_the_bench_even_when_the_server_is_killed(command: Command) -> None:
     with Page(command) as page:
         page.until("frame")

@@ -104,6 +104,18 @@ def test_other_settings_set(page: Any, double: Double) -> None:
     assert double.heard("set")["value"] == "idle.npz"
 
 
+def test_whole_numbers_are_shown_whole_and_infinite_ones_not_at_all(
+    page: Any, double: Double
+) -> None:
+    told = graph(2)
+    level, factor = told["nodes"][0]["settings"][:2]
+    factor["value"], level["value"] = 12_345_678, 10**400
+    double.say(told)
+    box = page.locator("#settings").get_by_label("factor", exact=True)
+    wait_for(lambda: box.input_value() == "12345678", "it is shown as it is")
+    assert page.locator("#settings").get_by_label("level V", exact=True).input_value() == ""
+
+
 def test_what_is_no_number_is_not_sent(page: Any, double: Double) -> None:
     box = page.locator("#settings").get_by_label("level V", exact=True)
     box.fill("")

@@ -93,6 +93,23 @@ def test_hostile_names_stay_text(window: Any) -> None:
         assert page.evaluate("({}).us") is None  # nothing went into the prototype of all things
 
 
+def test_texts_without_end_leave_the_pad_in_sight(window: Any) -> None:
+    long = "a text without end " * 600
+    with served(Double(hello(pipeline=long, about=long), graph(1, name=long, about=long),
+                       frame(1, label=long))) as double:  # fmt: skip
+        opened = window(viewport={"width": 390, "height": 844})
+        page = opened.page
+        page.goto(double.address)
+        page.wait_for_selector("#result-rows tr")
+        drawn(page, "frame 1")
+        assert page.locator("#pad-canvas").bounding_box()["y"] < 700
+        double.say({"type": "told", "text": long, "level": "error"})
+        page.locator(".say.error").wait_for()
+        assert page.locator("#told").bounding_box()["height"] < 844 / 2
+        assert long.strip() in page.locator("#about").text_content()
+        assert opened.complaints() == []
+
+
 @pytest.mark.parametrize(
     "text",
     ["", "{", "[]", "null", "3", '"frame"', '{"type": "nothing"}', '{"type": "constructor"}', "{}"],

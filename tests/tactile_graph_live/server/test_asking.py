@@ -27,6 +27,8 @@ def test_what_is_right_is_taken_with_its_fields() -> None:
         ({"type": "scrub", "back_s": "3"}, "wrong kind"),
         ({"type": "scrub", "back_s": True}, "wrong kind"),
         ({"type": "scrub", "back_s": float("nan")}, "wrong kind"),
+        ({"type": "scrub", "back_s": 10**400}, "wrong kind"),
+        ({"type": "pong", "index": 10**400}, "wrong kind"),
         ({"type": "pong", "index": 1.5}, "wrong kind"),
         ({"type": "record", "on": 1}, "wrong kind"),
         ({"type": "show", "nodes": "frame"}, "wrong kind"),

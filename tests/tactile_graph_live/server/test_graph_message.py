@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Le
 
@@ -43,6 +44,14 @@ def test_each_kind_of_setting_is_known(annotation: Any, value: Any, kind: str) -
     setting = told(annotation, value)
     assert setting.kind == kind
     json.dumps([setting.value, setting.default, *setting.choices])
+
+
+@pytest.mark.parametrize("value", [1e308, -1e308, 10**400])
+def test_a_number_beyond_all_sliders_has_one_all_the_same(value: float) -> None:
+    setting = told(float if isinstance(value, float) else int, value)
+    assert setting.value == value
+    ends = (setting.slider_low, setting.slider_high, setting.step)
+    assert np.isfinite(ends).all()
 
 
 @pytest.mark.parametrize("value", [0, 1e-9, 1.0, 25.0, 1e6, -3.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from datetime import datetime
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 pytest.importorskip("starlette", reason="the live extra is not installed")
 
 from tactile_graph import Frame
+from tactile_graph_live.server import recorder as recorders
 from tactile_graph_live.server.recorder import Recorder, free_name
 
 NOON = datetime(2026, 5, 4, 12, 0, 1)
@@ -69,3 +71,56 @@ def test_what_goes_wrong_is_told_and_closing_still_ends(tmp_path: Path) -> None:
     recorder.close()
     assert len(failures) == 1
     assert "5" in failures[0]
+
+
+def test_a_full_disc_is_told_once_and_what_was_written_counts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    from tactile_graph_sources.writers.write_store import StoreWriter
+
+    put = StoreWriter._put
+
+    def full(self: StoreWriter, some: list[Frame]) -> None:
+        if self.n_written:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        put(self, some)
+
+    monkeypatch.setattr(StoreWriter, "_put", full)
+    failures: list[str] = []
+    recorder = Recorder(tmp_path, "mine", "", {}, failures.append)
+    recorder.take(frames(0, 600), 0)
+    assert recorder.close() == 256
+    assert len(failures) == 1
+    assert "No space left" in failures[0]
+
+
+def test_what_the_disc_does_not_keep_up_with_is_counted_and_leaves_a_gap(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    import threading
+
+    from tactile_graph import load
+    from tactile_graph_sources.writers.write_store import StoreWriter
+
+    goes_on, write = threading.Event(), StoreWriter.write
+
+    def slow(self: StoreWriter, frame: Frame) -> None:
+        goes_on.wait(30)
+        write(self, frame)
+
+    monkeypatch.setattr(StoreWriter, "write", slow)
+    monkeypatch.setattr(recorders, "MOST_BYTES", 5 * 4 * 4 * 8)
+    failures: list[str] = []
+    recorder = Recorder(tmp_path, "mine", "", {}, failures.append)
+    recorder.take(frames(0, 3), 0)
+    recorder.take(frames(3, 3), 0)  # with these there would be six
+    recorder.take(frames(6, 2), 0)
+    assert recorder.state.lost == 3
+    goes_on.set()
+    assert recorder.close() == 5
+    source = load("circle-1").with_source("recording", path=str(recorder.path), quantity="counts")
+    read = list(source.frames())
+    assert [f.image.values[0, 0] for f in read] == [0, 1, 2, 6, 7]
+    assert [f.gap for f in read] == [False, False, False, True, False]

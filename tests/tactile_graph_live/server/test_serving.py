@@ -48,3 +48,9 @@ def test_what_is_no_address_of_this_machine_is_refused() -> None:
         taken_door("203.0.113.7", 0)
     with pytest.raises(UsageError, match="--host"):
         taken_door("no such host", 0)
+
+
+@pytest.mark.parametrize("token", ["a b", "a&b=c", "a;b", "a\nb", "ä", "x" * 300])
+def test_a_token_that_cannot_stand_in_an_address_is_refused(token: str) -> None:
+    with pytest.raises(UsageError, match="--token: must be of letters"):
+        taken_door("127.0.0.1", 0, token)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import shutil
 from pathlib import Path
@@ -191,3 +192,21 @@ def test_frames_of_a_cut_journal_that_nothing_numbers_any_more_stay_told_as_lost
     report = Report()
     assert len(list(read_store(store, report))) == 8
     assert report.troubles == [(str(store), told)]
+
+
+def test_a_store_that_could_not_be_begun_leaves_the_right_to_write_to_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The disc was full when it was to be written down who writes."""
+    path = tmp_path / "a.zarr"
+
+    def full(*_: object, **__: object) -> None:
+        (tmp_path / ".a.zarr.writer").touch()
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "write_text", full)
+        with pytest.raises(UsageError, match="No space left"):
+            StoreWriter(path)
+    assert not list(tmp_path.glob(".*.writer"))
+    StoreWriter(path).close()

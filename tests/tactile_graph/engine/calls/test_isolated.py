@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
+import subprocess
+import sys
 import time
 import types
 from pathlib import Path
@@ -303,3 +306,44 @@ def test_a_plugin_that_marks_what_it_has_not_is_told() -> None:
     module.tactile_graph_isolated = hookimpl(lambda: {"mody": None})  # type: ignore[attr-defined]
     (plugin,) = Registry([("risky", "risky-package", "1", lambda: module)]).plugins
     assert "tactile_graph_isolated: it has no step 'mody'; did you mean 'moody'" in plugin.error
+
+
+def test_ctrl_c_reaches_no_process_of_a_step() -> None:
+    runner = pipeline("step: elsewhere, in: frame, isolated: true").runner()
+    number = runner(frame(1))["risky"]
+    os.kill(number, signal.SIGINT)
+    time.sleep(0.2)
+    assert runner(frame(2))["risky"] == number
+
+
+def test_a_step_that_hangs_ends_with_who_began_its_process() -> None:
+    began = subprocess.run([sys.executable, "-c", ABANDONS], stdout=subprocess.PIPE, check=True)
+    number = int(began.stdout)
+    for _ in range(200):
+        try:
+            os.kill(number, 0)
+        except ProcessLookupError:
+            return
+        stat = Path(f"/proc/{number}/stat")
+        if stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z":
+            return  # nobody is there to take note of its end
+        time.sleep(0.1)
+    os.kill(number, signal.SIGKILL)
+    raise AssertionError("it goes on")
+
+
+ABANDONS = """
+import os, pickle, subprocess, sys, time
+from tactile_graph.engine.calls.isolated_worker import received, sent
+worker = subprocess.Popen(
+    [sys.executable, "-m", "tactile_graph.engine.calls.isolated_worker"],
+    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+)
+sent(worker.stdin, sys.path)
+sent(worker.stdin, pickle.dumps((time.sleep, {}, False)))
+received(worker.stdout)
+sent(worker.stdin, (0, (600,), {}))
+time.sleep(0.2)
+print(worker.pid, flush=True)
+os._exit(0)
+"""
