@@ -20,11 +20,18 @@ Name = str | os.PathLike[str]
 
 
 @contextmanager
-def whole_file(name: Name) -> Iterator[BinaryIO]:
+def whole_file(name: Name, by: str = "") -> Iterator[BinaryIO]:
     """Give a file to write to, which gets its name, and replaces another, only at the end.
 
     If anything is raised meanwhile, nothing is left behind and an older file stays. A link stays a
     link. What is no plain file (a device, a pipe) takes what comes as it comes.
+
+    Parameters
+    ----------
+    name : path
+    by : str, optional
+        Who writes it, where only one such can at a time: what one leaves behind that is killed, the
+        next one takes. This process by its number otherwise.
 
     Raises
     ------
@@ -37,7 +44,7 @@ def whole_file(name: Name) -> Iterator[BinaryIO]:
                 yield file
             return
         target = Path(os.path.realpath(name))
-        part = target.with_name(f".{target.name}.{os.getpid()}.part")
+        part = target.with_name(f".{target.name}.{by or os.getpid()}.part")
         try:
             with part.open("wb") as file:
                 yield file

@@ -106,6 +106,7 @@ def searched(
     judged = _judged(request)
     every, n_apart = _known(frames, held_out)
     split = split_of(every, n_apart, request.seed)
+    _check_objects(every, split)
     weights = weights_of(every, request.shares, (split.choosing, split.reporting))
     variants = _variants(
         request, judged, every, weights, lambda n, of: told("run everything", n, of)
@@ -121,6 +122,7 @@ def searched(
     always = _always(spaces[0])
     goal = Goal(spaces[0].given, request.most_us, request.most_error,
                 request.most_missed, request.most_false, request.margin)  # fmt: skip
+    _check_found([weigh(c, split.choosing).missed for c in (goal.given, always)], judged)
     folds = halves_of(every, split, request.seed)
     fronts = [Front() for _ in folds]
     for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
@@ -157,12 +159,31 @@ def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Fra
     return [*known, *apart], len(apart)
 
 
+def _check_objects(frames: Sequence[Frame], split: Split) -> None:
+    for rows, what in ((split.choosing, "choose"), (split.reporting, "report")):
+        if not any(frames[k].truth for k in rows.tolist()):
+            raise UsageError(
+                f"nothing lies in any of the {len(rows)} frames that {what}, where an answer that "
+                "never comes would be the best: give frames with objects, too"
+            )
+
+
 def _check_truths(variants: Sequence[Variant], judged: Judged) -> None:
     scored = np.all([v.table.scored for v in variants], axis=0)
     if not scored.all():
         raise UsageError(
             f"in {int((~scored).sum())} of {len(scored)} frames the truth says nothing of "
             f"{judged.quantity!r}: choose another with --error, or leave these frames out"
+        )
+
+
+def _check_found(missed: Sequence[float], judged: Judged) -> None:
+    if min(missed) > 1.0 - 1e-9:
+        price = f"{judged.price:g} {judged.unit}".rstrip()
+        raise UsageError(
+            f"no way to an answer comes within {price} of what lies there in any frame that "
+            "chooses: is the truth that of these frames, in cm from the pad's top left corner? "
+            "(--price sets what is a miss)"
         )
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 from concurrent.futures import BrokenExecutor
 from typing import Any
+from urllib.parse import urlsplit
 
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
@@ -28,7 +30,9 @@ def opened(address: str, n_workers: int | None) -> Opened:
     except ImportError:
         raise UsageError(MISSING) from None
     connected: Any = Client  # which is not annotated
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # we say it in a line
     try:
+        _ = urlsplit(address).port  # a client that is given none that is one cannot be closed
         client = connected(address, timeout=PATIENCE_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise UsageError(f"--on {address}: no scheduler answers there: {error}") from error

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import BrokenExecutor, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -162,11 +162,14 @@ class InOrder(Generic[Done]):
         Raises
         ------
         BrokenExecutor
-            If the executor takes no work any more and says nothing of what it was given.
+            If the executor takes no work any more and says nothing of what it was given, or has
+            cancelled it.
         """
         while True:
             try:
                 return future.result(timeout=PATIENCE_S)
+            except CancelledError as error:  # not by us: whoever handed out its work is gone
+                raise BrokenExecutor("what was under way was cancelled") from error
             except TimeoutError:
                 if future.done():  # an error of the work, or what came right now
                     return future.result()

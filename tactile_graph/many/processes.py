@@ -16,9 +16,24 @@ from tactile_graph.many.executor_kind import ExecutorKind, Opened
 from tactile_graph.many.worker_processes import DeadWorkerError, WorkerProcesses
 from tactile_graph.plugins.registry import restrict, selected
 
+MOST_PER_CORE = 4
+"""Processes: more, of steps that mostly wait too, only take memory and starting."""
+
+
+def usable_cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def most_workers() -> int:
+    """Return how many processes are started at most, however many were asked for."""
+    return MOST_PER_CORE * usable_cores()
+
 
 def opened(address: str, n_workers: int | None) -> Opened:
-    """Return so many processes, of one for each core if nobody said how many.
+    """Return so many processes, at most `most_workers`; one for each core if nobody said how many.
 
     Raises
     ------
@@ -27,7 +42,7 @@ def opened(address: str, n_workers: int | None) -> Opened:
     """
     if address:
         raise UsageError(f"--on processes={address}: processes are on this machine; no address")
-    n = n_workers or os.cpu_count() or 1
+    n = min(n_workers or usable_cores(), most_workers())
     workers = WorkerProcesses(n, _context(), _begin, (selected(),))
     return Opened(workers, n, workers.kill, (DeadWorkerError,))
 

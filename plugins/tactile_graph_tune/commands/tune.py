@@ -217,6 +217,7 @@ def _show(found: Tuned) -> None:
     from tactile_graph.cli.terminal import console
     from tactile_graph_compare.output.shown import fitted, rich_table
     from tactile_graph_tune.output.tables import (
+        doubt,
         front_table,
         guards_table,
         heading,
@@ -233,6 +234,8 @@ def _show(found: Tuned) -> None:
     for name, value in found.settings.items():
         out.print(Text(f"{name} = {value}"))
     out.print(Text(verdict(found), style="bold"), soft_wrap=True)
+    if doubt(found):
+        out.print(Text(doubt(found), style="yellow"), soft_wrap=True)
 
 
 def _written(found: Tuned, asked: _Options) -> Iterator[str]:

@@ -9,6 +9,9 @@ from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.split import Interval
 from tactile_graph_tune.tuned import ALWAYS, CHOSEN, GIVEN, Tuned
 
+DISTURBED = 2.0
+"""Times that steps may take together of what they take in a run, whose own time comes on top."""
+
 
 def heading(tuned: Tuned) -> str:
     """Return what was done, in a sentence."""
@@ -26,6 +29,21 @@ def verdict(tuned: Tuned) -> str:
         f"tuned takes {ratio.mean:.2f} of the time as given ({ratio.low:.2f} to {ratio.high:.2f}), "
         f"{tuned.difference.told(tuned.judged.unit)}; it saves {told} at its error"
     )
+
+
+def doubt(tuned: Tuned) -> str:
+    """Return what is to be said where the times that chose are not those of the run; else ""."""
+    for label in (GIVEN, CHOSEN):
+        point = tuned.points[label]
+        assert point.rerun is not None
+        predicted, timed = point.weight.time_us.mean, point.rerun.time_us.mean
+        if predicted > DISTURBED * timed:
+            return (
+                f"{label} was predicted to take {predicted:.3g} µs a frame and took {timed:.3g}: "
+                "something else took the processor while steps were timed, and what was chosen may "
+                "come of that; tune again with more --rounds, or when the machine is quiet"
+            )
+    return ""
 
 
 def points_table(tuned: Tuned) -> Table:

@@ -22,6 +22,7 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
 from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.errors import UsageError
@@ -82,10 +83,10 @@ STALLED_S = 1.0
 )
 @click.option(
     "--workers",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Let N processes work on the frames, for -o FILE; the file is the one that one process "
-    "writes, and gets its name when it is whole.",
+    type=Workers(),
+    metavar="N|auto",
+    help="Let N processes (auto: one for each core) work on the frames, for -o FILE; the file is "
+    "the one that one process writes, and gets its name when it is whole.",
 )
 @click.option(
     "--on",
@@ -191,12 +192,12 @@ class _Run:
     def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
         """Let workers run it, and leave the command; say why if they cannot."""
         from tactile_graph.cli.many.many_run import Asked, InOneRow, ManyRun, division_for
-        from tactile_graph.cli.many.options import BY_RECORDING
+        from tactile_graph.cli.many.options import BY_RECORDING, place_asked
         from tactile_graph.cli.terminal import console
-        from tactile_graph.many.executor_kind import place_of
 
         assert self.output is not None  # it is refused without
-        place = place_of(on, workers or (None if on else 1))
+        place = place_asked(workers or (None if on else 1), on)
+        assert place is not None  # one worker, if only --resume is given
         asked = Asked(
             self.pipeline, self.only, self.span, self.seed, self.output, self.verify, place, resume
         )

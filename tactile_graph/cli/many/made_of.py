@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -21,6 +22,7 @@ WORDS = {
     "pipeline": "the pipeline or its settings",
     "options": "what is asked of it (--only, --seed, --frames, --format, …)",
     "versions": "a version of the project or of a plugin",
+    "code": "the code of the project or of a plugin",
 }
 
 
@@ -36,6 +38,7 @@ def made_of(pipeline: Pipeline, options: Mapping[str, Any]) -> dict[str, str]:
         "pipeline": _digest(pipeline.resolved()),
         "options": _digest(options),
         "versions": _digest([version("tactile-graph"), version("numpy"), plugins]),
+        "code": _digest([_content(p, "*.py") for p in _code(pipeline)]),
         **found,
     }
 
@@ -82,10 +85,28 @@ def _there(path: Path) -> bool:
         return False
 
 
-def _content(path: Path) -> str:
+def _code(graph: Graph) -> list[Path]:
+    """Return where the project's own code lies, and that of the packages that steps are of."""
+    names = {"tactile_graph", *_packages(graph)}
+    places = ((getattr(m, "__path__", None), m.__file__) for m in map(sys.modules.get, names) if m)
+    return sorted(Path(folders[0] if folders else file) for folders, file in places if file)
+
+
+def _packages(graph: Graph) -> Iterator[str]:
+    signatures = [n.signature for n in graph.nodes.values()]
+    signatures += [graph.source.signature] if graph.source is not None else []
+    for signature in signatures:
+        if signature is not None:
+            yield getattr(signature.target, "__module__", "").partition(".")[0]
+    for node in graph.nodes.values():
+        if node.inner is not None:
+            yield from _packages(node.inner)
+
+
+def _content(path: Path, which: str = "*") -> str:
     files = [path]
     if path.is_dir():
-        files = sorted(path.glob(JOURNALS)) or sorted(p for p in path.rglob("*") if p.is_file())
+        files = sorted(path.glob(JOURNALS)) or sorted(p for p in path.rglob(which) if p.is_file())
     whole = hashlib.sha256()
     for file in files:
         of_file = bytes.fromhex(sha256_of(file))

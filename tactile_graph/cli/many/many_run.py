@@ -102,11 +102,13 @@ class ManyRun:
         self.people, self.stderr = console(stderr=True), console(stderr=True)
         self.bar = Bar(self.stderr, asked.pipeline.name)
         self.low = asked.span.start
-        self.n_before = 0
+        self.n_kept = 0
         name = asked.output.name
         self.unfinished = Unfinished(name) if Unfinished.possible(name) else None
         self._of = made_of(asked.pipeline, self._options()) if self.unfinished else {}
         if asked.resume and self._is_done():
+            if self.unfinished is not None:
+                self.unfinished.clear()
             self.people.print(f"{name}: is done already", style="dim")
             return 0
         self._begin()
@@ -171,7 +173,7 @@ class ManyRun:
         self.low = high
         self.tally = Tally.of_kept(self.columns, so_far["tally"])
         self.quantity = so_far["quantity"]
-        self.n_before = self.tally.n
+        self.n_kept = self.tally.n
         for place in so_far["left_out"]:
             self._leave_out(place)
         self.people.print(f"going on from frame {high}", style="dim")
@@ -193,6 +195,8 @@ class ManyRun:
                     self.unfinished.remove()
         except KeyboardInterrupt as error:
             self.interrupted = error
+        except UsageError as error:  # a disc that is full: what was kept before is told
+            self.error = error
         finally:
             self.bar.stop()
 
@@ -283,12 +287,13 @@ class ManyRun:
         self.tally.join(came.tally)
         self.quantity = came.quantity or self.quantity
         self.feed.size.took(came.n_frames, came.seconds)
-        self.low = portion.high if came.error is None else portion.low + came.n_frames
+        high = portion.high if came.error is None else portion.low + came.n_frames
         if self.unfinished is not None:
             so_far = {
                 "tally": self.tally.kept(), "quantity": self.quantity, "left_out": self.left_out,
             }  # fmt: skip
-            self.unfinished.add(self.low, came.part, so_far)
+            self.unfinished.add(high, came.part, so_far)
+        self.low, self.n_kept = high, self.tally.n
         self.bar.at(self.tally.n, self.asked.span.expected(self.report.n_expected))
 
     def _leave_out(self, place: int) -> None:
@@ -302,7 +307,7 @@ class ManyRun:
         if name is None:
             joined(parts, sys.stdout.buffer)
             return
-        with whole_file(name) as file:
+        with whole_file(name, by="joined") as file:  # one run at a time: it holds the journal
             joined(parts, file)
             self.n_bytes = file.tell()
 
@@ -327,7 +332,7 @@ class ManyRun:
         if self.interrupted is None and self.error is None:
             text = "" if name == "-" else f"wrote {name}"
         elif self.unfinished is not None:
-            text = f"{self.tally.n} frames are kept: --resume goes on with {name}"
+            text = f"{self.n_kept} frames are kept: --resume goes on with {name}"
         else:
             text = ""
         if text:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -33,9 +34,10 @@ def workers_options(command: F) -> F:
         ),
         click.option(
             "--workers",
-            type=click.IntRange(min=1),
-            metavar="N",
-            help="Let N processes share the work; the outcome is the same.",
+            type=Workers(),
+            metavar="N|auto",
+            help="Let N processes share the work (auto: one for each core); the outcome is the "
+            "same.",
         ),
     ):
         command = add(command)
@@ -52,8 +54,12 @@ def place_asked(workers: int | None, on: str | None) -> Place | None:
     """
     if workers is None and on is None:
         return None
-    from tactile_graph.many.executor_kind import place_of
+    from tactile_graph.many.executor_kind import USUAL, place_of
+    from tactile_graph.many.processes import MOST_PER_CORE, most_workers
 
+    most = most_workers()
+    if workers is not None and workers > most and on in (None, USUAL):
+        _say(f"--workers {workers}: {most} are started, {MOST_PER_CORE} for each core there is")
     return place_of(on, workers)
 
 
@@ -73,9 +79,29 @@ def place_for(workers: int | None, on: str | None, plan: Plan) -> Place | None:
 
 def say_in_one_process(why: object) -> None:
     """Tell people why workers are asked for in vain."""
+    _say(f"in one process: {why}")
+
+
+def _say(text: str) -> None:
     from tactile_graph.cli.terminal import console
 
-    console(stderr=True).print(f"in one process: {why}", style="yellow", soft_wrap=True)
+    console(stderr=True).print(text, style="yellow", soft_wrap=True)
+
+
+class Workers(click.ParamType[int]):
+    """A number of workers, or ``auto``: one for each core that this process may use."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """Return the number."""
+        from tactile_graph.many.processes import usable_cores
+
+        if value == "auto":
+            return usable_cores()
+        if not re.fullmatch(r"[0-9]+", str(value)) or int(value) < 1:
+            self.fail(f"{value!r}: must be a whole number from 1 on, or auto", param, ctx)
+        return int(value)
 
 
 class Sourced(NamedTuple):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import zlib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -122,7 +123,8 @@ class Unfinished:
     def close(self) -> None:
         """Leave it as it is, for another to go on with."""
         for file in self._files:
-            file.close()
+            with suppress(OSError):  # of a full disc: what the journal does not tell was not kept
+                file.close()
         self._files = []
         self._lock.release()
 
@@ -138,6 +140,11 @@ class Unfinished:
         self._parts.unlink(missing_ok=True)
         self._journal.unlink(missing_ok=True)
         self.close()
+
+    def clear(self) -> None:
+        """Take away what a run left that was killed when its output stood under its name."""
+        if self._journal.exists() and self._lock.take():
+            self.remove()
 
     # -- within --------------------------------------------------------------------------------
 

@@ -114,9 +114,11 @@ def test_a_frame_of_which_the_clusters_workers_die_is_left_out(folder: Path, add
     assert len((folder / "d.csv").read_text().splitlines()) == 12
 
 
-def test_nobody_at_an_address_is_told() -> None:
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("port", ["9", "port"])
+def test_nobody_at_an_address_is_told(port: str) -> None:
     with pytest.raises(UsageError, match="no scheduler answers there"):
-        place_of("tcp://127.0.0.1:9", None).opened()
+        place_of(f"tcp://127.0.0.1:{port}", None).opened()
 
 
 def test_a_comparison_on_a_cluster_is_that_of_one_process(folder: Path, address: str) -> None:

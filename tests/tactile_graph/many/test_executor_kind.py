@@ -7,7 +7,7 @@ import pytest
 from tactile_graph.errors import UsageError
 from tactile_graph.many.dask_cluster import DASK
 from tactile_graph.many.executor_kind import place_of
-from tactile_graph.many.processes import PROCESSES
+from tactile_graph.many.processes import PROCESSES, most_workers
 
 
 def test_processes_of_this_machine_are_usual() -> None:
@@ -32,6 +32,12 @@ def test_what_nobody_offers_is_refused_by_name(on: str) -> None:
 def test_processes_have_no_address() -> None:
     with pytest.raises(UsageError, match="processes are on this machine; no address"):
         place_of("processes=there", None).opened()
+
+
+def test_processes_far_beyond_the_cores_are_not_started() -> None:
+    workers = place_of(None, 500).opened()
+    workers.end()
+    assert workers.n_workers == min(500, most_workers())
 
 
 def test_a_cluster_has_one() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from helpers_many import place
+from helpers_many import Here, place
 from tactile_graph.errors import DataError
 from tactile_graph.many import in_order
 from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
@@ -55,6 +55,25 @@ def test_deadly_frames_are_found_told_and_left_out(deadly: set[int]) -> None:
 def test_chance_deaths_beside_a_deadly_frame_blame_no_other() -> None:
     came, left_out = done(place({12}, chance=[11, 13, 14, 40]))
     assert (came, left_out) == ([k for k in range(60) if k != 12], [12])
+
+
+class Gone(Here):
+    """Cancels all that it is given, as a client does whose scheduler has died."""
+
+    def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.cancel()
+        future.set_running_or_notify_cancel()
+        return future
+
+
+def test_an_executor_that_cancels_what_it_has_is_opened_anew() -> None:
+    executors = [Here(set(), []), Gone(set(), [])]
+
+    def opened(address: str, n_workers: int | None) -> Opened:
+        return Opened(executors.pop(), 2, lambda: None)
+
+    assert done(Place(ExecutorKind("a cluster", opened), "", 2)) == (list(range(60)), [])
 
 
 def test_nothing_is_cancelled_in_an_executor_that_may_break(

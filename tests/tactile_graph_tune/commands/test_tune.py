@@ -100,3 +100,11 @@ def test_a_pipeline_without_anything_to_choose_says_so(hand_made):
     got = call("tune", "bare.yaml", "--field", "circle.radius_cm")
     assert got.exit_code == 2
     assert "pipeline 'bare': nothing to choose: it has no guard" in got.output
+
+
+def test_frames_in_none_of_which_anything_lies_are_refused(hand_made):
+    empty = ",".join(map(str, range(24)))
+    got = call("tune", "ladder.yaml", "--source", "made", "--with", "frames=24", "--with",
+               f"empty=[{empty}]", *QUICK)  # fmt: skip
+    assert got.exit_code == 2
+    assert "nothing lies in any of the 12 frames that choose" in " ".join(got.output.split())

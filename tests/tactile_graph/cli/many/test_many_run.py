@@ -207,7 +207,9 @@ def test_a_damaged_archive_is_refused_as_by_one_process(folder: Path) -> None:
 @pytest.mark.parametrize(("words", "told"), [
     (("--workers", "2"), "are for files: give -o FILE.jsonl"),
     (("--workers", "2", "-o", "a.csv", "--plot", "a.svg"), "workers draw nothing"),
-    (("--workers", "0", "-o", "a.csv"), "not in the range x>=1"),
+    (("--workers", "0", "-o", "a.csv"), "'0': must be a whole number from 1 on, or auto"),
+    (("--workers", "1.5", "-o", "a.csv"), "'1.5': must be a whole number from 1 on, or auto"),
+    (("--workers", "many", "-o", "a.csv"), "'many': must be a whole number from 1 on, or auto"),
     (("--on", "nowhere", "-o", "a.csv"), "is no executor"),
     (("--resume", "-o", "-"), "what went to - is not known"),
 ])  # fmt: skip
@@ -333,6 +335,35 @@ def test_what_has_changed_since_is_not_gone_on_with(folder: Path) -> None:
     got = ran(folder, *(w.replace("0.01", "0.0") for w in running.words), "--resume")
     assert got.returncode == 2
     assert "c.csv was begun with other content: the pipeline or its settings" in got.stderr
+
+
+@pytest.mark.slow
+@unlike_windows
+def test_what_another_code_made_is_not_gone_on_with(folder: Path) -> None:
+    running = Running(folder, "e.csv", "--set", "image.slow_s=0.01")
+    running.wait_until(running.keeps_something)
+    running.process.send_signal(signal.SIGKILL)
+    running.end()
+    code = folder / "deadly.py"
+    before = code.read_text()
+    code.write_text(before.replace("return frame.image\n", "return frame.image  # as before\n"))
+    try:
+        got = ran(folder, *running.words, "--resume")
+    finally:
+        code.write_text(before)
+    assert got.returncode == 2
+    assert "begun with other content: the code of the project or of a plugin" in got.stderr
+
+
+@pytest.mark.slow
+def test_what_a_killed_run_left_of_a_whole_file_is_taken(folder: Path) -> None:
+    (folder / ".j.csv.joined.part").write_text("half of it")
+    words = ("run", "circle-1", "a.zarr", "--frames", "30", "--workers", "1", "-o", "j.csv")
+    assert ran(folder, *words).returncode == 0
+    (folder / ".j.csv.parts").write_text("left")
+    (folder / ".j.csv.journal").write_text("left")
+    assert "is done already" in ran(folder, *words, "--resume").stderr
+    assert [p.name for p in folder.glob(".j.csv*")] == []
 
 
 @pytest.mark.slow

@@ -78,6 +78,34 @@ def test_two_runs_do_not_write_the_same(tmp_path: Path) -> None:
     first.remove()
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
+@pytest.mark.parametrize("which", ["parts", "journal"])
+def test_a_full_disc_is_told_by_name_and_what_was_kept_counts(tmp_path: Path, which: str) -> None:
+    before = begun(tmp_path)
+    number = ("parts", "journal").index(which)
+    before._files[number].close()
+    before._files[number] = open("/dev/full", "wb")  # noqa: SIM115 -- closed by what is tested
+    with pytest.raises(UsageError, match=r"out\.csv: cannot be written: No space left"):
+        before.add(30, b"c\n", {"n": 26})
+    before.close()
+    again = read(tmp_path)
+    assert (again.high, again.so_far) == (25, {"n": 25})
+    again.close()
+
+
+def test_what_is_left_beside_an_output_that_is_whole_goes(tmp_path: Path) -> None:
+    begun(tmp_path).close()
+    Unfinished(str(tmp_path / "out.csv")).clear()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_another_run_is_at_stays(tmp_path: Path) -> None:
+    first = begun(tmp_path)
+    Unfinished(str(tmp_path / "out.csv")).clear()
+    assert sorted(p.name for p in tmp_path.iterdir()) == [".out.csv.journal", ".out.csv.parts"]
+    first.remove()
+
+
 def test_pipes_and_devices_keep_nothing() -> None:
     assert not Unfinished.possible("-")
     assert not Unfinished.possible("/dev/null")

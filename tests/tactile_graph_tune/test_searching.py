@@ -1,0 +1,22 @@
+"""What is refused before the search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from helpers_tune import frames
+from tactile_graph import Circle, load
+from tactile_graph.errors import UsageError
+from tactile_graph.wires import TrueObject
+from tactile_graph_tune import Request
+from tactile_graph_tune.searching import searched
+
+
+def test_a_truth_of_something_else_is_refused(hand_made):
+    far = (TrueObject(Circle(500.0, 500.0, 1.0)),)
+    others = [replace(f, truth=far if f.truth else ()) for f in frames(24)]
+    request = Request(load("ladder.yaml"), rounds=1, fields=("load.total",))
+    with pytest.raises(UsageError, match="no way to an answer comes within 2 cm"):
+        searched(request, others, [], lambda what, n, of: None)
