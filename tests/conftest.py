@@ -110,7 +110,7 @@ BY_LOOPS = tuple(
         "tactile_graph_filters/morphology", "tactile_graph_filters/parting",
         "tactile_graph_fitters", "tactile_graph_hull", "tactile_graph_likelihood",
         "tactile_graph_mrf/contours", "tactile_graph_mrf/descent", "tactile_graph_pipelines",
-        "tactile_graph_thesis/items/test_items.py",
+        "tactile_graph_thesis/items/test_items.py", "tactile_graph_thesis/measure",
     )
 )  # fmt: skip
 """Tests that plain loops answer sooner than the compiler has made machine code for them."""

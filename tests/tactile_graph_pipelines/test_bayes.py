@@ -125,6 +125,7 @@ def test_odd_images_come_to_an_answer_or_a_reason(name: str) -> None:
                 assert type(outcome.error).__name__ == "Degenerate", outcome
 
 
+@pytest.mark.slow
 def test_a_lost_element_within_is_bridged_and_the_circle_stays_whole() -> None:
     (frame,) = frames("disc-1", 1, seed=2, sigma=0.0, voids=0.0)
     whole = load("bayes-circle").run(frame)

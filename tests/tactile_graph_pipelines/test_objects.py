@@ -79,6 +79,7 @@ def test_the_tracker_tells_who_stays_who_slides_by_and_who_comes_and_goes() -> N
     assert plate == ["appears", *["rests"] * 3, "leaves"]
 
 
+@pytest.mark.slow
 def test_fingers_on_a_panel_that_blurs_are_found_within_half_a_cell() -> None:
     for result in list(load("capacitive").stream(seed=4))[:6]:
         score = score_objects(result.frame, result["aligned"].contacts, gate_cm=0.5)

@@ -103,6 +103,7 @@ def test_eight_passes_fill_a_lost_element_at_any_angle(angle: float, enough: int
     assert enough <= 8
 
 
+@pytest.mark.slow
 def test_on_an_even_pad_corrected_sides_are_nearer_than_the_full_axes() -> None:
     source = load("rectangle-1").with_source(
         "simulate", scene="rectangle-1", frames=60, sigma=0.0, voids=0.0

@@ -118,6 +118,7 @@ spots = st.lists(st.builds(Spot, st.floats(0, 20), st.floats(0, 20), st.floats(1
 @given(
     st.lists(st.tuples(spots, st.sampled_from([None, 0.0, 0.02, 1.0])), max_size=8), st.randoms()
 )
+@pytest.mark.slow
 def test_the_order_of_contacts_within_a_frame_changes_nothing(story, random):
     one, other = Track(), Track()
     for frame, gap in story:

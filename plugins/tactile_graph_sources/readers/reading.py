@@ -15,18 +15,13 @@ from tactile_graph.wires import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, Image, 
 from tactile_graph.wires.frame_stack import MOST_BYTES, MOST_FRAMES, FrameStack
 from tactile_graph.wires.stacks import ImageStack
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.filled import filling
 from tactile_graph_sources.readers.words.told import Told
 
-FEWEST_RUN_OVER = 99
 FEWEST_COUNTED, BEGUN = 32, 0.1
 """Frames by whose numbers it is known that they count, and the share of these that one which begins
 anew may have left out."""
-
-
-def runs_over(last: float, number: float) -> bool:
-    """Return whether a counter began anew at 0 or 1, as one of two digits or of a byte does."""
-    return last >= FEWEST_RUN_OVER and 0 <= number <= 1
 
 
 class Reading:

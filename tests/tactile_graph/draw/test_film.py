@@ -101,6 +101,7 @@ def test_colours_mean_the_same_in_all_pictures(tmp_path: Path) -> None:
     assert np.abs(b[middle] - (253, 231, 37)).max() < 20, "the end of viridis"
 
 
+@pytest.mark.slow
 def test_a_long_run_fills_a_film_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -78,6 +78,7 @@ def crossed(placed: Layout) -> list[tuple[str, Point]]:
 
 @given(graphs())
 @settings(max_examples=60, deadline=None)
+@pytest.mark.slow
 def test_no_two_boxes_overlap(graph: tuple[dict[str, tuple[float, float]], list[Joint]]) -> None:
     placed = layout(*graph)
     assert placed.boxes.keys() == graph[0].keys()

@@ -118,6 +118,7 @@ def test_a_writer_killed_at_any_moment_leaves_whole_lessons(tmp_path):
     assert n % LESSON == 0
 
 
+@pytest.mark.slow
 def test_readers_see_whole_lessons_while_a_writer_learns(tmp_path):
     path = tmp_path / "objects.sqlite"
     rng = np.random.default_rng(0)
@@ -350,6 +351,7 @@ def test_the_schema_itself_refuses_what_cannot_be(tmp_path, statement):
     other.close()
 
 
+@pytest.mark.slow
 def test_bytes_changed_anywhere_give_the_same_or_a_refusal(tmp_path):
     path = tmp_path / "o.sqlite"
     known = learned(path)

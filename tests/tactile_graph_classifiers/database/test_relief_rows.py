@@ -155,6 +155,7 @@ def test_an_export_holds_no_reliefs(tmp_path):
         load_reliefs(export)
 
 
+@pytest.mark.slow
 def test_a_flipped_byte_is_refused_or_changes_nothing(store, tmp_path):
     rng = np.random.default_rng(0)
     whole, wanted = store.path.read_bytes(), store.reliefs()[1]

@@ -217,6 +217,7 @@ outputs: [identity]
 
 
 @pytest.mark.parametrize("step", ["discriminant", "mahalanobis"])
+@pytest.mark.slow
 def test_another_unit_is_refused_when_the_pipeline_is_loaded_where_it_is_known(step, tmp_path):
     path = tmp_path / "p.yaml"
     path.write_text(PIPELINE.replace("STEP", step).replace("IMAGE", "siemens"))

@@ -331,6 +331,7 @@ def test_values_that_are_not_finite_are_drawn_without() -> None:
     checked(replace(c, chosen=(replace(frame, stories=stories), *c.chosen[1:])))
 
 
+@pytest.mark.slow
 def test_twelve_variants_are_told_apart_by_number() -> None:
     c = compare(["discs"], sweeps={"footprint.level_v": [0.1 * i for i in range(1, 13)]},
                 n_frames=6)  # fmt: skip

@@ -143,6 +143,7 @@ def test_one_group_of_two_objects_is_cut_and_two_groups_of_one_are_joined():
     assert len(recut(LOBES, groups_of(LOBES, 5))) == 2
 
 
+@pytest.mark.slow
 def test_pieces_are_cut_again():
     three = drawn("""
         .###...###...###.

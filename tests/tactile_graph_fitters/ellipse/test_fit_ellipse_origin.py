@@ -62,6 +62,7 @@ def test_the_error_is_that_of_appendix_d(by, seed, a, b):
 
 @settings(max_examples=15, deadline=None)
 @given(seed=seeds)
+@pytest.mark.slow
 def test_finds_the_minimum_scipy_finds(seed):
     rng = np.random.default_rng(seed)
     truth = some_rectangle(rng)

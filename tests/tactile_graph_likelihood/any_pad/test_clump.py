@@ -39,6 +39,7 @@ def test_a_chain_is_one_clump_in_whatever_order_it_is_met():
 
 
 @pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.slow
 def test_two_strays_do_not_lead_away_from_a_fingertip():
     values = np.zeros((16, 16))
     values[9:12, 5:8] = [[0.0, 33.0, 0.0], [37.0, 57.0, 16.0], [40.0, 45.0, 0.0]]

@@ -57,6 +57,7 @@ def test_chain_moves_never_raise_the_energy(along_rows):
         assert energy(problem, after, *lines) <= energy(problem, labels, *lines) + 1e-9
 
 
+@pytest.mark.slow
 def test_boxes_of_lines_only_open_and_close_where_that_pays():
     rng = np.random.default_rng(4)
     problem = prepare(Model(n_levels=30, lambda_l=60.0), square(20.0, 8))

@@ -69,6 +69,7 @@ def test_what_broke_is_said_in_table_and_report():
     assert "- **BROKEN** `mine`, NaN: a NaN: x_cm is nan" in markdown([row], "command")
 
 
+@pytest.mark.slow
 def test_ctrl_c_shows_and_writes_the_steps_that_are_done(tmp_path, monkeypatch):
     from tactile_graph_stress import study
 

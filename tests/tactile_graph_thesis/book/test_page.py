@@ -160,6 +160,7 @@ def test_numbers_have_the_digits_that_matter() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_files_of_an_item_and_the_same_bytes_again() -> None:
     def one() -> Made:
         figure = new_figure()

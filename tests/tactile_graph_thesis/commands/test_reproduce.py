@@ -46,6 +46,7 @@ def test_a_table_is_shown_beside_the_thesis_and_written(tmp_path: Path) -> None:
     assert float(rows[9]["thesis"]) == 0.5
 
 
+@pytest.mark.slow
 def test_all_makes_the_book_although_an_item_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -67,6 +68,7 @@ def test_all_makes_the_book_although_an_item_fails(
     assert (tmp_path / "compared.csv").exists()
 
 
+@pytest.mark.slow
 def test_a_single_item_makes_no_book(tmp_path: Path) -> None:
     run("figure-4.9", "-o", tmp_path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["figure-4.9.png", "figure-4.9.svg"]

@@ -78,6 +78,7 @@ def test_a_reading_without_an_answer_keeps_its_place(frames):
     assert lost == {"RECTANGLE I": [False, True, False], "RECTANGLE II": [False] * 3}
 
 
+@pytest.mark.slow
 def test_both_tables_are_equal_in_the_angle_alone():
     frames = rectangle_frames(10, seed=3)
     first, second = (
@@ -89,6 +90,7 @@ def test_both_tables_are_equal_in_the_angle_alone():
         assert (first[name][:, 1:3] != second[name][:, 1:3]).any(axis=0).all()
 
 
+@pytest.mark.slow
 def test_on_an_even_pad_rectangle_2_errs_by_the_ellipse_of_the_exact_outline(frames):
     """Full axes are 13 % and 20 % longer than the sides of RECTANGLE I: + 2.1 and + 1.4 cm."""
     even = rectangle_frames(60, seed=5, sigma=0.0, voids=0.0)

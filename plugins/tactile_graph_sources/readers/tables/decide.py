@@ -22,13 +22,13 @@ from dataclasses import replace
 import numpy as np
 
 from tactile_graph.errors import one_of
-from tactile_graph_sources.readers.reading import runs_over
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import spacing
 from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
+from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_of
 from tactile_graph_sources.readers.words.told import Told
 from tactile_graph_sources.readers.words.units import NO_UNITS, OHMS, length_unit, value_unit

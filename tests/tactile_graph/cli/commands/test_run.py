@@ -444,6 +444,7 @@ def process(*args: str, **kwargs: object) -> subprocess.Popen[bytes]:
 ENDLESS = ("run", "circle-3", "--source", "simulate", "--frames", "1000000")
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_whole_lines_tells_what_was_done_and_exits_with_130(tmp_path):
     out = tmp_path / "out.jsonl"
     running = process(*ENDLESS, "-o", str(out))

@@ -27,6 +27,7 @@ def size(found: Weighings, values: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("pad", ["thesis", "plain"])
 @pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.slow
 def test_without_decoupling_the_error_grows_with_area(pad: str, seed: int) -> None:
     found = weighed(pad, seed)
     by_area = size(found, found.coupled_g)[np.argsort(found.area_cm2)]

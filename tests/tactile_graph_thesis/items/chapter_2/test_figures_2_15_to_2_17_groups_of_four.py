@@ -40,6 +40,7 @@ def test_observations_are_a_quarter_of_the_weight_each() -> None:
     assert seen[0].readings.shape == (4,)
 
 
+@pytest.mark.slow
 def test_averaging_four_takes_about_100_percent_to_about_20() -> None:
     bars = [bars_of(THESIS, seed) for seed in range(4)]
     single = np.mean([np.median(b.single_percent) for b in bars])

@@ -33,6 +33,7 @@ def test_the_frame_is_of_rectangle_ii() -> None:
     assert (true.length_cm, true.breadth_cm) == (14.0, 3.0)
 
 
+@pytest.mark.slow
 def test_fine_cells_are_those_of_the_pipeline_and_whole_ones_the_footprint() -> None:
     whole, fine = roundings()
     nodes = stages("rectangle-2", frame())
