@@ -12,13 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import Box, window
+from tactile_graph_likelihood.geometry.covered import window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, log_prior
-from tactile_graph_likelihood.geometry.outlines import ELLIPSE, OVAL, REGULAR, Values, unknowns
-from tactile_graph_likelihood.geometry.oval import to_oval
-from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
+from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
-    FOAM,
     LEAST,
     OFF,
     UNKNOWN,
@@ -33,12 +30,7 @@ from tactile_graph_likelihood.single.information import (
     score_of,
     steps_of,
 )
-from tactile_graph_likelihood.single.load_shares import (
-    foam_margin,
-    is_even,
-    shares_around,
-    shares_of,
-)
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around, shares_of
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -99,14 +91,6 @@ class Coverage(NamedTuple):
 def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
     """Add what one of some outlines brings to each element to what the others do."""
     lay(problem, outlines, k, 0, 0, problem.load, problem.share)
-
-
-@compiled_as_is
-def add_others(problem: JointProblem, outlines: Outlines, left_out: Places) -> None:
-    """Add what outlines, but for some, bring to each element to what others do."""
-    for k in range(outlines.kinds.shape[0]):
-        if not (left_out == k).any():
-            add_outline(problem, outlines, k)
 
 
 @compiled_as_is
@@ -187,52 +171,6 @@ def gain(problem: JointProblem, outlines: Outlines) -> float:
 
 
 @compiled_as_is
-def log_posterior_of(problem: JointProblem, outlines: Outlines) -> float:
-    """Return `gain` and the log prior density of outlines, -inf where that is zero."""
-    log = log_rest_of(problem, outlines)
-    if log > -math.inf:
-        log += gain(problem, outlines)
-    return log
-
-
-@compiled_as_is
-def with_slopes(
-    problem: JointProblem, kind: int, corners: int, p: Values, box: Box, rise: Values
-) -> Values:
-    """Return an outline's shares of a window, and add their slope along each of its numbers.
-
-    Exact but for regular polygons, foam and uneven pressures, which are differenced.
-    """
-    grid, noise, at = problem.grid, problem.noise, p.copy()
-    if is_even(noise) and noise[FOAM] == 0.0 and (kind == ELLIPSE or has_slopes(kind)):
-        if kind != ELLIPSE:
-            return covered_with_slopes(kind, p, grid, box, rise)
-        to_oval(at)
-        share = covered_with_slopes(OVAL, at, grid, box, rise)
-        cos, sin = math.cos(2.0 * p[4]), math.sin(2.0 * p[4])
-        for i in range(box[2]):
-            for j in range(box[3]):
-                mean, along, across = rise[2, i, j], rise[3, i, j], rise[4, i, j]
-                apart = cos * along + sin * across
-                rise[2, i, j], rise[3, i, j] = 0.5 * (mean + apart), 0.5 * (mean - apart)
-                rise[4, i, j] = (p[2] - p[3]) * (cos * across - sin * along)
-        return share
-    (rows, cols), steps = problem.states.shape, steps_of(kind, corners, p, grid)
-    share = np.empty((box[2], box[3]))
-    for m in range(-1, rise.shape[0]):  # at first where it lies: one call, which is compiled once
-        for x in range(rise.shape[0]):
-            at[x] = p[x] + (steps[m] if x == m else 0.0)
-        here = shares_of(kind, corners, at, grid, noise, box, rows, cols)
-        for i in range(box[2]):
-            for j in range(box[3]):
-                if m < 0:
-                    share[i, j] = here[i, j]
-                else:
-                    rise[m, i, j] = (here[i, j] - share[i, j]) / steps[m]
-    return share
-
-
-@compiled_as_is
 def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N).
 
@@ -246,7 +184,7 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     expected, total = problem.load.copy(), problem.share.copy()
     own = np.zeros((count, rows, cols))
     rise = np.zeros((count * WIDTH, rows, cols))
-    size = count * WIDTH
+    at, size = np.empty(WIDTH), count * WIDTH
     for x in range(size):
         out.slope[x] = 0.0
         for y in range(size):
@@ -259,16 +197,21 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        its, (r, c, height, width) = np.zeros((first, box[2], box[3])), box
-        scale = math.exp(points[k, first])
-        here = with_slopes(problem, kind, n, points[k], box, its)
-        for i in range(height):
-            for j in range(width):
-                own[k, r + i, c + j] = here[i, j]
-                expected[r + i, c + j] += scale * here[i, j]
-                total[r + i, c + j] += here[i, j]
-                for m in range(first):
-                    rise[k * WIDTH + m, r + i, c + j] = its[m, i, j]
+        steps, scale = steps_of(kind, n, points[k], grid), math.exp(points[k, first])
+        r, c = box[0], box[1]
+        for m in range(-1, first):  # at first where it lies: one call, which is compiled once
+            for x in range(WIDTH):
+                at[x] = points[k, x] + (steps[m] if x == m else 0.0)
+            here = shares_of(kind, n, at, grid, noise, box, rows, cols)
+            for i in range(box[2]):
+                for j in range(box[3]):
+                    if m >= 0:
+                        moved = here[i, j] - own[k, r + i, c + j]
+                        rise[k * WIDTH + m, r + i, c + j] = moved / steps[m]
+                        continue
+                    own[k, r + i, c + j] = here[i, j]
+                    expected[r + i, c + j] += scale * here[i, j]
+                    total[r + i, c + j] += here[i, j]
     _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 
@@ -295,8 +238,6 @@ def _sum_up(
                 floor = max(expected[i, j], SLIVER * scale)
                 for m in range(first):
                     at = k * WIDTH + m
-                    if rise[at, i, j] == 0.0:
-                        continue
                     along[n], tight[n] = scale * rise[at, i, j] / floor, rise[at, i, j]
                     used[n] = at
                     n += 1

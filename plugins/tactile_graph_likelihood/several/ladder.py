@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
-from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
@@ -23,16 +23,7 @@ from tactile_graph_likelihood.several.partings import across, partings, sketch_o
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
-from tactile_graph_likelihood.single.element_terms import (
-    LEAST,
-    ON,
-    SIGMA,
-    SQRT_HALF,
-    UNKNOWN,
-    VOIDS,
-    States,
-    on_level,
-)
+from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
 from tactile_graph_likelihood.single.problem import Places
 
 Mask = NDArray[np.bool_]
@@ -55,9 +46,9 @@ USUAL = 0.1307
 UNEXPLAINED = 4.0
 """What may be left unexplained, in nats, for a sketch not to be parted, nor two cut anew."""
 
-GIVE_UP, BEHIND, GAIN = 8.0, 4.0, 0.5
-"""How much less log probability than the best a number may have for a larger one to be tried, and
-for neighbours to be cut anew; what a move must bring: less is below what evidence is good for."""
+GIVE_UP, GAIN = 8.0, 0.1
+"""How much less log probability than the best a number may have for a larger one to be tried; what
+a move must bring."""
 
 LOCALLY = 2.0
 """How much less evidence two neighbours cut anew may have beside the others as they are, for all to
@@ -87,12 +78,13 @@ class Ladder(Scene):
     def ladder(self, begin: Sketches, room: int) -> dict[int, Sketches]:
         """Return the best sketches of each number that is come upon from some."""
         now = self.recut(begin)
-        best, top = {len(now.points): now}, now.rank
+        best = {len(now.points): now}
         while len(now.points) < room and (more := self.parted_once(now)):
-            now = self.recut(more) if more.rank > top - BEHIND else more
-            best[len(now.points)], top = now, max(top, now.rank)
-            if now.rank < top - GIVE_UP:
+            now = self.recut(more)
+            best[len(now.points)] = now
+            if now.rank < max(it.rank for it in best.values()) - GIVE_UP:
                 break
+        top = max(it.rank for it in best.values())
         for n in range(max(best), 1, -1):
             if n in best and best[n].rank < top - HOPELESS:
                 break
@@ -106,9 +98,7 @@ class Ladder(Scene):
         points = points.copy()
         worth = self.sketched(points, self.problem, first) + math.lgamma(len(points) + 1.0)
         log_sizes = 0.5 * (points[:, 2] + points[:, 3])
-        return Sketches(
-            points, worth + alikeness.call(log_sizes, points[:, 5].copy(), self.problem.prior)
-        )
+        return Sketches(points, worth + alikeness(log_sizes, points[:, 5], self.problem.prior))
 
     def sketched(self, points: Values, beside: JointProblem, first: int = 0) -> float:
         """Bring sketches, in place, to their joint mode beside others; return what they add."""
@@ -229,36 +219,21 @@ class Ladder(Scene):
 
     def surplus(self, load: Values) -> float:
         """Return how much more is left unexplained than were the model true, in nats."""
-        left, usual = unexplained.call(*self.problem[1:4], load)
-        return float(left.sum() - usual)
+        noise = self.problem.noise
+        mu = np.log(np.maximum(load, 1e-9))
+        shows = (1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA])
+        usual = shows * USUAL - (1.0 - shows) * np.log1p(-shows)
+        return float(self.unexplained(load).sum() - usual[self.problem.states != UNKNOWN].sum())
 
     def unexplained(self, load: Values) -> Values:
         """Return how much likelier each element's reading would be, were it explained wholly."""
-        return unexplained.call(*self.problem[1:4], load)[0]
-
-
-@compiled_as_is
-def unexplained(logs: Values, states: States, noise: Values, load: Values) -> tuple[Values, float]:
-    """Return what each reading would gain, were it explained wholly, and the usual sum of that.
-
-    In nats; of a load on each element, were the model true.
-    """
-    left, usual, most, sigma = np.zeros(load.shape), 0.0, on_level(noise), noise[SIGMA]
-    for i in range(load.shape[0]):
-        for j in range(load.shape[1]):
-            if states[i, j] == UNKNOWN:
-                continue
-            mu = math.log(max(load[i, j], 1e-9))
-            z = SQRT_HALF * (mu - noise[LEAST]) / sigma
-            shows = (1.0 - noise[VOIDS]) * 0.5 * math.erfc(-z)
-            none = -math.log1p(-shows)
-            usual += shows * USUAL + (1.0 - shows) * none
-            half = 0.5 * ((logs[i, j] - mu) / sigma) ** 2
-            if states[i, j] != ON:
-                left[i, j] = none
-            elif half > ODD:
-                left[i, j] = min(half, most)
-    return left, usual
+        noise, logs = self.problem.noise, self.problem.logs
+        mu = np.log(np.maximum(load, 1e-9))
+        half = 0.5 * ((logs - mu) / noise[SIGMA]) ** 2
+        odd = np.where(half > ODD, np.minimum(half, on_level.call(noise)), 0.0)
+        none = -np.log1p(-(1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA]))
+        left: Values = np.where(self.on, odd, none)
+        return np.where(self.problem.states == UNKNOWN, 0.0, left)
 
 
 Pair = tuple[tuple[int, int], Mask, float]

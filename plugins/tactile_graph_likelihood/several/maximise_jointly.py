@@ -16,8 +16,9 @@ from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
     Outlines,
+    gain,
     lightest,
-    log_posterior_of,
+    log_rest_of,
     slopes,
     smallest,
 )
@@ -28,6 +29,8 @@ HALVINGS = 6
 LOOSE, GAP = 0.01, 6.0
 """Information, per squared pitch, that is added to each number's own: to keep steps finite;
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
+POSTERIOR = -1
+"""Rounds of a climb that is none: only the log posterior is asked for."""
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -58,9 +61,7 @@ def _pulled_in(kind: int, corners: int, p: Values, noise: Values, prior: Values)
 
 
 @compiled_as_is
-def maximise_jointly(
-    problem: JointProblem, outlines: Outlines, most: int, enough: float, out: Information
-) -> float:
+def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enough: float) -> float:
     """Bring outlines, in place, to the top of their log posterior given others; return it.
 
     Parameters
@@ -72,28 +73,24 @@ def maximise_jointly(
         Rounds.
     enough : float
         Gain in log posterior still promised, below which the search ends.
-    out : Information
-        Written, as of `slopes` where they end.
     """
     kinds, corners, points = outlines
     noise, prior = problem.noise, problem.prior
     size = kinds.shape[0] * WIDTH
     step, root = np.empty(size), np.empty((size, size))
-    here = Information(np.empty(size), np.empty((size, size)))
-    slope, matrix = here
+    out = Information(np.empty(size), np.empty((size, size)))
+    slope, matrix = out
     for k in range(kinds.shape[0] if most > 0 else 0):
         _pulled_in(kinds[k], corners[k], points[k], noise, prior)
     trial = points.copy()
     tried = Outlines(kinds, corners, trial)
-    now = log_posterior_of(problem, outlines)
-    slopes(problem, outlines, out)
+    now = log_rest_of(problem, outlines)
+    if now > -math.inf:
+        now += gain(problem, outlines)
     damping = 0.0
     for _ in range(most):
-        for x in range(size):
-            slope[x] = out.slope[x]
-            for y in range(size):
-                matrix[x, y] = out.matrix[x, y]
-        add_rest(problem, outlines, LOOSE, here)
+        slopes(problem, outlines, out)
+        add_rest(problem, outlines, LOOSE, out)
         for k in range(size):
             matrix[k, k] *= 1.0 + damping
         if not cholesky(matrix, root):
@@ -110,7 +107,9 @@ def maximise_jointly(
                 for m in range(WIDTH):
                     trial[k, m] = points[k, m] + part * step[k * WIDTH + m]
                 _pulled_in(kinds[k], corners[k], trial[k], noise, prior)
-            new = log_posterior_of(problem, tried)
+            new = log_rest_of(problem, tried)
+            if new > -math.inf:
+                new += gain(problem, tried)
             if new > now:
                 break
             part *= 0.4
@@ -122,7 +121,6 @@ def maximise_jointly(
         gained, now = new - now, new
         for x in range(size):
             points[x // WIDTH, x % WIDTH] = trial[x // WIDTH, x % WIDTH]
-        slopes(problem, outlines, out)
         damping = 0.0 if part == 1.0 else 0.3
         if gained < 0.5 * enough:
             return now
@@ -140,17 +138,19 @@ def softened(problem: JointProblem) -> JointProblem:
 
 @compiled_as_is
 def laplace_evidence(
-    problem: JointProblem, outlines: Outlines, total: float, out: Information
+    problem: JointProblem, outlines: Outlines, total: float, matrix: Values
 ) -> float:
-    """Return the log evidence around a mode by Laplace's method.
+    """Return the log evidence around a mode by Laplace's method; write the information there.
 
-    ``total`` is the log posterior at the mode; ``out``, as of `slopes` there, is completed.
+    ``total`` is the log posterior at the mode.
     """
     kinds, corners, points = outlines
-    noise, prior, (slope, matrix) = problem.noise, problem.prior, out
-    root = np.empty(matrix.shape)
+    noise, prior = problem.noise, problem.prior
+    slope, root = np.empty(matrix.shape[0]), np.empty(matrix.shape)
+    out = Information(slope, matrix)
     if total == -math.inf:
         return total
+    slopes(problem, outlines, out)
     add_rest(problem, outlines, GAP, out)
     if not cholesky(matrix, root):
         return -math.inf
@@ -175,15 +175,17 @@ def settle(
 ) -> float:
     """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
 
-    With no rounds they stay where they are. At first the problem is `softened`, for ``soft``
-    rounds. The information is written to ``matrix``.
+    With no rounds they stay where they are; with `POSTERIOR` as ``most`` it is the log posterior
+    that is returned. At first the problem is `softened`, for ``soft`` rounds. The information is
+    written to ``matrix``.
     """
     now, stages = -math.inf, (softened(problem), problem)
-    out = Information(np.empty(matrix.shape[0]), matrix)
     for stage in range(0 if soft > 0 else 1, 2):  # one call, which is compiled once
         rounds, least = (soft, 0.5) if stage == 0 else (most, enough)
-        now = maximise_jointly(stages[stage], outlines, rounds, least, out)
-    return laplace_evidence(problem, outlines, now, out)
+        now = maximise_jointly(stages[stage], outlines, rounds, least)
+    if most == POSTERIOR:
+        return now
+    return laplace_evidence(problem, outlines, now, matrix)
 
 
 @compiled_as_is

@@ -17,7 +17,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
     JointProblem,
-    add_others,
+    add_outline,
 )
 from tactile_graph_likelihood.several.ladder import LEAST_PIECE
 from tactile_graph_likelihood.several.scene import Configuration, joined
@@ -148,7 +148,8 @@ class OnPad:
 def laid(problem: JointProblem, found: Configuration) -> JointProblem:
     """Return a problem beside outlines."""
     its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
-    add_others.call(its, found.outlines, np.empty(0, np.int64))
+    for k in range(found.count):
+        add_outline.call(its, found.outlines, k)
     return its
 
 

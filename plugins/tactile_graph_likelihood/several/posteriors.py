@@ -11,10 +11,9 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
-from tactile_graph_likelihood.several.alike import area_of
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad, laid
-from tactile_graph_likelihood.several.scene import Configuration, Sampled
+from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.goodness_of_fit import neighbours_of, unexplained
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -152,7 +151,12 @@ class Kinds:
 
 def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
     """Return one outline as each kind beside the others."""
-    fits = scene.as_kinds(found.only(k), scene.beside(found, k), 4)
+    beside, own, fits = scene.beside(found, k), found.only(k), []
+    for kind in scene.kinds:
+        if kind == (found.kinds[k], found.corners[k]):
+            fits.append(scene.settled(own, beside, 4)[0])
+        else:
+            fits.append(scene.as_kind(kind, own, beside))
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
     if not fits:
         raise Degenerate("an outline is possible as none of the kinds: none can be told")
@@ -188,8 +192,7 @@ def _off(found: Configuration, one: Configuration, n: int) -> Values:
     """Return how far an outline lies off another, in the other's numbers, all sizes alike."""
     off, own = np.zeros(n), sizes.call(int(one.kinds[0]))
     off[:2] = found.points[0, :2] - one.points[0, :2]
-    areas = [area_of.call(*(column[0] for column in some.outlines)) for some in (found, one)]
-    ratio = math.sqrt(areas[0] / areas[1])
+    ratio = math.sqrt(area_of(found) / area_of(one))
     off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
     return off
 

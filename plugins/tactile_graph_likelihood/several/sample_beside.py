@@ -15,7 +15,8 @@ from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
     Outlines,
-    log_posterior_of,
+    gain,
+    log_rest_of,
 )
 from tactile_graph_likelihood.single.importance import weigh
 from tactile_graph_likelihood.single.sample import (
@@ -78,8 +79,12 @@ def sample_beside(
             draw(proposals, made - 1, table[i], points[i])
             for k in range(n):
                 trial[0, k] = points[i, k]
-            inside = turn < 0 or abs(points[i, turn] - angle) <= half
-            draws.logs_p[i] = log_posterior_of(problem, tried) if inside else -math.inf
+            here = -math.inf
+            if turn < 0 or abs(points[i, turn] - angle) <= half:
+                here = log_rest_of(problem, tried)
+            if here > -math.inf:
+                here += gain(problem, tried)
+            draws.logs_p[i] = here
         take_block(proposals, made, points, before, count, block)
         count += block
         shares = proposals.drawn / count

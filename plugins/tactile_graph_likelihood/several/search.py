@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
-from tactile_graph_likelihood.several.alike import alikeness_of
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem, Outlines, lay
-from tactile_graph_likelihood.several.kinds import ROUNDS, like
+from tactile_graph_likelihood.several.alike import alikeness
+from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
 from tactile_graph_likelihood.several.ladder import (
     GAIN,
     SKETCHED,
@@ -23,9 +21,8 @@ from tactile_graph_likelihood.several.ladder import (
     dilated,
     neighbours,
 )
-from tactile_graph_likelihood.several.scene import Configuration, joined
+from tactile_graph_likelihood.several.scene import ROUNDS, Configuration, joined, like
 from tactile_graph_likelihood.several.sketch import LIGHTER, REST, STAGES, settle_sketches
-from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
@@ -34,6 +31,9 @@ Place = tuple[tuple[int, ...], Mask, float]
 PAIRS, SOFT = 3, 4
 """Pairs of sketches of a piece that are looked at, and rounds of the soft search for the first kind
 that is drawn of each."""
+
+TRIES = 24
+"""Other starts of an outline that is drawn by itself."""
 
 CHANGED, SAME_NUMBER, WORSE = 10.0, 20.0, 6.0
 """How much less log probability sketches may have to be drawn: than what they replace, where they
@@ -127,17 +127,16 @@ class Search(Ladder):
 
     def of_number(self, found: Configuration) -> float:
         """Return the log probability of outlines that are all of a part's, in one order."""
-        return self.worth(found) + alikeness_of.call(*found.outlines, self.problem.prior)
+        return self.worth(found) + alikeness(*found.log_sizes_and_loads(), self.problem.prior)
 
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
         found = self.settled(found)[0]
         self.every.append(found)
-        worth = self.of_number(found)
+        self.weighed(found.count, self.of_number(found))
         best = self.best.get(found.count)
-        if best is None or worth > self.of_number(best):
+        if best is None or self.rank(found) > self.rank(best):
             self.best[found.count] = found
-        self.weighed(found.count, worth)
         return found
 
     def weighed(self, n: int, worth: float) -> None:
@@ -146,7 +145,6 @@ class Search(Ladder):
 
     def improved(self, found: Configuration, room: int) -> Configuration | None:
         """Return better outlines, None if no move makes any."""
-        rank = self.rank(found)
         for out, mask, left in self.places(found, room):
             beside, rest = self.beside(found, *out), found.without(*out)
             now = self.settled(joined([found.only(k) for k in out]), beside, 0)[0]
@@ -155,10 +153,10 @@ class Search(Ladder):
                 log = found.log_evidence + new.log_evidence - now.log_evidence
                 made = replace(joined([rest, new]), log_evidence=log)
                 self.weighed(made.count, self.of_number(made))
-                if self.rank(made) < rank - NEARLY:
+                if self.rank(made) < self.rank(found) - NEARLY:
                     continue
                 made = self.noted(made)
-                if self.rank(made) > rank + GAIN:
+                if self.rank(made) > self.rank(found) + GAIN:
                     return made
         return None
 
@@ -210,11 +208,12 @@ class Search(Ladder):
         if self.worth(made) < worth - CLOSE:
             return made
         for k in range(made.count):
-            rest = self.beside(made, k, before=beside)
-            fits = self.as_kinds(made.only(k), rest, 0)
+            rest, first = self.beside(made, k, before=beside), (made.kinds[k], made.corners[k])
+            own = self.settled(made.only(k), rest, 0)[0]
+            others = [self.as_kind(kind, own, rest) for kind in self.kinds if kind != first]
             if made.count == 1:
-                fits += self.as_kinds(begun, rest, ROUNDS, tries=True)
-            made = made.with_one(k, max(fits, key=lambda it: it.log_evidence))
+                others += [self.as_kind(kind, begun, rest, 0, TRIES) for kind in self.kinds]
+            made = made.with_one(k, max([own, *others], key=lambda it: it.log_evidence))
         return self.settled(made, beside, ROUNDS)[0]
 
     def guessed(self, point: Values) -> Configuration:
@@ -225,45 +224,23 @@ class Search(Ladder):
         its = Configuration(np.array([ELLIPSE]), np.array([0]), oval, 0.0)
         likely = (DISC, 0) if min(a, b) > ROUND_FROM * max(a, b) else (RECTANGLE, 0)
         kind = likely if likely in self.kinds else self.kinds[0]
-        point = np.zeros((1, WIDTH))
-        like.call(*kind, its.outlines, 0, point[0])
-        return Configuration(np.array([kind[0]]), np.array([kind[1]]), point, 0.0)
+        return Configuration(
+            np.array([kind[0]]), np.array([kind[1]]), like(kind, its)[0][None], 0.0
+        )
 
     def owners(self, found: Configuration) -> tuple[Places, Values]:
         """Return which outline, from 0, each touched element belongs to, and what is unexplained.
 
         -1 where untouched; what outlines that explain an element wholly would add, in nats.
         """
-        own, load = owners.call(self.problem, found.outlines)
-        return own, self.unexplained(load)
-
-
-@compiled_as_is
-def owners(problem: JointProblem, outlines: Outlines) -> tuple[Places, Values]:
-    """Return which outline brings most to each touched element, -1 for none, and the load of all.
-
-    Elements that none reaches are the nearest owner's, if that is within two elements.
-    """
-    rows, columns = problem.states.shape
-    own, load = np.full((rows, columns), -1), np.zeros((rows, columns))
-    most = np.zeros((rows, columns))
-    for k in range(outlines.kinds.shape[0]):
-        its, share = np.zeros((rows, columns)), np.zeros((rows, columns))
-        lay(problem, outlines, k, 0, 0, its, share)
-        for i in range(rows):
-            for j in range(columns):
-                load[i, j] += its[i, j]
-                if problem.states[i, j] == ON and its[i, j] > most[i, j]:
-                    most[i, j], own[i, j] = its[i, j], k
-    for i in range(rows):
-        for j in range(columns):
-            near, nearest = 3, -1
-            if problem.states[i, j] != ON or own[i, j] >= 0:
-                continue
-            for y in range(max(i - 2, 0), min(i + 3, rows)):
-                for x in range(max(j - 2, 0), min(j + 3, columns)):
-                    far = max(abs(y - i), abs(x - j))
-                    if own[y, x] >= 0 and far < near:
-                        near, nearest = far, own[y, x]
-            own[i, j] = nearest
-    return own, load
+        loads = np.zeros((found.count, *self.on.shape))
+        spare = np.zeros(self.on.shape)
+        for k in range(found.count):
+            add_outline.call(self.problem._replace(load=loads[k], share=spare), found.outlines, k)
+        own = np.where(self.on & (loads.max(axis=0) > 0.0), loads.argmax(axis=0), -1)
+        for i, j in zip(*np.nonzero(self.on & (own < 0)), strict=True):
+            y, x = np.nonzero(own >= 0)
+            off = np.maximum(abs(y - i), abs(x - j))
+            if len(off) and off.min() <= 2:
+                own[i, j] = own[y[off.argmin()], x[off.argmin()]]
+        return own, self.unexplained(loads.sum(axis=0))

@@ -6,13 +6,11 @@ no single convex outline. No likelihood is asked; it is where a search begins.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.several.partings import Across, across, spread, summed
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.several.partings import OWN, across
 
 Mask = NDArray[np.bool_]
 
@@ -50,23 +48,25 @@ def fullest_halves(mask: Mask, least: int) -> tuple[float, Mask]:
     if n < 2 * least:
         return 0.0, half
     piece = across(mask)
-    gained, angle, k = fullest_cut.call(piece, least)
-    its = piece.order[angle, :k]
+    x, y = piece.column[piece.order].astype(float), piece.row[piece.order].astype(float)
+    sums = np.cumsum(np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1), axis=1)
+    every, first = sums[0, -1], sums[:, least - 1 : n - least]
+    along = np.take_along_axis(piece.along, piece.order, axis=1)
+    apart = along[:, least : n - least + 1] - along[:, least - 1 : n - least] > 1e-9
+    area = np.where(apart, ground(first) + ground(every - first), np.inf)
+    angle, k = np.unravel_index(int(area.argmin()), area.shape)
+    its = piece.order[angle, : int(k) + least]
     half[piece.row[its], piece.column[its]] = True
-    return gained, half
+    return float(ground(every) - area[angle, k]), half
 
 
-@compiled_as_is
-def fullest_cut(piece: Across, least: int) -> tuple[float, int, int]:
-    """Return by how much less ground two halves take, the angle, and elements of the first half."""
-    n = piece.row.shape[0]
-    place, logs = np.empty(n, np.int64), np.zeros((piece.row.max() + 1, piece.column.max() + 1))
-    best, angle, first, whole = math.inf, 0, 0, 0.0
-    for t in range(piece.order.shape[0]):
-        sums, along, order = summed(piece, t, logs, place), piece.along[t], piece.order[t]
-        whole = spread(sums[n])
-        for k in range(least, n - least + 1):
-            area = spread(sums[k]) + spread(sums[n] - sums[k])
-            if area < best and along[order[k]] - along[order[k - 1]] > 1e-9:
-                best, angle, first = area, t, k
-    return whole - best, angle, first
+def ground(sums: Values) -> Values:
+    """Return areas of the ellipses that have the moments of some elements, in elements.
+
+    From sums over them along the last axis: number, x, y, xx, xy and yy.
+    """
+    n, x, y, xx, xy, yy = np.moveaxis(sums, -1, 0)
+    across_x, across_y = xx / n - (x / n) ** 2 + OWN, yy / n - (y / n) ** 2 + OWN
+    both = xy / n - x * y / (n * n)
+    area: Values = np.sqrt(np.maximum(across_x * across_y - both * both, OWN * OWN))
+    return 4.0 * np.pi * area

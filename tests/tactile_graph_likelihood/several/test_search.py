@@ -5,8 +5,7 @@ import pytest
 
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
-from tactile_graph_likelihood.several.kinds import TURNS, likeliest_start, starts_of
-from tactile_graph_likelihood.several.scene import Configuration
+from tactile_graph_likelihood.several.scene import TURNS, Configuration, like
 from tactile_graph_likelihood.several.search import Search
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
@@ -32,30 +31,13 @@ def only(kind, corners, *numbers):
 @pytest.mark.parametrize("kind", [(DISC, 0), (ELLIPSE, 0), (RECTANGLE, 0), (REGULAR, 3)])
 def test_an_outline_of_another_kind_has_about_the_same_area_place_and_load(own, kind):
     was = unpacked(int(own.kinds[0]), int(own.corners[0]), own.points[0])
-    rows = starts_of.call(*kind, own.outlines, np.zeros((0, 6)))
+    rows = like(kind, own)
     assert len(rows) == (TURNS if kind[0] == REGULAR else 1)
     for row in rows:
         found = unpacked(*kind, row)
         assert found.area_cm2 == pytest.approx(was.area_cm2, rel=0.06)
         assert (row[:2] == [8.0, 7.0]).all()
         assert 4.2 in row
-
-
-def test_a_search_for_a_kind_begins_with_the_likeliest_of_what_lies_around():
-    search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
-    true, beside = only(DISC, 0, *DISCS[0, :4]), search.beside(only(DISC, 0, *DISCS[1, :4]))
-    off = only(DISC, 0, *(DISCS[0, :4] + [0.25, -0.2, 0.3, 0.0]))
-    start = starts_of.call(
-        DISC, 0, off.outlines, np.vstack([np.zeros(6), true.points - off.points])
-    )
-    at = likeliest_start.call(beside, true.outlines, start)
-    assert start[at] == pytest.approx(true.points[0])
-    fits = search.as_kinds(off, beside, 8)
-    assert [int(fit.kinds[0]) for fit in fits] == [DISC, RECTANGLE]
-    assert fits[0].log_evidence > max(
-        fits[1].log_evidence, search.settled(off, beside, 0)[0].log_evidence
-    )
-    assert np.hypot(*(fits[0].points - true.points)[0, :2]) < 0.25
 
 
 def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.several.partings import spread
-from tactile_graph_likelihood.several.seeds import fullest_halves, seeds
+from tactile_graph_likelihood.several.seeds import fullest_halves, ground, seeds
 
 ROWS, COLUMNS = np.mgrid[0:16, 0:24]
 
@@ -59,4 +58,4 @@ def test_a_disc_covers_its_ellipse():
     mask = disc(10, 8, 6.0)
     x, y = COLUMNS[mask], ROWS[mask]
     sums = np.array([mask.sum(), x.sum(), y.sum(), (x * x).sum(), (x * y).sum(), (y * y).sum()])
-    assert spread.call(sums.astype(float)) == pytest.approx(mask.sum(), rel=0.03)
+    assert ground(sums.astype(float)) == pytest.approx(mask.sum(), rel=0.03)
