@@ -22,27 +22,39 @@ OTHERS = (
     "finds one outline where there are several: none explains such a load, so that the search goes "
     "through all its attempts and the sample to its end; scene `one` is what it is for"
 )
+MORE = (
+    "an outline over more elements leaves more unexplained than is usual, so that it is parted in "
+    "more ways: `partings` is called {} times on 16, 32 and 64 (`one`)"
+)
 WHY = {
+    "boundary_scan": PAGES,
     "bridge_lines": "sorts each row and column to find dead ones: n log n",
     "choose_shape": OTHERS,
     "compress": PAGES,
     "contours": CACHE,
     "digital_gradient": PAGES,
     "ellipse_sweep": PAGES,
+    "find_bad": "probably " + PAGES + "; where it is kept 1.16 (0.68–1.43), which decides nothing",
     "fit_circle_load": PAGES,
     "fit_ellipse": CACHE,
     "fit_ellipse_direct": PAGES,
     "fit_footprint": OTHERS,
+    "fit_footprints": MORE.format("0, 1 and 40"),
     "fit_rectangle": SORTED,
     "flip_cells": PAGES,
+    "follow_footprint": "probably the cache: 1.11 on the other scenes, too",
     "footprint_disc": OTHERS,
     "footprint_ellipse": OTHERS,
     "footprint_rectangle": OTHERS,
+    "gibbs": "probably the cache: its rounds are as many on every pad, and `grown` has 1.04",
+    "graph_cuts": "minimum cuts by augmenting paths, which grow longer with the pad: no bound is "
+    "linear",
     "hull": SORTED,
     "hull_graham": SORTED,
     "identify_footprint": OTHERS,
     "line_contacts": "an even load falls into basins as many as its cells (7, 50, 250 on 32, 64, "
     "128), and each one that is joined has the whole group weighed again with all its neighbours",
+    "locate_objects": MORE.format("7, 16 and 165"),
     "min_area_rectangle": SORTED,
     "near_hull": "each point with each side; a hull has few, this outline of all objects many",
     "pick_contact": "sorts the contacts: n log n",
@@ -51,6 +63,7 @@ WHY = {
     "simplify_polygon": "a tree of all corners, as in sorting: n log n, then probably the cache",
     "skeleton": "scikit-image's thinning: pass after pass, more for thicker objects",
     "sobel": PAGES,
+    "split_watershed": "takes cells in turn from a heap: n log n",
     "subdivide_image": PAGES,
     "threshold_otsu": PAGES,
 }
