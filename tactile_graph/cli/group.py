@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from tactile_graph.cli import endings, shared
+from tactile_graph.cli.say import say
 from tactile_graph.errors import PluginError, did_you_mean, one_of
 from tactile_graph.plugins import registry
 
@@ -110,7 +111,7 @@ class Group(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Take the command line apart; where it is empty the help says what there is."""
         if not args and not ctx.resilient_parsing:
-            click.echo(ctx.get_help(), err=True)
+            say(ctx.get_help(), err=True)
             ctx.exit(endings.NOT_DONE)
         return super().parse_args(ctx, args)
 
