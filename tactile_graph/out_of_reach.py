@@ -17,7 +17,7 @@ def out_of_reach(*numbers: int) -> Iterator[None]:
 
     Parameters
     ----------
-    numbers : int
+    *numbers : int
         Signals; Ctrl-C if none is given.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
