@@ -422,7 +422,9 @@ class AnyPad:
         point = self.told.point_of(top)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
+        contrast = 1.0
+        if part == EVEN and not large:
+            contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
         noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast)
         loose = looseness(readings)
         if part == EVEN and self.quick and self.told.kind == DISC:
@@ -435,7 +437,7 @@ class AnyPad:
             if is_scattered(self.told.kind, readings, point):
                 model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
-        model = self._with(changed(noise, contrast=1.0), *([] if part == EVEN else [part]))
+        model = self._with(noise, *([] if part == EVEN else [part]))
         mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
 

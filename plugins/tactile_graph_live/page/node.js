@@ -6,7 +6,6 @@ import { badge, fateOf, setBadge } from "./outcomes.js";
 import { faresInWords, withinOf } from "./processes.js";
 import { drawPicture, extentOf } from "./paint.js";
 
-
 export class NodeCard {
   /** `settings` makes the controls of a node; `closed` is called when it is shut. */
   constructor(settings, closed) {
