@@ -63,9 +63,20 @@ def told(found: Any) -> Any:
 def alike(one: Any, other: Any) -> bool:
     """Return whether two answers are the same but for the last digits of numbers."""
     if isinstance(one, dict):
-        return one.keys() == other.keys() and all(alike(v, other[k]) for k, v in one.items())
+        same = one.keys() == other.keys() and all(
+            alike(v, other[k]) for k, v in one.items() if k != "iterations"
+        )
+        return same and as_many_rounds(one.get("iterations"), other.get("iterations"))
     if isinstance(one, list):
         return len(one) == len(other) and all(map(alike, one, other))
     if isinstance(one, float):
-        return one == pytest.approx(other, rel=1e-8, abs=1e-8)
+        return one == pytest.approx(other, rel=1e-7, abs=1e-8)
     return bool(one == other)
+
+
+def as_many_rounds(one: int | None, other: int | None) -> bool:
+    """Return whether two searches took as many rounds, give or take one in twelve.
+
+    A search that creeps takes a few more or fewer where another processor rounds otherwise.
+    """
+    return one == other if None in (one, other) else one == pytest.approx(other, rel=1 / 12, abs=0)
